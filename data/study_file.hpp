@@ -1,0 +1,88 @@
+#pragma once
+// A study.toml in which every key that is asked for counts as used, and every key that nobody asked for is an
+// error with its line. Readers (data/study.cpp, dem/read_case.cpp) ask; problems are collected, not thrown, so
+// that one pass reports them all.
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "data/error.hpp"
+#include "data/unit.hpp"
+
+namespace data {
+
+/// Closed or open interval that a value must lie in, in the unit that is read.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool open_low = false;
+  bool open_high = false;
+};
+inline constexpr Range any_number{};
+inline constexpr Range positive{.low = 0.0, .open_low = true};
+inline constexpr Range non_negative{.low = 0.0};
+
+class StudyFile;
+
+/// One table of the study. A missing table reads as an empty one. Every getter marks its key as used; when the value
+/// is missing without fallback, of the wrong type, unit or range, a Problem is recorded and the fallback (or the
+/// bound nearest to sense, or empty text) is returned so that reading goes on.
+class Section {
+ public:
+  bool exists() const;                       ///< the table is in the file
+  bool has(std::string_view key) const;      ///< does not mark the key as used
+  std::string place(std::string_view key = "") const;  ///< "study.toml:12: contact.friction"
+  std::string name() const;                  ///< dotted: "parameters.friction"
+
+  double number(std::string_view key, Range range, std::optional<double> fallback = {}) const;
+  std::int64_t integer(std::string_view key, Range range, std::optional<std::int64_t> fallback = {}) const;
+  /// "800 um" -> SI value of the dimension of `si_unit` ("m"); bounds and fallback in SI. A bare number is an error
+  /// unless `default_unit` is given (a section with a `unit`), or the dimension is none ("1").
+  double quantity(std::string_view key, std::string_view si_unit, Range range, std::optional<double> fallback = {},
+                  const Unit* default_unit = nullptr) const;
+  std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
+  /// One of `options`; anything else is an error that lists them.
+  std::string choice(std::string_view key, const std::vector<std::string>& options, std::optional<std::string> fallback = {}) const;
+  bool flag(std::string_view key, bool fallback) const;
+  std::vector<std::string> texts(std::string_view key, bool required = false) const;
+  std::vector<double> quantities(std::string_view key, std::string_view si_unit, Range range, const Unit* default_unit = nullptr) const;
+
+  Section child(std::string_view key) const;                       ///< sub-table (also inline), empty if missing
+  std::vector<std::pair<std::string, Section>> children() const;   ///< named sub-tables in file order
+  std::vector<Section> array(std::string_view key) const;          ///< [[key]] tables in file order
+
+  /// Records a problem at `key` of this table.
+  void problem(std::string_view key, std::string what, std::string remedy) const;
+
+  struct Node;  ///< in study_file.cpp
+  explicit Section(std::shared_ptr<Node> node) : node_(std::move(node)) {}
+
+ private:
+  std::shared_ptr<Node> node_;
+};
+
+/// The whole file. `overrides` are "dotted.key=VALUE" texts (--set), applied before anything is read; VALUE is a
+/// TOML value, or, when it does not parse as one, text.
+class StudyFile {
+ public:
+  /// `path`: the file, or a folder that holds study.toml. Throws InputError: 66 missing, 78 syntax (file, line, column).
+  static StudyFile open(const std::string& path, const std::vector<std::string>& overrides = {});
+
+  Section root() const;
+  std::string path() const;    ///< of the file
+  std::string folder() const;  ///< that holds it; relative paths in the study start here
+
+  /// Throws InputError (78) with every problem recorded so far and, for each key that nobody asked for, its line and
+  /// the nearest known key of the same table.
+  void finish() const;
+
+  struct State;  ///< in study_file.cpp
+ private:
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace data

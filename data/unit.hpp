@@ -1,0 +1,24 @@
+#pragma once
+// Units by UDUNITS-2. Interiors are SI only; a Unit converts at the border.
+#include <string>
+#include <string_view>
+
+namespace data {
+
+/// A unit and its affine map to SI base units: si = factor * value + offset. "" and "1" are dimensionless.
+/// Angular speed in rpm becomes rad/s.
+struct Unit {
+  std::string symbol;  ///< as the user wrote it: "mN m"
+  double factor = 1.0;
+  double offset = 0.0;
+  double to_si(double value) const { return factor * value + offset; }
+  double from_si(double si) const { return (si - offset) / factor; }
+};
+
+/// Parses a unit. Throws std::invalid_argument when UDUNITS-2 does not know it.
+Unit parse_unit(std::string_view symbol);
+
+/// Whether two units measure the same dimension.
+bool convertible(std::string_view a, std::string_view b);
+
+}  // namespace data
