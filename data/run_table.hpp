@@ -1,0 +1,57 @@
+#pragma once
+// The run table: one row per simulated point, whoever simulated it. HDF5 (training.h5, SI with unit attributes) and CSV
+// (the study's units). It is all that calibration knows of the DEM.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "data/study.hpp"
+
+namespace data {
+
+struct Column {
+  std::string name;
+  Unit unit;
+};
+
+struct RunRow {
+  std::string material;                 ///< "" in a study without materials
+  std::vector<double> inputs;           ///< SI: parameters, then controls, in the table's column order
+  std::vector<double> outputs;          ///< SI
+  std::vector<double> standard_errors;  ///< SI, of the outputs' means
+  std::uint64_t seed = 0;               ///< of the run's random streams
+  std::string settings;                 ///< hash of every setting that is not an input; "" for another code's runs
+  std::string isa;                      ///< instruction set that made it
+  std::string origin;                   ///< program and version, or file and line
+  double cpu_seconds = 0.0;
+};
+
+struct RunTable {
+  std::vector<Column> parameters;
+  std::vector<Column> controls;
+  std::vector<Column> outputs;
+  std::vector<RunRow> rows;
+};
+
+/// An empty table with the study's columns.
+RunTable empty_table(const Study& study);
+
+/// Identity of a row: material, inputs (to 12 digits), seed and settings.
+std::string row_key(const RunRow& row);
+
+/// Rows of `first`, then those of `second` whose key is not there yet.
+RunTable merge(const RunTable& first, const RunTable& second);
+
+/// Reads .h5 or .csv with the study's columns, in any column order. CSV rows with NaN or an empty cell are left out and
+/// named in `left_out`. Throws InputError: 66 missing file; 65 truncated, missing column, text for a number (file:line).
+struct TableRead {
+  RunTable table;
+  std::vector<std::string> left_out;
+};
+TableRead read_table(const std::string& path, const Study& study);
+
+/// Atomic writes (temporary file, fsync, rename). Throw InputError (73).
+void write_table_hdf5(const std::string& path, const RunTable& table, const Study& study);
+void write_table_csv(const std::string& path, const RunTable& table, const Study& study);
+
+}  // namespace data

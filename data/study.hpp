@@ -1,0 +1,131 @@
+#pragma once
+// What a study says about parameters, controls, outputs, observations and cases. The sections [rig], [materials.*]
+// beyond `fixed` and `runs`, [contact] and [run] belong to the DEM (dem/read_case.cpp).
+// All numbers are SI; a Unit beside them is for display only.
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/study_file.hpp"
+#include "data/unit.hpp"
+
+namespace data {
+
+enum class Scale { linear, log };
+
+enum class PriorKind { uniform, normal, truncated_normal, log_normal, beta, posterior };
+
+/// A prior density of one parameter, zero outside [low, high].
+/// uniform: low, high. normal: mean, sd. truncated_normal: mean, sd on [low, high]. log_normal: median `mean`, sd of the
+/// logarithm `sd` (dimensionless). beta: alpha, beta on [low, high]. posterior: that of another case.
+struct Prior {
+  PriorKind kind = PriorKind::uniform;
+  double low = 0.0;   ///< SI; by default the parameter's range
+  double high = 1.0;  ///< SI
+  double mean = 0.0;  ///< SI
+  double sd = 0.0;    ///< SI (log_normal: of the logarithm)
+  double alpha = 1.0;
+  double beta = 1.0;
+  std::string posterior_of;  ///< name of a case, kind posterior
+  std::string place;
+};
+
+/// A quantity to be calibrated.
+struct Parameter {
+  std::string name;
+  std::string target;  ///< what it sets in the DEM ("contact.friction"); by default the name
+  Unit unit;
+  double low = 0.0;   ///< SI, range of training and default prior
+  double high = 1.0;  ///< SI
+  Scale scale = Scale::linear;
+  Prior prior;
+  std::string place;
+};
+
+/// A quantity that the experiment sets (rpm).
+struct Control {
+  std::string name;
+  std::string target;
+  Unit unit;
+  double low = 0.0;   ///< SI
+  double high = 1.0;  ///< SI
+  std::string place;
+};
+
+struct Output {
+  std::string name;
+  Unit unit;
+  std::string place;
+};
+
+/// A material's own rows of the training table. A study without [materials] has one, named "".
+struct Material {
+  std::string name;
+  std::map<std::string, double> fixed;  ///< parameters its training runs do not vary, SI
+  std::optional<int> runs;              ///< instead of [training] runs
+  std::string place;
+};
+
+struct Training {
+  int runs = 64;                 ///< per material
+  double standard_error = 0.02;  ///< wanted relative standard error of the first output
+  std::string table;             ///< file of rows that come with the study, absolute path; empty if none
+  std::string engine = "demcal"; ///< "demcal", or "none" for a study on another code's runs
+  std::string place;
+};
+
+/// One measured point: outputs at given controls.
+struct Observation {
+  std::vector<double> controls;         ///< SI, in the order of Study::controls
+  std::vector<double> values;           ///< SI, in the order of ObservationSet::outputs
+  std::vector<double> standard_errors;  ///< SI
+  int line = 0;
+};
+
+struct ObservationSet {
+  std::string name;
+  std::string material;
+  std::string file;                    ///< absolute path
+  std::vector<std::size_t> outputs;    ///< indices into Study::outputs, of the columns that the file has
+  std::vector<Observation> points;
+  std::vector<std::string> header;     ///< the comment lines at the head of the file, without '#'
+  std::string place;
+};
+
+/// A calibration case: which parameters are free given which observations.
+struct CalibrationCase {
+  std::string name;
+  std::vector<std::string> observe;
+  std::vector<std::string> free;
+  std::map<std::string, double> fixed;  ///< SI
+  std::map<std::string, Prior> priors;  ///< instead of the parameters' own
+  std::string place;
+};
+
+struct Study {
+  std::string name;
+  std::string description;
+  std::uint64_t seed = 1;
+  std::string file;    ///< absolute path of study.toml
+  std::string folder;  ///< that holds it
+  std::vector<Parameter> parameters;
+  std::vector<Control> controls;
+  std::vector<Output> outputs;
+  std::vector<Material> materials;
+  Training training;
+  std::vector<ObservationSet> observations;
+  std::vector<CalibrationCase> cases;
+
+  std::optional<std::size_t> parameter_index(std::string_view parameter_name) const;
+  std::optional<std::size_t> observation_index(std::string_view set_name) const;
+  const Material& material(std::string_view material_name) const;
+};
+
+/// Reads the sections above and the observation files. Problems are recorded in `file` (file.finish() throws them) so that
+/// the DEM's sections can be read in the same pass; a missing or malformed observation CSV throws InputError (66 or 65).
+Study read_study(const StudyFile& file);
+
+}  // namespace data
