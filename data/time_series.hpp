@@ -7,17 +7,18 @@ namespace data {
 
 struct SeriesOptions {
   double start_up_fraction_max = 0.5;  ///< the truncation rule may drop up to this much of the series as start-up
-  double window_factor = 5.0;          ///< Sokal's automatic window: M >= window_factor * tau
+  double window_factor = 5.0;  ///< Sokal's automatic window: M >= window_factor * tau / 2 (his tau_int is half of ours)
 };
 
 struct SeriesMean {
   double mean = 0.0;
-  double standard_error = 0.0;    ///< sd of the mean, autocorrelation included
-  double sd = 0.0;                ///< sd of one sample
-  double integrated_time = 1.0;   ///< integrated autocorrelation time tau, in samples: var(mean) = sd^2 tau / n
-  double effective_samples = 0.0; ///< n / tau
-  std::size_t dropped = 0;        ///< samples taken for start-up
-  bool reliable = true;           ///< false when the series is too short for its correlation (n < 20 tau)
+  double standard_error = 0.0;     ///< sd of the mean, autocorrelation included
+  double sd = 0.0;                 ///< sd of one sample
+  double integrated_time = 1.0;    ///< integrated autocorrelation time tau, in samples: var(mean) = sd^2 tau / n
+  double effective_samples = 0.0;  ///< n / tau
+  std::size_t dropped = 0;         ///< samples taken for start-up; 0 when the front does not differ from the rest
+  bool reliable =
+      true;  ///< false when the series is too short for its correlation (n < 20 tau) or its start-up does not end
 };
 
 /// Start-up by MSER-5 (White 1997), error by the integrated autocorrelation time with Sokal's window.

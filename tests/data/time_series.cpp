@@ -1,0 +1,94 @@
+// Closed form for an autoregressive series x_t = phi x_{t-1} + noise: tau = (1 + phi) / (1 - phi).
+#include "data/time_series.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "data/random.hpp"
+
+namespace {
+
+std::vector<double> autoregressive(double phi, std::size_t n, std::uint32_t index) {
+  data::RandomStream random(11, data::Purpose::test, index);
+  std::vector<double> x(n);
+  double value = random.normal();
+  for (double& out : x) {
+    out = value;
+    value = phi * value + std::sqrt(1.0 - phi * phi) * random.normal();
+  }
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("the integrated autocorrelation time of an AR(1) series is (1 + phi) / (1 - phi)") {
+  for (const double phi : {0.0, 0.5, 0.9}) {
+    const std::vector<double> x = autoregressive(phi, 200000, 1);
+    const data::SeriesMean found = data::mean_with_error(x);
+    const double tau = (1.0 + phi) / (1.0 - phi);
+    CHECK(found.integrated_time == Approx(tau).epsilon(0.08));
+    CHECK(found.sd == Approx(1.0).epsilon(0.03));
+    CHECK(found.standard_error == Approx(std::sqrt(tau / 200000.0)).epsilon(0.06));
+    CHECK(found.reliable);
+  }
+}
+
+TEST_CASE("95 % intervals of correlated means cover the truth about 95 % of the time") {
+  for (const double phi : {0.0, 0.8}) {
+    int covered = 0, truncated = 0;
+    const int series = 1500;
+    for (int i = 0; i < series; ++i) {
+      const std::vector<double> x = autoregressive(phi, 1000, 100 + static_cast<std::uint32_t>(i));
+      const data::SeriesMean found = data::mean_with_error(x);
+      if (std::abs(found.mean) < 1.96 * found.standard_error) ++covered;
+      if (found.dropped > 0) ++truncated;
+    }
+    INFO("phi " << phi << ", covered " << covered << ", truncated " << truncated << " of " << series);
+    CHECK(covered > 0.925 * series);
+    CHECK(covered < 0.975 * series);
+    CHECK(truncated < 0.03 * series);  // a stationary series is kept whole
+  }
+}
+
+TEST_CASE("a start-up transient is dropped, and the mean is that of the stationary part") {
+  int covered = 0;
+  const int series = 300;
+  for (int i = 0; i < series; ++i) {
+    std::vector<double> x = autoregressive(0.6, 1500, 5000 + static_cast<std::uint32_t>(i));
+    for (std::size_t t = 0; t < x.size(); ++t) x[t] += 3.0 - 8.0 * std::exp(-static_cast<double>(t) / 40.0);
+    const data::SeriesMean found = data::mean_with_error(x);
+    CHECK(found.dropped >= 40);  // one time constant at least; what is left is within the error, as the coverage shows
+    CHECK(found.dropped <= 750);
+    if (std::abs(found.mean - 3.0) < 1.96 * found.standard_error) ++covered;
+  }
+  CHECK(covered > 0.90 * series);
+}
+
+TEST_CASE("a short start-up does not cost a large part of the series") {
+  std::vector<double> x = autoregressive(0.3, 2000, 77);
+  for (std::size_t t = 0; t < 30; ++t) x[t] -= 20.0;
+  const data::SeriesMean found = data::mean_with_error(x);
+  CHECK(found.dropped >= 30);
+  CHECK(found.dropped <= 200);
+}
+
+TEST_CASE("a constant series has its value as mean and no error") {
+  const std::vector<double> x(100, 0.1);
+  const data::SeriesMean found = data::mean_with_error(x);
+  CHECK(found.mean == Approx(0.1));
+  CHECK(found.standard_error == 0.0);
+  CHECK(found.dropped == 0);
+  CHECK(found.reliable);
+}
+
+TEST_CASE("a series too short for its correlation, still drifting, empty or not finite is not called reliable") {
+  CHECK_FALSE(data::mean_with_error(autoregressive(0.98, 300, 3)).reliable);
+  std::vector<double> drifting = autoregressive(0.0, 1000, 4);
+  for (std::size_t t = 0; t < drifting.size(); ++t) drifting[t] += 0.05 * static_cast<double>(t);
+  CHECK_FALSE(data::mean_with_error(drifting).reliable);
+  CHECK_FALSE(data::mean_with_error({}).reliable);
+  std::vector<double> broken = autoregressive(0.0, 100, 5);
+  broken[50] = std::nan("");
+  CHECK_FALSE(data::mean_with_error(broken).reliable);
+}
