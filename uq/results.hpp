@@ -58,6 +58,7 @@ struct PredictivePoint {
   std::map<std::string, double> controls;
   std::string output, unit;
   double mean = 0.0, q05 = 0.0, q95 = 0.0, observed = 0.0, standard_error = 0.0;
+  std::string observation_set;  ///< that the point belongs to
 };
 
 /// A curve of the posterior predictive of the model (without measurement error) against one control.
