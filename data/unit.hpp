@@ -11,6 +11,7 @@ struct Unit {
   std::string symbol;  ///< as the user wrote it: "mN m"
   double factor = 1.0;
   double offset = 0.0;
+  std::string si_symbol = "1";  ///< the SI unit that it is mapped to, in base units: "kg m2 s-2"
   double to_si(double value) const { return factor * value + offset; }
   double from_si(double si) const { return (si - offset) / factor; }
 };
@@ -18,7 +19,8 @@ struct Unit {
 /// Parses a unit. Throws std::invalid_argument when UDUNITS-2 does not know it.
 Unit parse_unit(std::string_view symbol);
 
-/// Whether two units measure the same dimension.
+/// Whether two units measure the same dimension. The radian counts: "rpm" is an angular speed and "Hz" is not, so that
+/// 2 Hz is never taken for 2 rad/s; nor is "s" taken for a reciprocal "Hz", as UDUNITS-2 itself would.
 bool convertible(std::string_view a, std::string_view b);
 
 }  // namespace data

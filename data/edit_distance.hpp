@@ -1,0 +1,16 @@
+#pragma once
+// What somebody who mistyped a name may have meant.
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace data {
+
+/// Smallest number of insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate nearest to `name`, if any is near enough to be meant.
+std::optional<std::string> nearest(std::string_view name, const std::vector<std::string>& candidates);
+
+}  // namespace data

@@ -1,0 +1,48 @@
+#include "data/unit.hpp"
+
+#include <catch2/catch.hpp>
+#include <numbers>
+#include <stdexcept>
+
+TEST_CASE("units map to SI by their definition") {
+  CHECK(data::parse_unit("mN m").to_si(12.0) == Approx(0.012));
+  CHECK(data::parse_unit("um").to_si(800.0) == Approx(800e-6));
+  CHECK(data::parse_unit("mJ/m2").to_si(10.0) == Approx(0.010));
+  CHECK(data::parse_unit("rpm").to_si(150.0) == Approx(150.0 * 2.0 * std::numbers::pi / 60.0));
+  CHECK(data::parse_unit("degC").to_si(20.0) == Approx(293.15));
+  CHECK(data::parse_unit("").to_si(0.4) == 0.4);
+  CHECK(data::parse_unit("1").to_si(0.4) == 0.4);
+  CHECK(data::parse_unit("%").to_si(3.0) == Approx(0.03));
+}
+
+TEST_CASE("a unit converts back what it converted") {
+  for (const char* symbol : {"mN m", "rpm", "degC", "mJ/m2", "aJ", "kg/m3", ""}) {
+    const data::Unit unit = data::parse_unit(symbol);
+    CHECK(unit.symbol == symbol);
+    CHECK(unit.from_si(unit.to_si(7.25)) == Approx(7.25).epsilon(1e-13));
+  }
+}
+
+TEST_CASE("the SI unit of a unit is itself a unit that maps to itself") {
+  for (const char* symbol : {"mN m", "rpm", "degC", "mJ/m2", "kg/m3", "", "%"}) {
+    const data::Unit si = data::parse_unit(data::parse_unit(symbol).si_symbol);
+    CHECK(si.factor == 1.0);
+    CHECK(si.offset == 0.0);
+    CHECK(data::convertible(symbol, si.symbol));
+  }
+}
+
+TEST_CASE("only units of one dimension are convertible") {
+  CHECK(data::convertible("mN m", "J"));
+  CHECK(data::convertible("rpm", "rad/s"));
+  CHECK_FALSE(data::convertible("rpm", "Hz"));
+  CHECK_FALSE(data::convertible("s", "Hz"));
+  CHECK_FALSE(data::convertible("m", "kg"));
+  CHECK(data::convertible("", "1"));
+}
+
+TEST_CASE("what UDUNITS-2 does not know is refused") {
+  CHECK_THROWS_AS(data::parse_unit("furlongs per fortnite"), std::invalid_argument);
+  CHECK_THROWS_AS(data::parse_unit("seconds since 2000-01-01"), std::invalid_argument);
+  CHECK_THROWS_AS(data::convertible("m", "qqq"), std::invalid_argument);
+}
