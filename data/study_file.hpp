@@ -58,7 +58,7 @@ class Section {
   /// Records a problem at `key` of this table.
   void problem(std::string_view key, std::string what, std::string remedy) const;
 
-  struct Node;  ///< in study_file.cpp
+  struct Node;  ///< in study_node.hpp
   explicit Section(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
  private:
@@ -80,7 +80,7 @@ class StudyFile {
   /// the nearest known key of the same table.
   void finish() const;
 
-  struct State;  ///< in study_file.cpp
+  struct State;  ///< in study_node.hpp
  private:
   std::shared_ptr<State> state_;
 };
