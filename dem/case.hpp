@@ -1,0 +1,76 @@
+#pragma once
+// One DEM case as plain data: the rig, the material, the contact law and how long to run. SI units throughout.
+// Everything a study may calibrate or control is reached by name (dem/target.hpp).
+#include <optional>
+#include <string>
+
+namespace dem {
+
+/// The horizontal auger slice: shaft and helical blade, turning about +x in an open U-trough; periodic along x.
+struct Rig {
+  double shaft_radius = 2.5e-3;                  ///< m
+  double blade_radius = 6.0e-3;                  ///< m
+  double blade_thickness = 1.0e-3;               ///< m, along the axis
+  double pitch = 12.0e-3;                        ///< m, right-handed
+  double trough_radius = 7.1e-3;                 ///< m, half circle below the axis; vertical side walls above
+  int pitches = 1;                               ///< periods of the helix in the box
+  double fill = 2400.0;                          ///< number of spheres in the box, rounded
+  std::optional<double> fill_mass;               ///< kg in the box; when set, the number follows from it
+  double angular_velocity = 15.707963267948966;  ///< rad/s about +x (150 rpm)
+};
+
+struct Material {
+  std::string name = "grain";
+  double density = 6090.0;       ///< kg/m3
+  double diameter = 0.8e-3;      ///< m
+  double coarse_graining = 1.0;  ///< l: diameter here / diameter of the original grain
+};
+
+enum class LengthScale { diameter, radius };          ///< what L of eq. (1) is
+enum class WallAttraction { as_grains, derjaguin };   ///< eq. (1) as between grains, or twice that (sphere on plane)
+enum class HamakerOf { simulation, original };        ///< whether `hamaker` is H* or H = H*/l^3
+enum class FrictionCap { net, repulsion, thornton };  ///< options (a), (b), (c) of the Coulomb limit
+enum class DashpotTension { allowed, clamped };       ///< whether elastic + damping force may pull
+
+/// Linear spring-dashpot, tangential spring with Coulomb slider, van der Waals attraction (dem/contact_law.hpp).
+struct Contact {
+  double stiffness = 100.0;              ///< N/m, grain-grain
+  std::optional<double> wall_stiffness;  ///< N/m, follows stiffness when not set
+  double restitution = 0.7;              ///< of a head-on collision without attraction, tension allowed; walls too
+  double tangential_ratio = 2.0 / 7.0;   ///< kt / k
+  double tangential_damping = 0.5;       ///< tangential dashpot / normal dashpot
+  double friction = 0.4;                 ///< Coulomb coefficient, grain-grain
+  std::optional<double> wall_friction;   ///< follows friction when not set
+  DashpotTension tension = DashpotTension::allowed;
+  FrictionCap cap = FrictionCap::repulsion;
+  double hamaker = 0.0;                ///< J, H* (or H with hamaker_of = original)
+  std::optional<double> wall_hamaker;  ///< J, follows hamaker when not set
+  HamakerOf hamaker_of = HamakerOf::simulation;
+  LengthScale length_scale = LengthScale::diameter;
+  WallAttraction wall_attraction = WallAttraction::as_grains;
+  double minimum_separation = 1.5e-9;  ///< m, h_min of eq. (1); constant attraction below it and in contact
+  double cut_off = 100e-9;             ///< m, no attraction beyond
+};
+
+struct RunControl {
+  double gravity = 9.81;            ///< m/s2 along -z
+  double steps_per_contact = 30.0;  ///< contact duration of the stiffest pair / time step
+  double skin = 0.10;               ///< of the neighbour list, in diameters; 0: chosen from the speed of the tool
+  double settle = 0.08;             ///< s, filling comes to rest before the tool turns
+  double start_up = 0.2;            ///< s of turning dropped at least, before means are taken
+  double sample_interval = 0.2e-3;  ///< s between samples; each is the mean over the steps since the last
+  double window = 20e-3;            ///< s, torque_fluctuation is the deviation of torque averaged over it
+  double standard_error = 0.02;     ///< wanted relative standard error of the mean torque
+  double shortest = 0.3;            ///< s of measured turning at least, and
+  double shortest_turns = 0.25;     ///< turns at least
+  double longest = 1.4;             ///< s of turning at most, start-up included
+};
+
+struct Case {
+  Rig rig;
+  Material material;
+  Contact contact;
+  RunControl run;
+};
+
+}  // namespace dem

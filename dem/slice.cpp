@@ -1,0 +1,179 @@
+#include "dem/slice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "data/random.hpp"
+#include "dem/derived.hpp"
+
+namespace dem {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr int facets = 48;      // of the shaft, the blade's rim and the trough's half circle
+constexpr int blade_rings = 2;  // quadrilaterals from shaft to rim
+
+/// Rows of points joined by triangles; `outside` is on the left of (along a row) x (to the next row).
+void add_sheet(TriangleMesh& mesh, const std::vector<std::vector<Vec3>>& rows) {
+  const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+  const auto width = static_cast<std::uint32_t>(rows[0].size());
+  for (const auto& row : rows) mesh.vertices.insert(mesh.vertices.end(), row.begin(), row.end());
+  for (std::uint32_t r = 0; r + 1 < rows.size(); ++r) {
+    for (std::uint32_t k = 0; k + 1 < width; ++k) {
+      const std::uint32_t a = base + r * width + k, b = a + 1, c = a + width, d = c + 1;
+      mesh.triangles.push_back({a, b, d});
+      mesh.triangles.push_back({a, d, c});
+    }
+  }
+}
+
+Vec3 at(double x, double radius, double angle) { return {x, radius * std::cos(angle), radius * std::sin(angle)}; }
+
+}  // namespace
+
+TriangleMesh auger_mesh(const Rig& rig) {
+  TriangleMesh mesh;
+  const double length = rig.pitches * rig.pitch;
+  const int along = 4 * rig.pitches;
+  std::vector<std::vector<Vec3>> shaft;
+  for (int k = 0; k <= along; ++k) {
+    shaft.emplace_back();
+    for (int a = facets; a >= 0; --a)
+      shaft.back().push_back(at(length * k / along, rig.shaft_radius, 2.0 * pi * a / facets));
+  }
+  add_sheet(mesh, shaft);
+  // The blade winds from angle 0 at x = 0; it starts a little inside the shaft so that no gap opens between facets.
+  const double root = rig.shaft_radius * std::cos(pi / facets) * 0.98;
+  const int turns = facets * rig.pitches;
+  const auto face = [&](double offset, bool reversed) {
+    std::vector<std::vector<Vec3>> rows;
+    for (int k = 0; k <= turns; ++k) {
+      rows.emplace_back();
+      const double angle = 2.0 * pi * k / facets;
+      for (int r = 0; r <= blade_rings; ++r) {
+        const double radius = root + (rig.blade_radius - root) * r / blade_rings;
+        rows.back().push_back(at(rig.pitch * angle / (2.0 * pi) + offset, radius, angle));
+      }
+      if (reversed) std::reverse(rows.back().begin(), rows.back().end());
+    }
+    add_sheet(mesh, rows);
+  };
+  face(0.5 * rig.blade_thickness, false);
+  face(-0.5 * rig.blade_thickness, true);
+  std::vector<std::vector<Vec3>> rim;
+  for (int k = 0; k <= turns; ++k) {
+    const double angle = 2.0 * pi * k / facets, x = rig.pitch * angle / (2.0 * pi);
+    rim.push_back({at(x + 0.5 * rig.blade_thickness, rig.blade_radius, angle),
+                   at(x - 0.5 * rig.blade_thickness, rig.blade_radius, angle)});
+  }
+  add_sheet(mesh, rim);
+  return weld(mesh, 1e-9 * rig.blade_radius);
+}
+
+TriangleMesh trough_mesh(const Rig& rig, double top) {
+  TriangleMesh mesh;
+  const double length = rig.pitches * rig.pitch, r = rig.trough_radius;
+  const int along = 4 * rig.pitches;
+  std::vector<Vec3> profile{{0.0, -r, top}};
+  for (int a = 0; a <= facets; ++a) profile.push_back(at(0.0, r, pi + pi * a / facets));
+  profile.push_back({0.0, r, top});
+  // The ends of the half circle lie exactly under the side walls.
+  profile[1] = {0.0, -r, 0.0};
+  profile[profile.size() - 2] = {0.0, r, 0.0};
+  std::vector<std::vector<Vec3>> rows;
+  for (int k = 0; k <= along; ++k) {
+    rows.push_back(profile);
+    for (Vec3& p : rows.back()) p.x = length * k / along;
+  }
+  add_sheet(mesh, rows);
+  return weld(mesh, 1e-9 * r);
+}
+
+Packing pack(const Case& c, std::uint64_t seed) {
+  const Derived d = derive(c);
+  const Rig& rig = c.rig;
+  data::RandomStream random(seed, data::Purpose::packing);
+  const double size = c.material.diameter, radius = 0.5 * size, length = rig.pitches * rig.pitch;
+  const double jitter = 0.04 * size, clear = radius + jitter + 0.02 * size;
+  // A simple cubic lattice whose spacing along x divides the box; sites keep clear of each other and of the walls.
+  const int nx = static_cast<int>(length / (1.1 * size));
+  const double dx = length / nx, step = 1.1 * size;
+  const double wall = rig.trough_radius * std::cos(pi / (2 * facets)) - clear;
+  const int ny = static_cast<int>(std::floor(2.0 * wall / step)) + 1;
+  const auto free = [&](Vec3 p) {
+    const double rho = std::hypot(p.y, p.z);
+    if (p.z < 0.0 ? rho > wall : std::abs(p.y) > wall) return false;
+    if (rho < rig.shaft_radius + clear) return false;
+    if (rho > rig.blade_radius + clear) return true;
+    // Distance along x to the helicoid's faces; the true distance is that times the cosine of the helix angle.
+    const double turn = std::atan2(p.z, p.y) / (2.0 * pi) * rig.pitch;
+    const double off = std::abs(std::remainder(p.x - turn, rig.pitch));
+    const double cosine =
+        std::min(rho, rig.shaft_radius) * 2.0 * pi / std::hypot(rig.pitch, 2.0 * pi * std::min(rho, rig.shaft_radius));
+    return (off - 0.5 * rig.blade_thickness) * cosine > clear;
+  };
+  Packing packing;
+  for (int layer = 0; packing.position.size() < d.spheres; ++layer) {
+    const double z = -wall + layer * step;
+    std::vector<Vec3> sites;
+    for (int ix = 0; ix < nx; ++ix) {
+      for (int iy = 0; iy < ny; ++iy) {
+        const Vec3 p{(ix + 0.5) * dx, (iy - 0.5 * (ny - 1)) * step, z};
+        if (free(p)) sites.push_back(p);
+      }
+    }
+    // The last layer is thinned at random.
+    for (std::size_t k = sites.size(); k > 1; --k)
+      std::swap(sites[k - 1], sites[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
+    for (const Vec3 p : sites) {
+      if (packing.position.size() == d.spheres) break;
+      packing.position.push_back(
+          p + jitter / std::sqrt(3.0) *
+                  Vec3{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)});
+      packing.top = std::max(packing.top, p.z + clear);
+    }
+  }
+  for (std::size_t k = packing.position.size(); k > 1; --k) {
+    std::swap(packing.position[k - 1],
+              packing.position[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
+  }
+  return packing;
+}
+
+Setup make_slice(const Case& c, std::uint64_t seed, int threads) {
+  const Derived d = derive(c);
+  const Rig& rig = c.rig;
+  Setup s;
+  Packing packing = pack(c, seed);
+  // Walls two blade radii above what is filled and above the blade: nothing but a fault throws a sphere over them.
+  const double top = std::max(packing.top, rig.blade_radius) + 2.0 * rig.blade_radius;
+  const double length = rig.pitches * rig.pitch, side = rig.trough_radius;
+  s.low = {0.0, -side, -side};
+  s.high = {length, side, top};
+  s.periodic = {true, false, false};
+  s.spheres.radius = 0.5 * c.material.diameter;
+  s.spheres.density = c.material.density;
+  s.spheres.position = std::move(packing.position);
+  const Vec3 period{length, 0.0, 0.0};
+  s.bodies.push_back({.name = "mixer",
+                      .mesh = with_copies(auger_mesh(rig), period),
+                      .axis_point = {},
+                      .axis = {1.0, 0.0, 0.0},
+                      .angular_velocity = 0.0});
+  s.bodies.push_back({.name = "trough",
+                      .mesh = with_copies(trough_mesh(rig, top), period),
+                      .axis_point = {},
+                      .axis = {1.0, 0.0, 0.0},
+                      .angular_velocity = 0.0});
+  const Laws laws = make_laws(c);
+  s.grain = laws.grain;
+  s.wall = laws.wall;
+  s.gravity = {0.0, 0.0, -c.run.gravity};
+  s.time_step = d.time_step;
+  s.skin = d.skin;
+  s.threads = threads;
+  return s;
+}
+
+}  // namespace dem

@@ -1,0 +1,36 @@
+#pragma once
+// The slice rig: a horizontal right-handed auger (shaft and helical blade) about the x axis in an open U-trough,
+// periodic along x. Turning about +x, it moves the powder towards -x.
+//
+// The shaft and the blade's rim are 48-gons with vertices on the radius, the blade's two faces helicoids of 48 by 2
+// quadrilaterals a pitch at x = pitch angle / 2 pi -+ thickness / 2; the trough's half circle has 48 facets, vertices
+// on the radius.
+#include <cstdint>
+#include <vector>
+
+#include "dem/case.hpp"
+#include "dem/mesh.hpp"
+#include "dem/simulation.hpp"
+
+namespace dem {
+
+/// One box length of the auger: x in [0, pitches * pitch).
+TriangleMesh auger_mesh(const Rig& rig);
+
+/// The U-trough over the box, its side walls up to `top` [m] above the axis.
+TriangleMesh trough_mesh(const Rig& rig, double top);
+
+/// Where the filling starts: a jittered lattice clear of the walls, filled from the bottom, in random order.
+struct Packing {
+  std::vector<Vec3> position;  ///< m
+  double top = 0.0;            ///< m above the axis, of the highest sphere
+};
+Packing pack(const Case& c, std::uint64_t seed);
+
+/// Indices of the bodies in the setup made by make_slice.
+inline constexpr std::size_t mixer = 0, trough = 1;
+
+/// The whole case, mixer at rest.
+Setup make_slice(const Case& c, std::uint64_t seed, int threads);
+
+}  // namespace dem
