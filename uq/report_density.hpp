@@ -1,0 +1,34 @@
+#pragma once
+// The joint density of two parameters from draws, on a grid, for contours of the highest-density regions.
+//
+// Each draw carries a Gaussian kernel whose shape is the covariance C of the draw's own neighbours (the nearest tenth
+// of all draws), scaled by a Silverman-like factor:
+//   p(x) = 1/n sum_i w_i exp(-1/2 (x - x_i)' [b^2 C_i]^-1 (x - x_i)),   b = n^(-1/6),
+// so that kernels lie along a curved ridge and do not blur it. w_i makes each kernel sum to one inside the box: at a
+// bound the density does not leak out (Jones 1993 renormalises likewise; the local shapes are the sample-point balloon
+// of Breiman, Meisel & Purcell 1977). For drawing only: no number of the report is computed from it.
+#include <vector>
+
+namespace uq {
+
+struct Box {
+  double x_low = 0.0, x_high = 1.0, y_low = 0.0, y_high = 1.0;
+};
+
+struct DensityGrid {
+  std::vector<double> x, y;     ///< cell centres
+  std::vector<double> density;  ///< x.size() * y.size(), x slowest; cells sum to one
+  double level50 = 0.0;         ///< density at the edge of the smallest region that holds half
+  double level90 = 0.0;
+};
+
+struct DensityOptions {
+  int cells = 96;                 ///< per axis
+  double neighbour_share = 0.10;  ///< of the draws that shape a kernel
+};
+
+/// Draws beyond the box are left out. An empty grid when fewer than 20 are left or they do not vary.
+DensityGrid joint_density(const std::vector<double>& x, const std::vector<double>& y, const Box& box,
+                          const DensityOptions& options = {});
+
+}  // namespace uq

@@ -1,0 +1,159 @@
+#pragma once
+// The fields of the result structs, in their order: visit(name, member). A field added to results.hpp is added here;
+// a test compares the sizes.
+#include <type_traits>
+
+#include "uq/results.hpp"
+
+namespace uq {
+
+template <class T, class S>
+concept SameAs = std::is_same_v<std::remove_const_t<T>, S>;
+
+template <class Visit, SameAs<SurrogateReport> T>
+void visit_fields(Visit&& visit, T& s) {
+  visit("output", s.output);
+  visit("material", s.material);
+  visit("runs", s.runs);
+  visit("q2", s.q2);
+  visit("q2_held_out", s.q2_held_out);
+  visit("coverage95", s.coverage95);
+  visit("nugget_sd", s.nugget_sd);
+  visit("unit", s.unit);
+  visit("verdict", s.verdict);
+  visit("finding", s.finding);
+  visit("consequence", s.consequence);
+  visit("remedy", s.remedy);
+  visit("inputs", s.inputs);
+  visit("length_scales", s.length_scales);
+  visit("observed", s.observed);
+  visit("predicted", s.predicted);
+  visit("standardised", s.standardised);
+  visit("observed_se", s.observed_se);
+  visit("notes", s.notes);
+}
+
+template <class Visit, SameAs<ParameterReport> T>
+void visit_fields(Visit&& visit, T& p) {
+  visit("name", p.name);
+  visit("unit", p.unit);
+  visit("prior_low", p.prior_low);
+  visit("prior_high", p.prior_high);
+  visit("prior_mean", p.prior_mean);
+  visit("prior_sd", p.prior_sd);
+  visit("mean", p.mean);
+  visit("sd", p.sd);
+  visit("mcse", p.mcse);
+  visit("q05", p.q05);
+  visit("q50", p.q50);
+  visit("q95", p.q95);
+  visit("map", p.map);
+  visit("rhat", p.rhat);
+  visit("ess_bulk", p.ess_bulk);
+  visit("ess_tail", p.ess_tail);
+  visit("contraction", p.contraction);
+  visit("profile_low", p.profile_low);
+  visit("profile_high", p.profile_high);
+  visit("low_is_bound", p.low_is_bound);
+  visit("high_is_bound", p.high_is_bound);
+  visit("profile_x", p.profile_x);
+  visit("profile_deviance", p.profile_deviance);
+  visit("verdict", p.verdict);
+  visit("reason", p.reason);
+  visit("borderline", p.borderline);
+  visit("sentence", p.sentence);
+}
+
+template <class Visit, SameAs<TradedPair> T>
+void visit_fields(Visit&& visit, T& t) {
+  visit("first", t.first);
+  visit("second", t.second);
+  visit("combination", t.combination);
+  visit("correlation", t.correlation);
+  visit("equivalent", t.equivalent);
+}
+
+template <class Visit, SameAs<PredictivePoint> T>
+void visit_fields(Visit&& visit, T& p) {
+  visit("controls", p.controls);
+  visit("output", p.output);
+  visit("unit", p.unit);
+  visit("mean", p.mean);
+  visit("q05", p.q05);
+  visit("q95", p.q95);
+  visit("observed", p.observed);
+  visit("standard_error", p.standard_error);
+  visit("observation_set", p.observation_set);
+}
+
+template <class Visit, SameAs<PredictiveCurve> T>
+void visit_fields(Visit&& visit, T& c) {
+  visit("output", c.output);
+  visit("unit", c.unit);
+  visit("control", c.control);
+  visit("control_unit", c.control_unit);
+  visit("observation_set", c.observation_set);
+  visit("x", c.x);
+  visit("mean", c.mean);
+  visit("q05", c.q05);
+  visit("q95", c.q95);
+}
+
+template <class Visit, SameAs<CaseReport> T>
+void visit_fields(Visit&& visit, T& c) {
+  visit("name", c.name);
+  visit("observed_sets", c.observed_sets);
+  visit("observed_notes", c.observed_notes);
+  visit("chi2", c.chi2);
+  visit("dof", c.dof);
+  visit("ppp", c.ppp);
+  visit("fits", c.fits);
+  visit("converged", c.converged);
+  visit("parameters", c.parameters);
+  visit("correlation", c.correlation);
+  visit("log_evidence", c.log_evidence);
+  visit("log_evidence_error", c.log_evidence_error);
+  visit("divergences", c.divergences);
+  visit("chains", c.chains);
+  visit("draws", c.draws);
+  visit("grid_difference", c.grid_difference);
+  visit("fisher_condition", c.fisher_condition);
+  visit("collinearity", c.collinearity);
+  visit("traded", c.traded);
+  visit("predictive", c.predictive);
+  visit("curves", c.curves);
+  visit("draws_for_plot", c.draws_for_plot);
+  visit("linked", c.linked);
+  visit("finding", c.finding);
+  visit("consequence", c.consequence);
+  visit("remedy", c.remedy);
+  visit("warnings", c.warnings);
+}
+
+template <class Visit, SameAs<ErrorScan> T>
+void visit_fields(Visit&& visit, T& e) {
+  visit("case_name", e.case_name);
+  visit("relative_error", e.relative_error);
+  visit("parameters", e.parameters);
+  visit("verdicts", e.verdicts);
+  visit("mean", e.mean);
+  visit("sd", e.sd);
+  visit("ppp", e.ppp);
+}
+
+template <class Visit, SameAs<CalibrationReport> T>
+void visit_fields(Visit&& visit, T& r) {
+  visit("study_name", r.study_name);
+  visit("study_description", r.study_description);
+  visit("study_file", r.study_file);
+  visit("warning", r.warning);
+  visit("warnings", r.warnings);
+  visit("surrogates", r.surrogates);
+  visit("cases", r.cases);
+  visit("error_scan", r.error_scan);
+  visit("thresholds", r.thresholds);
+  visit("provenance", r.provenance);
+  visit("notes", r.notes);
+}
+
+}  // namespace uq

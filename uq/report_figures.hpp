@@ -1,0 +1,35 @@
+#pragma once
+// The figures of the report as gnuplot scripts and data, made from plain results; drawn by report_gnuplot.
+// Colours are Okabe & Ito's, told apart by colour-blind readers, and every mark also differs in shape or place.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "uq/report_gnuplot.hpp"
+#include "uq/results.hpp"
+
+namespace uq {
+
+/// The curves to draw torque (or any output) against its control with: those of the case, or, where it has none, curves
+/// through its predictive points at the control that varies most.
+std::vector<PredictiveCurve> curves_to_draw(const CaseReport& result);
+
+/// Observed points with their errors and the posterior predictive band against one control.
+Figure predictive_figure(const CaseReport& result, const PredictiveCurve& curve, const std::string& stem);
+
+/// The joint posterior of two parameters: draws, 50 and 90 % regions, prior box, equivalent points.
+Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t> pair, const std::string& stem);
+
+/// The pairs of parameters worth a joint figure: traded ones first, then by falling correlation; at most `limit`.
+std::vector<std::pair<std::size_t, std::size_t>> pairs_to_draw(const CaseReport& result, std::size_t limit);
+
+/// The profile likelihood of one parameter with the 95 % line.
+Figure profile_figure(const ParameterReport& parameter, const std::string& stem);
+
+/// Leave-one-out predictions against the runs, with the identity line.
+Figure leave_one_out_figure(const SurrogateReport& surrogate, const std::string& stem);
+
+/// Standardised leave-one-out errors against the prediction, those beyond two marked.
+Figure standardised_figure(const SurrogateReport& surrogate, const std::string& stem);
+
+}  // namespace uq

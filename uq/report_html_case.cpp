@@ -1,0 +1,243 @@
+// One case of the page: verdict in words, its numbers, the output against its control, what is traded, profiles.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/report_figures.hpp"
+#include "uq/report_page.hpp"
+
+namespace uq::page {
+namespace {
+
+constexpr Typography pretty = Typography::unicode;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + text(name);
+  return list;
+}
+
+std::string value(const ParameterReport& parameter) {
+  return text(format_with_error(parameter.mean, parameter.sd, parameter.unit, pretty));
+}
+
+std::string verdict_words(const CaseReport& result) {
+  std::string out = "<div class=\"verdict\"><dl>\n";
+  const auto entry = [&out](const char* heading, const std::string& words) {
+    if (!words.empty()) out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", heading, text(words));
+  };
+  if (!result.fits) {
+    out +=
+        "<dt>Fit</dt><dd>" + badge(Verdict::does_not_fit) + " No parameter value reproduces the observations.</dd>\n";
+  }
+  entry("Finding", result.finding);
+  entry("Consequence", result.consequence);
+  entry("Remedy", result.remedy);
+  for (const std::string& warning : result.warnings) entry("Warning", warning);
+  return out + "</dl></div>\n";
+}
+
+std::string parameter_table(const CaseReport& result) {
+  Table table{.caption = {},
+              .head = {{"Parameter"},
+                       {"Posterior mean \u00b1 sd"},
+                       {"90\u00a0% interval"},
+                       {"95\u00a0% profile interval"},
+                       number("Contraction"),
+                       {"Verdict"}},
+              .rows = {}};
+  std::string sentences;
+  for (const ParameterReport& parameter : result.parameters) {
+    const Verdict verdict = shown_verdict(result, parameter);
+    std::string said = badge(verdict);
+    if (verdict == parameter.verdict && parameter.reason) said += " " + text(*parameter.reason);
+    if (parameter.borderline && result.fits) said += " <span class=\"soft\">(borderline)</span>";
+    const Rounding rounding = rounding_of(parameter.mean, parameter.sd);
+    table.rows.push_back(
+        {{text(parameter.name)},
+         {value(parameter), "nowrap"},
+         {text(format_interval(parameter.q05, parameter.q95, rounding, parameter.unit, pretty))},
+         {text(format_profile_interval(parameter, pretty))},
+         number(significant(parameter.contraction, std::abs(parameter.contraction) < 0.1 ? 1 : 2, pretty)),
+         {said}});
+    const std::string sentence = shown_sentence(result, parameter);
+    if (!sentence.empty()) sentences += "<li>" + text(sentence) + "</li>\n";
+  }
+  if (table.rows.empty()) return "<p>This case has no free parameter.</p>\n";
+  return html(table) + (sentences.empty() ? "" : "<ul>\n" + sentences + "</ul>\n");
+}
+
+std::string fit_and_data(const CaseReport& result) {
+  std::string out =
+      fmt::format("<p>Fit: \u03c7\u00b2 = {} for {} degree{} of freedom; posterior predictive p = {}{}.</p>\n",
+                  significant(result.chi2, 3, pretty), result.dof, result.dof == 1 ? "" : "s",
+                  significant(result.ppp, 2, pretty), result.fits ? "" : ": the model does not fit");
+  if (!result.observed_sets.empty()) out += "<p>Observations: " + joined(result.observed_sets) + ".</p>\n";
+  if (!result.observed_notes.empty()) {
+    out += "<ul class=\"note\">\n";
+    for (const std::string& note : result.observed_notes) out += "<li>" + text(note) + "</li>\n";
+    out += "</ul>\n";
+  }
+  if (!result.linked.empty()) {
+    out += fmt::format(
+        "<p>Sampled jointly with <strong>{}</strong>: that data also inform{} the parameters shared with this "
+        "case.</p>\n",
+        joined(result.linked), result.linked.size() == 1 ? "s" : "");
+  }
+  return out;
+}
+
+std::string predictive_table(const CaseReport& result, std::size_t rows_shown_openly) {
+  if (result.predictive.empty()) return {};
+  std::vector<std::string> controls, outputs;
+  bool several_sets = false;
+  for (const PredictivePoint& point : result.predictive) {
+    for (const auto& [name, setting] : point.controls) {
+      if (std::find(controls.begin(), controls.end(), name) == controls.end()) controls.push_back(name);
+    }
+    several_sets = several_sets || point.observation_set != result.predictive.front().observation_set;
+  }
+  const auto unit_of = [&result](const std::string& control) {
+    for (const PredictiveCurve& curve : result.curves) {
+      if (curve.control == control) return curve.control_unit;
+    }
+    return std::string();
+  };
+  Table table{.caption = "Observed and modelled at the observed points.", .head = {}, .rows = {}};
+  if (several_sets) table.head.push_back({"Observations"});
+  for (const std::string& control : controls) table.head.push_back(number(text(control + in_unit(unit_of(control)))));
+  for (const char* const heading :
+       {"Output", "Observed \u00b1 standard error", "Model, mean", "Model, 90\u00a0% interval"}) {
+    table.head.push_back(heading == std::string_view("Output") ? Cell{heading} : number(heading));
+  }
+  for (const PredictivePoint& point : result.predictive) {
+    const Rounding rounding = rounding_of(point.observed, point.standard_error);
+    std::vector<Cell> row;
+    if (several_sets) row.push_back({text(point.observation_set)});
+    for (const std::string& control : controls) {
+      const auto found = point.controls.find(control);
+      row.push_back(number(found == point.controls.end() ? "" : significant(found->second, 4, pretty)));
+    }
+    row.push_back({text(point.output + in_unit(point.unit))});
+    row.push_back(number(format_with_error(point.observed, point.standard_error, "", pretty)));
+    row.push_back(number(format_value(point.mean, rounding, "", pretty)));
+    row.push_back(number(format_interval(point.q05, point.q95, rounding, "", pretty)));
+    table.rows.push_back(std::move(row));
+  }
+  if (table.rows.size() <= rows_shown_openly) return html(table);
+  return "<details><summary>The numbers behind the figure</summary>\n" + html(table) + "</details>\n";
+}
+
+std::string predictive_part(const CaseReport& result, const std::string& id, const Context& context) {
+  const auto curves = curves_to_draw(result);
+  if (curves.empty() && result.predictive.empty()) return {};
+  std::string out = "<h3>Model against observation</h3>\n";
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const std::string set = curves[i].observation_set.empty() ? "" : " (" + text(curves[i].observation_set) + ")";
+    out += figure(
+        predictive_figure(result, curves[i], fmt::format("{}-predictive-{}", id, i + 1)),
+        fmt::format("{} against {}{}. Points: observed, bars of one standard error. Line and band: the model's mean "
+                    "and 90\u00a0% of its posterior, surrogate uncertainty included, measurement error not.",
+                    text(curves[i].output), text(curves[i].control), set),
+        context);
+  }
+  return out + predictive_table(result, context.options.rows_shown_openly);
+}
+
+std::string equivalent_table(const CaseReport& result, const TradedPair& traded) {
+  if (traded.equivalent.empty()) return {};
+  Table table{
+      .caption = "Equivalent points: the observations cannot tell these apart.", .head = {{"Point"}}, .rows = {}};
+  std::vector<const ParameterReport*> columns;
+  for (const ParameterReport& parameter : result.parameters) {
+    const bool given = std::any_of(traded.equivalent.begin(), traded.equivalent.end(),
+                                   [&](const auto& point) { return point.contains(parameter.name); });
+    if (!given) continue;
+    columns.push_back(&parameter);
+    table.head.push_back(number(text(parameter.name + in_unit(parameter.unit))));
+  }
+  int index = 0;
+  for (const auto& point : traded.equivalent) {
+    std::vector<Cell> row{{std::to_string(++index)}};
+    for (const ParameterReport* parameter : columns) {
+      const auto found = point.find(parameter->name);
+      row.push_back(number(found == point.end() ? "" : significant(found->second, 3, pretty)));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return html(table);
+}
+
+std::string joint_part(const CaseReport& result, const std::string& id, const Context& context) {
+  if (result.parameters.size() < 2) return {};
+  std::string out = "<h3>What is known together</h3>\n";
+  for (const TradedPair& traded : result.traded) {
+    out += fmt::format(
+        "<p><strong>{}</strong> and <strong>{}</strong> are traded against each other (correlation {}): the "
+        "observations fix only <strong>{}</strong>.</p>\n",
+        text(traded.first), text(traded.second),
+        format_value(traded.correlation, {.exponent = 0, .decimals = 3}, "", pretty), text(traded.combination));
+  }
+  if (result.traded.empty()) out += "<p>No pair of parameters is traded against each other.</p>\n";
+  if (!result.draws_for_plot.empty()) {
+    const auto pairs = pairs_to_draw(result, context.options.joint_figures);
+    if (pairs.size() > 1) out += "<div class=\"pair\">\n";
+    for (const auto& pair : pairs) {
+      const ParameterReport& a = result.parameters[pair.first];
+      const ParameterReport& b = result.parameters[pair.second];
+      out +=
+          figure(joint_figure(result, pair, fmt::format("{}-joint-{}-{}", id, pair.first + 1, pair.second + 1)),
+                 fmt::format("Joint posterior of {} and {}: draws, the regions that hold 50 and 90\u00a0% of them, the "
+                             "prior's range, and points along the ridge that fit alike, if any.",
+                             text(a.name), text(b.name)),
+                 context);
+    }
+    if (pairs.size() > 1) out += "</div>\n";
+  }
+  for (const TradedPair& traded : result.traded) out += equivalent_table(result, traded);
+  if (result.correlation.size() == result.parameters.size()) {
+    Table table{.caption = "Posterior correlation.", .head = {{""}}, .rows = {}};
+    for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+      table.head.push_back(number(text(result.parameters[i].name)));
+      std::vector<Cell> row{{text(result.parameters[i].name)}};
+      for (const double r : result.correlation[i]) {
+        row.push_back(number(format_value(r, {.exponent = 0, .decimals = 3}, "", pretty)));
+      }
+      table.rows.push_back(std::move(row));
+    }
+    out += html(table);
+  }
+  return out;
+}
+
+std::string profile_part(const CaseReport& result, const std::string& id, const Context& context) {
+  std::string figures;
+  std::size_t drawn = 0;
+  for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+    const ParameterReport& parameter = result.parameters[i];
+    if (parameter.profile_x.size() < 2 || parameter.profile_deviance.size() != parameter.profile_x.size()) continue;
+    ++drawn;
+    figures += figure(profile_figure(parameter, fmt::format("{}-profile-{}", id, i + 1)),
+                      fmt::format("{}: 95\u00a0% interval {}.", text(parameter.name),
+                                  text(format_profile_interval(parameter, pretty))),
+                      context);
+  }
+  if (figures.empty()) return {};
+  return fmt::format(
+      "<h3>Profile likelihood</h3>\n<p>How much worse the best fit becomes when one parameter is held at a "
+      "value. Where the curve stays below 3.84, the observations do not exclude the value.</p>\n"
+      "<div class=\"pair{}\">\n{}</div>\n",
+      drawn == 1 ? " single" : "", figures);
+}
+
+}  // namespace
+
+std::string case_section(const CaseReport& result, std::size_t index, const Context& context) {
+  const std::string id = case_id(index, result);
+  return fmt::format("<section id=\"{}\">\n<h2>Case {}</h2>\n", id, text(result.name)) + verdict_words(result) +
+         parameter_table(result) + fit_and_data(result) + predictive_part(result, id, context) +
+         joint_part(result, id, context) + profile_part(result, id, context) + "</section>\n";
+}
+
+}  // namespace uq::page

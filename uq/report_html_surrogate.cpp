@@ -1,0 +1,98 @@
+// The surrogates' part of the page: how well each predicts runs that it has not seen.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/report_figures.hpp"
+#include "uq/report_page.hpp"
+
+namespace uq::page {
+namespace {
+
+constexpr Typography pretty = Typography::unicode;
+
+std::string name_of(const SurrogateReport& surrogate) {
+  return surrogate.material.empty() ? surrogate.output : surrogate.output + ", " + surrogate.material;
+}
+
+std::string two_digits(double share) { return format_value(share, {.exponent = 0, .decimals = 3}, "", pretty); }
+
+std::string one_surrogate(const SurrogateReport& surrogate, std::size_t index, const Context& context) {
+  std::string out = fmt::format("<h3>{}</h3>\n<div class=\"verdict\"><dl>\n", text(name_of(surrogate)));
+  const std::pair<const char*, const std::string*> entries[] = {
+      {"Finding", &surrogate.finding}, {"Consequence", &surrogate.consequence}, {"Remedy", &surrogate.remedy}};
+  for (const auto& [heading, words] : entries) {
+    if (!words->empty()) out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", heading, text(*words));
+  }
+  out += fmt::format("<dt>Verdict</dt><dd>{}</dd>\n</dl></div>\n", badge(surrogate.verdict));
+  const std::string stem = fmt::format("surrogate-{}-{}", index + 1, slug(name_of(surrogate)));
+  std::string figures;
+  if (!surrogate.observed.empty() && surrogate.observed.size() == surrogate.predicted.size()) {
+    figures +=
+        figure(leave_one_out_figure(surrogate, stem + "-loo"),
+               "Each run predicted by the surrogate fitted without it. Across: the run and its standard error; up: "
+               "the prediction and its standard deviation. On the dashed line they agree.",
+               context);
+    if (surrogate.standardised.size() == surrogate.observed.size()) {
+      figures +=
+          figure(standardised_figure(surrogate, stem + "-standardised"),
+                 "The same errors in units of their predicted standard deviation; about one in twenty should lie "
+                 "beyond \u00b12, without a trend.",
+                 context);
+    }
+  }
+  if (!figures.empty()) out += "<div class=\"pair\">\n" + figures + "</div>\n";
+  if (!surrogate.inputs.empty() && surrogate.inputs.size() == surrogate.length_scales.size()) {
+    Table table{.caption = "Length scales, in units of each input's range: the shorter, the faster the output changes.",
+                .head = {{"Input"}, number("Length scale")},
+                .rows = {}};
+    for (std::size_t i = 0; i < surrogate.inputs.size(); ++i) {
+      table.rows.push_back({{text(surrogate.inputs[i])}, number(significant(surrogate.length_scales[i], 3, pretty))});
+    }
+    out += html(table);
+  }
+  if (!surrogate.notes.empty()) {
+    out += "<ul class=\"note\">\n";
+    for (const std::string& note : surrogate.notes) out += "<li>" + text(note) + "</li>\n";
+    out += "</ul>\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string surrogate_section(const std::vector<SurrogateReport>& surrogates, const Context& context) {
+  if (surrogates.empty()) return {};
+  std::string out =
+      "<section id=\"surrogates\">\n<h2>Surrogate validation</h2>\n<p>The surrogate stands in for the simulation "
+      "between "
+      "its training runs. Q\u00b2 is the share of the runs' variance that it predicts without having seen them (1 is "
+      "perfect); coverage is the share of runs inside its 95\u00a0% intervals (0.95 is right).</p>\n";
+  Table table{.caption = {},
+              .head = {{"Output"},
+                       {"Material"},
+                       number("Runs"),
+                       number("Q\u00b2, leave-one-out"),
+                       number("Q\u00b2, held out"),
+                       number("Coverage"),
+                       number("Nugget sd"),
+                       {"Verdict"}},
+              .rows = {}};
+  for (const SurrogateReport& surrogate : surrogates) {
+    table.rows.push_back(
+        {{text(surrogate.output)},
+         {surrogate.material.empty() ? "\u2013" : text(surrogate.material)},
+         number(std::to_string(surrogate.runs)),
+         number(two_digits(surrogate.q2)),
+         number(two_digits(surrogate.q2_held_out)),
+         number(format_value(surrogate.coverage95, {.exponent = 0, .decimals = 2}, "", pretty)),
+         number(text(format_value(surrogate.nugget_sd, rounding_of(0.0, surrogate.nugget_sd), surrogate.unit, pretty))),
+         {badge(surrogate.verdict)}});
+  }
+  out += html(table);
+  for (std::size_t i = 0; i < surrogates.size(); ++i) out += one_surrogate(surrogates[i], i, context);
+  return out + "</section>\n";
+}
+
+}  // namespace uq::page

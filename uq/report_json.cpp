@@ -1,0 +1,164 @@
+#include "uq/report_json.hpp"
+
+#include <cmath>
+
+#include "data/atomic_file.hpp"
+#include "uq/report_text.hpp"
+
+namespace uq {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+
+Json numbers(const std::vector<double>& values) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(number(value));
+  return array;
+}
+
+Json numbers(const std::map<std::string, double>& values) {
+  Json object = Json::object();
+  for (const auto& [name, value] : values) object[name] = number(value);
+  return object;
+}
+
+Json pairs(const std::vector<std::pair<std::string, std::string>>& values) {
+  Json object = Json::object();
+  for (const auto& [name, value] : values) object[name] = value;
+  return object;
+}
+
+Json surrogate_json(const SurrogateReport& surrogate) {
+  return {{"output", surrogate.output},
+          {"material", surrogate.material},
+          {"q2", number(surrogate.q2)},
+          {"coverage95", number(surrogate.coverage95)},
+          {"runs", surrogate.runs},
+          {"verdict", surrogate.verdict},
+          {"q2_held_out", number(surrogate.q2_held_out)},
+          {"nugget_sd", number(surrogate.nugget_sd)},
+          {"unit", surrogate.unit},
+          {"inputs", surrogate.inputs},
+          {"length_scales", numbers(surrogate.length_scales)},
+          {"finding", surrogate.finding},
+          {"consequence", surrogate.consequence},
+          {"remedy", surrogate.remedy},
+          {"notes", surrogate.notes}};
+}
+
+Json parameter_json(const CaseReport& result, const ParameterReport& parameter) {
+  const Verdict verdict = shown_verdict(result, parameter);
+  return {{"name", parameter.name},
+          {"unit", parameter.unit},
+          {"mean", number(parameter.mean)},
+          {"sd", number(parameter.sd)},
+          {"q05", number(parameter.q05)},
+          {"q50", number(parameter.q50)},
+          {"q95", number(parameter.q95)},
+          {"rhat", number(parameter.rhat)},
+          {"ess_bulk", number(parameter.ess_bulk)},
+          {"ess_tail", number(parameter.ess_tail)},
+          {"contraction", number(parameter.contraction)},
+          {"profile95", Json::array({number(parameter.profile_low), number(parameter.profile_high)})},
+          {"verdict", to_text(verdict)},
+          {"reason", parameter.reason && verdict == parameter.verdict ? Json(*parameter.reason) : Json(nullptr)},
+          {"borderline", parameter.borderline},
+          {"mcse", number(parameter.mcse)},
+          {"map", number(parameter.map)},
+          {"prior",
+           {{"low", number(parameter.prior_low)},
+            {"high", number(parameter.prior_high)},
+            {"mean", number(parameter.prior_mean)},
+            {"sd", number(parameter.prior_sd)}}},
+          {"sentence", shown_sentence(result, parameter)}};
+}
+
+Json traded_json(const TradedPair& traded) {
+  Json points = Json::array();
+  for (const auto& point : traded.equivalent) points.push_back(numbers(point));
+  return {{"pair", Json::array({traded.first, traded.second})},
+          {"combination", traded.combination},
+          {"equivalent", std::move(points)},
+          {"correlation", number(traded.correlation)}};
+}
+
+Json predictive_json(const PredictivePoint& point) {
+  return {{"controls", numbers(point.controls)},
+          {"output", point.output},
+          {"mean", number(point.mean)},
+          {"q05", number(point.q05)},
+          {"q95", number(point.q95)},
+          {"observed", number(point.observed)},
+          {"standard_error", number(point.standard_error)},
+          {"unit", point.unit},
+          {"observation_set", point.observation_set}};
+}
+
+Json case_json(const CaseReport& result) {
+  Json json = {
+      {"name", result.name},
+      {"fit", {{"chi2", number(result.chi2)}, {"dof", result.dof}, {"ppp", number(result.ppp)}, {"fits", result.fits}}},
+      {"parameters", Json::array()},
+      {"correlation", Json::array()},
+      {"log_evidence", number(result.log_evidence)},
+      {"log_evidence_error", number(result.log_evidence_error)},
+      {"divergences", result.divergences},
+      {"traded", Json::array()},
+      {"predictive", Json::array()},
+      {"finding", result.finding},
+      {"consequence", result.consequence},
+      {"remedy", result.remedy},
+      {"converged", result.converged},
+      {"chains", result.chains},
+      {"draws", result.draws},
+      {"grid_difference", number(result.grid_difference)},
+      {"collinearity", number(result.collinearity)},
+      {"observed_sets", result.observed_sets},
+      {"observed_notes", result.observed_notes},
+      {"linked", result.linked},
+      {"warnings", result.warnings}};
+  for (const auto& parameter : result.parameters) json["parameters"].push_back(parameter_json(result, parameter));
+  for (const auto& row : result.correlation) json["correlation"].push_back(numbers(row));
+  for (const auto& traded : result.traded) json["traded"].push_back(traded_json(traded));
+  for (const auto& point : result.predictive) json["predictive"].push_back(predictive_json(point));
+  return json;
+}
+
+Json scan_json(const ErrorScan& scan) {
+  return {{"case", scan.case_name},        {"relative_error", number(scan.relative_error)},
+          {"parameters", scan.parameters}, {"verdicts", scan.verdicts},
+          {"mean", numbers(scan.mean)},    {"sd", numbers(scan.sd)},
+          {"ppp", number(scan.ppp)}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json report_json(const CalibrationReport& report) {
+  Json json = {{"format", 1},
+               {"demcal", program_version(report)},
+               {"status", has_warning(report) ? "warning" : "ok"},
+               {"study", report.study_name},
+               {"surrogates", Json::array()},
+               {"cases", Json::array()},
+               {"plan", Json::array()},
+               {"provenance", pairs(report.provenance)},
+               {"warnings", first_lines(report)},
+               {"error_scan", Json::array()},
+               {"thresholds", pairs(report.thresholds)},
+               {"notes", report.notes}};
+  for (const auto& surrogate : report.surrogates) json["surrogates"].push_back(surrogate_json(surrogate));
+  for (const auto& result : report.cases) json["cases"].push_back(case_json(result));
+  for (const auto& scan : report.error_scan) json["error_scan"].push_back(scan_json(scan));
+  return json;
+}
+
+void write_report_json(const CalibrationReport& report, const std::string& path) {
+  // Bytes that are no UTF-8 (a comment in a Latin-1 file) are replaced, not an error.
+  data::write_atomically(path, report_json(report).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace uq

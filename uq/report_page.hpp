@@ -1,0 +1,47 @@
+#pragma once
+// Pieces of report.html, for report_html.cpp and report_html_case.cpp alone. Every piece of text that a file or a user
+// supplied goes through text().
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "uq/report_html.hpp"
+#include "uq/report_text.hpp"
+
+namespace uq::page {
+
+/// Where figures go and what draws them.
+struct Context {
+  const HtmlOptions& options;
+  std::string figures;  ///< folder
+};
+
+inline std::string text(std::string_view raw) { return escape_html(raw); }
+
+/// A table's cell: ready HTML and its class ("number", "nowrap", "long" or "").
+struct Cell {
+  std::string html;
+  const char* kind = "";
+};
+Cell number(std::string html);
+
+struct Table {
+  std::string caption;  ///< ready HTML; may be empty
+  std::vector<Cell> head;
+  std::vector<std::vector<Cell>> rows;  ///< the first cell of a row is its heading
+};
+std::string html(const Table& table);
+
+/// Draws the figure and sets it with its caption (ready HTML).
+std::string figure(const Figure& figure, const std::string& caption, const Context& context);
+
+std::string badge(Verdict verdict);
+std::string badge(const std::string& surrogate_verdict);
+
+/// A case's place in the page: "case-2-carrier". The index keeps two names with one slug apart.
+std::string case_id(std::size_t index, const CaseReport& result);
+
+std::string case_section(const CaseReport& result, std::size_t index, const Context& context);
+std::string surrogate_section(const std::vector<SurrogateReport>& surrogates, const Context& context);
+
+}  // namespace uq::page
