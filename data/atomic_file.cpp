@@ -72,12 +72,18 @@ std::string read_file(const std::string& path) {
   if (!stream || fs::is_directory(path, ignored)) {
     const bool there = fs::exists(path, ignored);
     throw InputError(ExitStatus::missing_input,
-                     Problem{path, there ? "cannot be read" : "there is no such file",
+                     Problem{shown_path(path), there ? "cannot be read" : "there is no such file",
                              there ? "check its rights and that it is a file" : "check the name"});
   }
   std::ostringstream content;
   content << stream.rdbuf();
   return content.str();
+}
+
+std::string shown_path(const std::string& path) {
+  std::error_code error;
+  const std::string near = fs::proximate(path, error).string();
+  return error || near.empty() || near.rfind("..", 0) == 0 ? path : near;
 }
 
 }  // namespace data

@@ -17,4 +17,7 @@ void write_atomically(const std::string& path, const std::function<void(const st
 /// The whole of a file. Throws InputError: 66 when it is missing or cannot be read.
 std::string read_file(const std::string& path);
 
+/// How a path is named in messages: from the working folder when it lies inside it.
+std::string shown_path(const std::string& path);
+
 }  // namespace data

@@ -172,7 +172,7 @@ Csv parse_csv(const std::string& text, const std::string& file) {
   return csv;
 }
 
-Csv read_csv(const std::string& path) { return parse_csv(read_file(path), path); }
+Csv read_csv(const std::string& path) { return parse_csv(read_file(path), shown_path(path)); }
 
 std::string csv_field(std::string_view text) {
   const bool plain = text.find_first_of(",\"\r\n#") == std::string_view::npos && trimmed(text) == text;

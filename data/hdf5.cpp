@@ -8,6 +8,7 @@
 #include <functional>
 #include <numeric>
 
+#include "data/atomic_file.hpp"
 #include "data/error.hpp"
 
 namespace data {
@@ -148,17 +149,18 @@ Hdf5Group open_file(const std::string& path, unsigned mode) {
   silence();
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
-    throw InputError(ExitStatus::missing_input, Problem{path, "there is no such file", "check the name"});
+    throw InputError(ExitStatus::missing_input, Problem{shown_path(path), "there is no such file", "check the name"});
   }
   if (H5Fis_hdf5(path.c_str()) <= 0) {
     throw InputError(ExitStatus::bad_data,
-                     Problem{path, "is not an HDF5 file, or its beginning is damaged", "make it again"});
+                     Problem{shown_path(path), "is not an HDF5 file, or its beginning is damaged", "make it again"});
   }
   const hid_t file = H5Fopen(path.c_str(), mode, H5P_DEFAULT);
   if (file < 0) {
-    throw InputError(ExitStatus::bad_data, Problem{path, "is a truncated or damaged HDF5 file", "make it again"});
+    throw InputError(ExitStatus::bad_data,
+                     Problem{shown_path(path), "is a truncated or damaged HDF5 file", "make it again"});
   }
-  return Hdf5Group(open_root(file, path));
+  return Hdf5Group(open_root(file, shown_path(path)));
 }
 
 }  // namespace

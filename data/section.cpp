@@ -144,7 +144,11 @@ std::size_t line_of(const toml::node& node) { return node.source().begin.line; }
 }  // namespace
 
 bool Section::exists() const { return node_->table != nullptr; }
-bool Section::has(std::string_view key) const { return node_->table != nullptr && node_->table->contains(key); }
+bool Section::has(std::string_view key) const {
+  if (node_->table == nullptr) return false;
+  node_->state->known[node_->table].emplace(key);
+  return node_->table->contains(key);
+}
 std::string Section::place(std::string_view key) const { return node_->place(key); }
 std::string Section::name() const { return node_->name; }
 

@@ -18,9 +18,10 @@ enum class Scale { linear, log };
 
 enum class PriorKind { uniform, normal, truncated_normal, log_normal, beta, posterior };
 
-/// A prior density of one parameter, zero outside [low, high].
-/// uniform: low, high. normal: mean, sd. truncated_normal: mean, sd on [low, high]. log_normal: median `mean`, sd of the
-/// logarithm `sd` (dimensionless). beta: alpha, beta on [low, high]. posterior: that of another case.
+/// A prior density of one parameter, zero outside [low, high], which is never wider than the parameter's range: a
+/// surrogate knows nothing beyond it. uniform: low, high. normal: mean, sd, cut off at the parameter's range.
+/// truncated_normal: mean, sd on [low, high]. log_normal: median `mean`, sd of the logarithm `sd` (dimensionless), cut
+/// off at the parameter's range. beta: alpha, beta on [low, high]. posterior: that of another case.
 struct Prior {
   PriorKind kind = PriorKind::uniform;
   double low = 0.0;   ///< SI; by default the parameter's range
@@ -70,10 +71,10 @@ struct Material {
 };
 
 struct Training {
-  int runs = 64;                 ///< per material
-  double standard_error = 0.02;  ///< wanted relative standard error of the first output
-  std::string table;             ///< file of rows that come with the study, absolute path; empty if none
-  std::string engine = "demcal"; ///< "demcal", or "none" for a study on another code's runs
+  int runs = 64;                  ///< per material
+  double standard_error = 0.02;   ///< wanted relative standard error of the first output
+  std::string table;              ///< file of rows that come with the study, absolute path; empty if none
+  std::string engine = "demcal";  ///< "demcal", or "none" for a study on another code's runs
   std::string place;
 };
 
@@ -88,10 +89,10 @@ struct Observation {
 struct ObservationSet {
   std::string name;
   std::string material;
-  std::string file;                    ///< absolute path
-  std::vector<std::size_t> outputs;    ///< indices into Study::outputs, of the columns that the file has
+  std::string file;                  ///< absolute path
+  std::vector<std::size_t> outputs;  ///< indices into Study::outputs, of the columns that the file has
   std::vector<Observation> points;
-  std::vector<std::string> header;     ///< the comment lines at the head of the file, without '#'
+  std::vector<std::string> header;  ///< the comment lines at the head of the file, without '#'
   std::string place;
 };
 
@@ -124,8 +125,16 @@ struct Study {
   const Material& material(std::string_view material_name) const;
 };
 
-/// Reads the sections above and the observation files. Problems are recorded in `file` (file.finish() throws them) so that
-/// the DEM's sections can be read in the same pass; a missing or malformed observation CSV throws InputError (66 or 65).
+/// Reads the sections above and the observation files. Problems are recorded in `file` (file.finish() throws them) so
+/// that the DEM's sections can be read in the same pass. Missing or malformed observation files throw InputError with
+/// all that was found so far: 66 or 65, or 78 when the study has problems of its own.
 Study read_study(const StudyFile& file);
+
+/// Throws InputError (78) when the study has no observations or no cases, which training does not need but calibration
+/// does.
+void require_cases(const Study& study);
+
+/// Observed points whose controls lie outside the controls' ranges, where a surrogate extrapolates.
+std::vector<Problem> outside_training_range(const Study& study);
 
 }  // namespace data

@@ -153,14 +153,17 @@ Section StudyFile::root() const {
 std::string StudyFile::path() const { return state_->absolute; }
 std::string StudyFile::folder() const { return state_->folder; }
 
-void StudyFile::finish() const {
-  find_unknown(*state_, Section::Node{state_, &state_->root, "", 0});
-  if (state_->problems.empty()) return;
+std::vector<Problem> StudyFile::recorded() const {
   std::vector<State::Located> located = state_->problems;
   std::stable_sort(located.begin(), located.end(), [](const auto& a, const auto& b) { return a.line < b.line; });
   std::vector<Problem> problems;
   for (State::Located& item : located) problems.push_back(std::move(item.problem));
-  throw InputError(ExitStatus::bad_study, std::move(problems));
+  return problems;
+}
+
+void StudyFile::finish() const {
+  find_unknown(*state_, Section::Node{state_, &state_->root, "", 0});
+  if (!state_->problems.empty()) throw InputError(ExitStatus::bad_study, recorded());
 }
 
 }  // namespace data

@@ -33,10 +33,10 @@ class StudyFile;
 /// bound nearest to sense, or empty text) is returned so that reading goes on.
 class Section {
  public:
-  bool exists() const;                       ///< the table is in the file
-  bool has(std::string_view key) const;      ///< does not mark the key as used
+  bool exists() const;                                 ///< the table is in the file
+  bool has(std::string_view key) const;                ///< makes the key known, but not used
   std::string place(std::string_view key = "") const;  ///< "study.toml:12: contact.friction"
-  std::string name() const;                  ///< dotted: "parameters.friction"
+  std::string name() const;                            ///< dotted: "parameters.friction"
 
   double number(std::string_view key, Range range, std::optional<double> fallback = {}) const;
   std::int64_t integer(std::string_view key, Range range, std::optional<std::int64_t> fallback = {}) const;
@@ -46,14 +46,16 @@ class Section {
                   const Unit* default_unit = nullptr) const;
   std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
   /// One of `options`; anything else is an error that lists them.
-  std::string choice(std::string_view key, const std::vector<std::string>& options, std::optional<std::string> fallback = {}) const;
+  std::string choice(std::string_view key, const std::vector<std::string>& options,
+                     std::optional<std::string> fallback = {}) const;
   bool flag(std::string_view key, bool fallback) const;
   std::vector<std::string> texts(std::string_view key, bool required = false) const;
-  std::vector<double> quantities(std::string_view key, std::string_view si_unit, Range range, const Unit* default_unit = nullptr) const;
+  std::vector<double> quantities(std::string_view key, std::string_view si_unit, Range range,
+                                 const Unit* default_unit = nullptr) const;
 
-  Section child(std::string_view key) const;                       ///< sub-table (also inline), empty if missing
-  std::vector<std::pair<std::string, Section>> children() const;   ///< named sub-tables in file order
-  std::vector<Section> array(std::string_view key) const;          ///< [[key]] tables in file order
+  Section child(std::string_view key) const;                      ///< sub-table (also inline), empty if missing
+  std::vector<std::pair<std::string, Section>> children() const;  ///< named sub-tables in file order
+  std::vector<Section> array(std::string_view key) const;         ///< [[key]] tables in file order
 
   /// Records a problem at `key` of this table.
   void problem(std::string_view key, std::string what, std::string remedy) const;
@@ -69,12 +71,16 @@ class Section {
 /// TOML value, or, when it does not parse as one, text.
 class StudyFile {
  public:
-  /// `path`: the file, or a folder that holds study.toml. Throws InputError: 66 missing, 78 syntax (file, line, column).
+  /// `path`: the file, or a folder that holds study.toml. Throws InputError: 66 missing, 78 syntax (file, line,
+  /// column).
   static StudyFile open(const std::string& path, const std::vector<std::string>& overrides = {});
 
   Section root() const;
   std::string path() const;    ///< of the file
   std::string folder() const;  ///< that holds it; relative paths in the study start here
+
+  /// The problems recorded so far, in the order of the file.
+  std::vector<Problem> recorded() const;
 
   /// Throws InputError (78) with every problem recorded so far and, for each key that nobody asked for, its line and
   /// the nearest known key of the same table.

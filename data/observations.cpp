@@ -1,0 +1,67 @@
+#include "data/observations.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "data/csv.hpp"
+#include "data/error.hpp"
+
+namespace data {
+namespace {
+
+double measured(const Csv& csv, const CsvRow& row, std::size_t column) {
+  const double value = csv.number(row, column);
+  if (!std::isfinite(value)) {
+    throw InputError(ExitStatus::bad_data,
+                     Problem{csv.place(row, column), fmt::format("'{}' is not a measured value", row.fields[column]),
+                             "give a number, or remove the line"});
+  }
+  return value;
+}
+
+}  // namespace
+
+ObservationSet read_observations(const std::string& path, const Study& study) {
+  const Csv csv = read_csv(path);
+  ObservationSet set;
+  set.file = path;
+  set.header = csv.comments;
+
+  std::vector<std::size_t> control_columns, value_columns, error_columns;
+  for (const Control& control : study.controls) control_columns.push_back(csv.column(control.name));
+  for (std::size_t i = 0; i < study.outputs.size(); ++i) {
+    const std::string& name = study.outputs[i].name;
+    if (!csv.find(name) && !csv.find(name + "_se")) continue;
+    set.outputs.push_back(i);
+    value_columns.push_back(csv.column(name));
+    error_columns.push_back(csv.column(name + "_se"));
+  }
+  if (set.outputs.empty() && !study.outputs.empty()) csv.column(study.outputs.front().name);  // says what is missing
+  if (csv.rows.empty()) {
+    throw InputError(ExitStatus::bad_data, Problem{csv.file, "has a header but no rows", "add the measured points"});
+  }
+
+  for (const CsvRow& row : csv.rows) {
+    Observation point;
+    point.line = row.line;
+    for (std::size_t i = 0; i < control_columns.size(); ++i) {
+      point.controls.push_back(study.controls[i].unit.to_si(measured(csv, row, control_columns[i])));
+    }
+    for (std::size_t i = 0; i < value_columns.size(); ++i) {
+      const Unit& unit = study.outputs[set.outputs[i]].unit;
+      point.values.push_back(unit.to_si(measured(csv, row, value_columns[i])));
+      const double error = measured(csv, row, error_columns[i]);
+      if (error <= 0.0) {
+        throw InputError(ExitStatus::bad_data,
+                         Problem{csv.place(row, error_columns[i]), fmt::format("{} is not above 0", error),
+                                 "give the standard error of the measured mean"});
+      }
+      point.standard_errors.push_back(unit.factor * error);  // a difference: no offset
+    }
+    set.points.push_back(std::move(point));
+  }
+  return set;
+}
+
+}  // namespace data

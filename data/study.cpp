@@ -1,0 +1,201 @@
+#include "data/study.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <filesystem>
+
+#include "data/atomic_file.hpp"
+#include "data/observations.hpp"
+#include "data/study_parts.hpp"
+
+namespace data {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names that become parts of file names.
+void check_file_name(const Section& section, const std::string& name) {
+  const bool plain =
+      name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.") == std::string::npos;
+  if (!section.has("name")) return;  // reported as missing where it is required
+  if (name.empty() || !plain || name.front() == '.' || name.front() == '-') {
+    section.problem("name", fmt::format("'{}' cannot be part of a file's name", name),
+                    "use letters, digits, '-', '_' and '.', beginning with a letter");
+  }
+}
+
+std::string beside(const Study& study, const std::string& file) {
+  return (fs::path(study.folder) / file).lexically_normal().string();
+}
+
+void read_materials(const Section& root, Study& study) {
+  for (const auto& [name, section] : root.child("materials").children()) {
+    Material material{.name = name, .fixed = read_fixed(section.child("fixed"), study), .place = section.place()};
+    if (section.has("runs")) material.runs = static_cast<int>(section.integer("runs", {.low = 1, .high = 1e6}));
+    study.materials.push_back(std::move(material));
+  }
+  if (study.materials.empty()) study.materials.push_back({.place = root.place()});
+}
+
+void read_training(const Section& root, Study& study) {
+  const Section section = root.child("training");
+  Training& training = study.training;
+  training.place = section.place();
+  training.runs = static_cast<int>(section.integer("runs", {.low = 1, .high = 1e6}, training.runs));
+  training.standard_error =
+      section.number("standard_error", {.low = 0.0, .high = 1.0, .open_low = true}, training.standard_error);
+  if (const std::string table = section.text("table", ""); !table.empty()) training.table = beside(study, table);
+  training.engine = section.choice("engine", {"demcal", "none"}, root.has("rig") ? "demcal" : "none");
+  if (training.engine == "none" && training.table.empty()) {
+    section.problem("table", "is missing, and there is no [rig] to simulate with",
+                    "name the CSV file of your runs, or add a [rig]");
+  }
+  if (training.engine == "demcal" && !root.has("rig")) {
+    section.problem("engine", "'demcal' has no [rig] to simulate", "add a [rig], or write engine = \"none\"");
+  }
+}
+
+std::string observed_material(const Section& section, const Study& study) {
+  std::vector<std::string> names;
+  for (const Material& material : study.materials) names.push_back(material.name);
+  if (names.size() == 1) {
+    if (!section.has("material")) return names.front();
+    if (names.front().empty()) {
+      section.problem("material", fmt::format("'{}' is not in the study", section.text("material")),
+                      "add a [materials] section, or leave it out");
+      return "";
+    }
+  }
+  return section.choice("material", names);
+}
+
+/// Reads each observation file; what is wrong with the files is returned, with the exit status of the first.
+struct FileProblems {
+  ExitStatus status = ExitStatus::done;
+  std::vector<Problem> problems;
+};
+
+FileProblems read_observation_sets(const Section& root, Study& study) {
+  FileProblems found;
+  const auto add = [&](ExitStatus status, const std::vector<Problem>& problems) {
+    if (found.problems.empty()) found.status = status;
+    found.problems.insert(found.problems.end(), problems.begin(), problems.end());
+  };
+  for (const Section& section : root.array("observe")) {
+    const std::string name = section.text("name");
+    check_file_name(section, name);
+    if (study.observation_index(name)) {
+      section.problem("name", fmt::format("'{}' is taken", name), "give each [[observe]] its own name");
+    }
+    const std::string material = observed_material(section, study);
+    const std::string file = section.text("file");
+    ObservationSet set{.file = beside(study, file)};
+    if (!file.empty() && !fs::is_regular_file(set.file)) {
+      add(ExitStatus::missing_input,
+          {{section.place("file"), fmt::format("there is no file '{}'", shown_path(set.file)),
+            "paths start at the study's folder"}});
+    } else if (!file.empty()) {
+      try {
+        set = read_observations(set.file, study);
+      } catch (const InputError& error) {
+        add(error.status, error.problems);
+      }
+    }
+    set.name = name;
+    set.material = material;
+    set.place = section.place();
+    study.observations.push_back(std::move(set));
+  }
+  return found;
+}
+
+}  // namespace
+
+std::optional<std::size_t> Study::parameter_index(std::string_view parameter_name) const {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].name == parameter_name) return i;
+  }
+  return {};
+}
+
+std::optional<std::size_t> Study::observation_index(std::string_view set_name) const {
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (observations[i].name == set_name) return i;
+  }
+  return {};
+}
+
+const Material& Study::material(std::string_view material_name) const {
+  for (const Material& candidate : materials) {
+    if (candidate.name == material_name) return candidate;
+  }
+  throw std::out_of_range(fmt::format("the study has no material '{}'", material_name));
+}
+
+Study read_study(const StudyFile& file) {
+  const Section root = file.root();
+  Study study;
+  study.file = file.path();
+  study.folder = file.folder();
+  const Section head = root.child("study");
+  study.name = head.text("name", fs::path(study.folder).filename().string());
+  check_file_name(head, study.name);
+  study.description = head.text("description", "");
+  study.seed = static_cast<std::uint64_t>(head.integer("seed", non_negative, 1));
+
+  read_parameters(root, study);
+  read_controls(root, study);
+  read_outputs(root, study);
+  check_column_names(root, study);
+  if (study.parameters.empty())
+    root.problem("parameters", "names no parameter", "add a section like [parameters.friction]");
+  read_materials(root, study);
+  read_training(root, study);
+  const FileProblems files = read_observation_sets(root, study);
+  read_cases(root, study);
+  for (const Section& section : root.array("calibrate")) check_file_name(section, section.text("name"));
+
+  if (!files.problems.empty()) {
+    std::vector<Problem> problems = file.recorded();
+    const ExitStatus status = problems.empty() ? files.status : ExitStatus::bad_study;
+    problems.insert(problems.end(), files.problems.begin(), files.problems.end());
+    throw InputError(status, std::move(problems));
+  }
+  return study;
+}
+
+void require_cases(const Study& study) {
+  std::vector<Problem> problems;
+  const std::string place = shown_path(study.file);
+  if (study.observations.empty()) {
+    problems.push_back({place, "has no measurements to calibrate against", "add [[observe]] with a name and a file"});
+  }
+  if (study.cases.empty()) {
+    problems.push_back({place, "has no case to calibrate", "add [[calibrate]] with name, observe and free"});
+  }
+  if (!problems.empty()) throw InputError(ExitStatus::bad_study, std::move(problems));
+}
+
+std::vector<Problem> outside_training_range(const Study& study) {
+  std::vector<Problem> problems;
+  for (const ObservationSet& set : study.observations) {
+    for (const Observation& point : set.points) {
+      assert(point.controls.size() == study.controls.size());
+      for (std::size_t i = 0; i < study.controls.size(); ++i) {
+        const Control& control = study.controls[i];
+        const double slack = 1e-9 * (control.high - control.low);
+        if (point.controls[i] >= control.low - slack && point.controls[i] <= control.high + slack) continue;
+        problems.push_back(
+            {fmt::format("{}:{}: {}", shown_path(set.file), point.line, control.name),
+             fmt::format("{:.10g} {} is outside the training range, {:.10g} to {:.10g} {}",
+                         control.unit.from_si(point.controls[i]), control.unit.symbol,
+                         control.unit.from_si(control.low), control.unit.from_si(control.high), control.unit.symbol),
+             fmt::format("the surrogate extrapolates there: widen controls.{} and train again", control.name)});
+      }
+    }
+  }
+  return problems;
+}
+
+}  // namespace data

@@ -1,0 +1,158 @@
+// [[calibrate]]: what each case names must exist, and together `free`, `fixed` and what the observed materials fix
+// themselves must give every parameter exactly one role.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "data/edit_distance.hpp"
+#include "data/study_parts.hpp"
+
+namespace data {
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Records names that are not among `known`, or that come twice.
+void check_names(const Section& section, std::string_view key, const std::vector<std::string>& names,
+                 const std::pair<std::string, std::vector<std::string>>& known) {
+  const auto& [what, candidates] = known;
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (!contains(candidates, name)) {
+      const auto near = nearest(name, candidates);
+      section.problem(key, fmt::format("'{}' is not {}", name, what),
+                      near                 ? fmt::format("did you mean '{}'?", *near)
+                      : candidates.empty() ? "the study has none"
+                                           : fmt::format("there are {}", fmt::join(candidates, ", ")));
+    } else if (!seen.insert(name).second) {
+      section.problem(key, fmt::format("'{}' is named twice", name), "name it once");
+    }
+  }
+}
+
+/// Every parameter must be free, fixed by the case, or fixed by each observed material.
+void check_roles(const Section& section, const CalibrationCase& item, const Study& study) {
+  std::vector<const Material*> materials;
+  for (const std::string& name : item.observe) {
+    if (const auto index = study.observation_index(name)) {
+      const std::string& material = study.observations[*index].material;
+      for (const Material& candidate : study.materials) {
+        if (candidate.name == material) materials.push_back(&candidate);
+      }
+    }
+  }
+  if (materials.empty()) return;
+  for (const Parameter& parameter : study.parameters) {
+    const std::string& name = parameter.name;
+    const bool is_free = contains(item.free, name);
+    const auto fixed = item.fixed.find(name);
+    int open = 0;
+    for (const Material* material : materials) {
+      const auto own = material->fixed.find(name);
+      if (own == material->fixed.end()) {
+        ++open;
+      } else if (fixed != item.fixed.end() && fixed->second != own->second) {
+        section.problem("fixed", fmt::format("{} is fixed at another value by the material '{}'", name, material->name),
+                        "leave it out here; the material's value counts");
+      }
+    }
+    if (is_free && fixed != item.fixed.end()) {
+      section.problem("free", fmt::format("'{}' is both free and fixed", name), "name it in one of them");
+    } else if (is_free && open == 0) {
+      section.problem("free", fmt::format("'{}' is free, but fixed in every material observed", name),
+                      "leave it out, or let the material's runs vary it");
+    } else if (!is_free && fixed == item.fixed.end() && open > 0) {
+      section.problem("free", fmt::format("leaves out '{}', which is not fixed either", name),
+                      fmt::format("add it to free, or write fixed = {{ {} = VALUE }}", name));
+    } else if (fixed != item.fixed.end() && open > 0) {
+      const double slack = 1e-12 * (parameter.high - parameter.low);
+      if (fixed->second < parameter.low - slack || fixed->second > parameter.high + slack) {
+        const Unit& unit = parameter.unit;
+        section.problem(
+            "fixed",
+            fmt::format("{} = {:.10g} {} is outside its range, {:.10g} to {:.10g}", name, unit.from_si(fixed->second),
+                        unit.symbol, unit.from_si(parameter.low), unit.from_si(parameter.high)),
+            "choose a value inside, where there are runs");
+      }
+    }
+  }
+}
+
+/// A prior that is another case's posterior: the case must exist, leave the parameter free, and not lead back here.
+void check_posteriors(const Section& section, const CalibrationCase& item, const Study& study) {
+  const auto find = [&](const std::string& name) {
+    return std::find_if(study.cases.begin(), study.cases.end(), [&](const auto& other) { return other.name == name; });
+  };
+  std::vector<std::string> names;
+  for (const CalibrationCase& other : study.cases) names.push_back(other.name);
+  for (const auto& [parameter, prior] : item.priors) {
+    if (prior.kind != PriorKind::posterior) continue;
+    const auto source = find(prior.posterior_of);
+    if (source == study.cases.end()) {
+      check_names(section, "priors", {prior.posterior_of}, {"a case", names});
+      continue;
+    }
+    if (!contains(source->free, parameter)) {
+      section.problem(
+          "priors", fmt::format("the case '{}' has no posterior of {}: it is not free there", source->name, parameter),
+          "choose a case that calibrates it");
+    }
+    std::set<std::string> visited;
+    std::vector<std::string> ahead{source->name};
+    while (!ahead.empty()) {
+      const std::string name = ahead.back();
+      ahead.pop_back();
+      if (name == item.name) {
+        section.problem("priors", fmt::format("the prior of {} leads back to this case", parameter),
+                        "break the circle");
+        break;
+      }
+      const auto next = find(name);
+      if (next == study.cases.end() || !visited.insert(name).second) continue;
+      for (const auto& [unused, other] : next->priors) {
+        if (other.kind == PriorKind::posterior) ahead.push_back(other.posterior_of);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void read_cases(const Section& root, Study& study) {
+  std::vector<std::string> parameters, observations;
+  for (const Parameter& parameter : study.parameters) parameters.push_back(parameter.name);
+  for (const ObservationSet& set : study.observations) observations.push_back(set.name);
+
+  const std::vector<Section> sections = root.array("calibrate");
+  for (const Section& section : sections) {
+    CalibrationCase item{.name = section.text("name"), .place = section.place()};
+    item.observe = section.texts("observe", true);
+    item.free = section.texts("free", true);
+    item.fixed = read_fixed(section.child("fixed"), study);
+    check_names(section, "observe", item.observe, {"the name of an [[observe]]", observations});
+    check_names(section, "free", item.free, {"a parameter", parameters});
+    const Section priors = section.child("priors");
+    for (const Parameter& parameter : study.parameters) {
+      if (!priors.has(parameter.name)) continue;
+      item.priors[parameter.name] = read_prior(priors.child(parameter.name), parameter, PriorOf::case_);
+      if (!contains(item.free, parameter.name)) {
+        section.problem("priors", fmt::format("'{}' has a prior but is not free", parameter.name),
+                        "add it to free, or remove its prior");
+      }
+    }
+    for (const CalibrationCase& other : study.cases) {
+      if (other.name == item.name)
+        section.problem("name", fmt::format("'{}' is taken", item.name), "give each case its own name");
+    }
+    study.cases.push_back(std::move(item));
+  }
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    check_roles(sections[i], study.cases[i], study);
+    check_posteriors(sections[i], study.cases[i], study);
+  }
+}
+
+}  // namespace data

@@ -1,0 +1,200 @@
+// [parameters], [controls] and [outputs]: names, units, ranges and priors.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "data/study_parts.hpp"
+
+namespace data {
+namespace {
+
+Unit read_unit(const Section& section, const std::string& fallback) {
+  const std::string symbol = section.text("unit", fallback);
+  try {
+    return parse_unit(symbol);
+  } catch (const std::invalid_argument& unknown) {
+    section.problem("unit", unknown.what(), "write it like \"mN m\", \"rpm\" or \"kg/m3\"");
+    return {};
+  }
+}
+
+/// The unit of a bare number; none for a dimensionless quantity.
+const Unit* bare_unit(const Unit& unit) { return unit.symbol.empty() || unit.symbol == "1" ? nullptr : &unit; }
+
+/// A value in the parameter's unit as a person reads it.
+std::string shown(double si, const Unit& unit) {
+  return fmt::format("{:.10g}{}{}", unit.from_si(si), bare_unit(unit) != nullptr ? " " : "", unit.symbol);
+}
+
+double read_value(const Section& section, std::string_view key, const Unit& unit, Range range = any_number) {
+  return section.quantity(key, unit.si_symbol, range, {}, bare_unit(unit));
+}
+
+void check_order(const Section& section, double low, double high, const Unit& unit) {
+  if (section.has("low") && section.has("high") && !(low < high)) {
+    section.problem("low", fmt::format("{} is not below high, which is {}", shown(low, unit), shown(high, unit)),
+                    "choose low < high");
+  }
+}
+
+void read_limits(const Section& section, Prior& prior, const Parameter& parameter) {
+  const auto bound = [&](std::string_view key, double otherwise) {
+    if (!section.has(key)) return otherwise;
+    const double value = read_value(section, key, parameter.unit);
+    const double slack = 1e-12 * (parameter.high - parameter.low);
+    if (value < parameter.low - slack || value > parameter.high + slack) {
+      section.problem(key,
+                      fmt::format("{} is outside the parameter's range, {} to {}", shown(value, parameter.unit),
+                                  shown(parameter.low, parameter.unit), shown(parameter.high, parameter.unit)),
+                      "narrow the prior or widen the range; nothing is simulated outside it");
+      return otherwise;
+    }
+    return value;
+  };
+  prior.low = bound("low", parameter.low);
+  prior.high = bound("high", parameter.high);
+  if (!(prior.low < prior.high) && parameter.low < parameter.high) {
+    section.problem("low",
+                    fmt::format("{} is not below high, which is {}", shown(prior.low, parameter.unit),
+                                shown(prior.high, parameter.unit)),
+                    "choose low < high");
+  }
+}
+
+void read_mean_and_sd(const Section& section, Prior& prior, const Parameter& parameter) {
+  prior.mean = read_value(section, "mean", parameter.unit);
+  Unit difference = parameter.unit;
+  difference.offset = 0.0;
+  prior.sd = section.quantity("sd", parameter.unit.si_symbol, positive, {}, bare_unit(difference));
+  const bool given = section.has("mean") && section.has("sd") && prior.sd > 0.0;
+  if (given && (prior.mean < prior.low - 3.0 * prior.sd || prior.mean > prior.high + 3.0 * prior.sd)) {
+    section.problem(
+        "mean",
+        fmt::format("{} is over three sd away from the parameter's range, {} to {}", shown(prior.mean, parameter.unit),
+                    shown(prior.low, parameter.unit), shown(prior.high, parameter.unit)),
+        "move the prior or the range");
+  }
+}
+
+}  // namespace
+
+const std::set<std::string>& reserved_columns() {
+  static const std::set<std::string> names{"material", "seed", "settings", "isa", "origin", "cpu_seconds"};
+  return names;
+}
+
+Prior read_prior(const Section& section, const Parameter& parameter, PriorOf owner) {
+  Prior prior{.low = parameter.low, .high = parameter.high, .place = section.place()};
+  if (!section.exists()) return prior;
+  if (owner == PriorOf::case_ && section.has("posterior")) {
+    prior.kind = PriorKind::posterior;
+    prior.posterior_of = section.text("posterior");
+    return prior;
+  }
+  const std::string kind = section.choice("kind", {"uniform", "normal", "truncated_normal", "log_normal", "beta"});
+  if (kind == "uniform") {
+    read_limits(section, prior, parameter);
+  } else if (kind == "normal") {
+    prior.kind = PriorKind::normal;
+    read_mean_and_sd(section, prior, parameter);
+  } else if (kind == "truncated_normal") {
+    prior.kind = PriorKind::truncated_normal;
+    read_limits(section, prior, parameter);
+    read_mean_and_sd(section, prior, parameter);
+  } else if (kind == "log_normal") {
+    prior.kind = PriorKind::log_normal;
+    prior.mean = read_value(section, section.has("mean") ? "mean" : "median", parameter.unit, positive);
+    prior.sd = section.number("sd", positive);
+    if (parameter.high <= 0.0) {
+      section.problem("kind", "is log_normal, but the parameter's range holds nothing above 0", "choose another prior");
+    }
+  } else {
+    prior.kind = PriorKind::beta;
+    read_limits(section, prior, parameter);
+    prior.alpha = section.number("alpha", positive);
+    prior.beta = section.number("beta", positive);
+  }
+  return prior;
+}
+
+void read_parameters(const Section& root, Study& study) {
+  for (const auto& [name, section] : root.child("parameters").children()) {
+    Parameter parameter{.name = name, .target = section.text("target", name), .place = section.place()};
+    parameter.unit = read_unit(section, "");
+    parameter.low = read_value(section, "low", parameter.unit);
+    parameter.high = read_value(section, "high", parameter.unit);
+    check_order(section, parameter.low, parameter.high, parameter.unit);
+    if (section.choice("scale", {"linear", "log"}, "linear") == "log") {
+      parameter.scale = Scale::log;
+      if (section.has("low") && !(parameter.low > 0.0)) {
+        section.problem("low", fmt::format("{} has no logarithm", shown(parameter.low, parameter.unit)),
+                        "choose low above 0, or scale = \"linear\"");
+      }
+    }
+    parameter.prior = read_prior(section.child("prior"), parameter, PriorOf::parameter);
+    study.parameters.push_back(std::move(parameter));
+  }
+}
+
+void read_controls(const Section& root, Study& study) {
+  for (const auto& [name, section] : root.child("controls").children()) {
+    Control control{.name = name, .target = section.text("target", name), .place = section.place()};
+    control.unit = read_unit(section, "");
+    control.low = read_value(section, "low", control.unit);
+    control.high = read_value(section, "high", control.unit);
+    check_order(section, control.low, control.high, control.unit);
+    study.controls.push_back(std::move(control));
+  }
+}
+
+void read_outputs(const Section& root, Study& study) {
+  const Section outputs = root.child("outputs");
+  for (const auto& [name, section] : outputs.children()) {
+    study.outputs.push_back({.name = name, .unit = read_unit(section, ""), .place = section.place()});
+  }
+  if (study.outputs.empty()) {
+    study.outputs.push_back({.name = "torque", .unit = parse_unit("N m"), .place = outputs.place()});
+  }
+}
+
+void check_column_names(const Section& root, const Study& study) {
+  std::map<std::string, std::string> taken;  // column -> what it is
+  const auto check = [&](const Section& section, const std::string& name, const std::string& what) {
+    const bool letters =
+        name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+    if (name.empty() || !letters || (name.front() >= '0' && name.front() <= '9')) {
+      section.problem(name, "is not a name", "use letters, digits and _, beginning with a letter");
+    } else if (reserved_columns().count(name) > 0) {
+      section.problem(name, "is a column that the run table keeps for itself", "choose another name");
+    } else if (const auto [old, is_new] = taken.emplace(name, what); !is_new) {
+      section.problem(name, fmt::format("the name is taken by {}", old->second), "choose another name");
+    }
+  };
+  const Section parameters = root.child("parameters"), controls = root.child("controls"),
+                outputs = root.child("outputs");
+  for (const Parameter& item : study.parameters) check(parameters, item.name, "a parameter");
+  for (const Control& item : study.controls) check(controls, item.name, "a control");
+  for (const Output& item : study.outputs) {
+    check(outputs, item.name, "an output");
+    taken.emplace(item.name + "_se", fmt::format("the standard error of {}", item.name));
+  }
+  for (const Output& item : study.outputs) {
+    if (taken.at(item.name + "_se").rfind("the standard", 0) != 0) {
+      outputs.problem(
+          item.name,
+          fmt::format("the column {}_se of its standard error is {}", item.name, taken.at(item.name + "_se")),
+          "choose another name");
+    }
+  }
+}
+
+std::map<std::string, double> read_fixed(const Section& section, const Study& study) {
+  std::map<std::string, double> fixed;
+  for (const Parameter& parameter : study.parameters) {
+    if (section.has(parameter.name)) fixed[parameter.name] = read_value(section, parameter.name, parameter.unit);
+  }
+  return fixed;
+}
+
+}  // namespace data
