@@ -1,0 +1,50 @@
+#pragma once
+// Draws of a sampler and what is known of their quality.
+#include <Eigen/Dense>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace uq {
+
+/// One chain after warm-up.
+struct Chain {
+  Eigen::MatrixXd x;            ///< draws x dimension
+  Eigen::VectorXd log_density;  ///< of each draw
+  Eigen::VectorXd acceptance;   ///< acceptance statistic of each draw
+  Eigen::VectorXd energy;       ///< Hamiltonian of each draw (NUTS); empty otherwise
+  std::vector<int> tree_depth;  ///< NUTS; empty otherwise
+  std::vector<bool> diverged;   ///< NUTS; empty otherwise
+};
+
+struct Draws {
+  std::vector<Chain> chains;
+  std::string sampler;  ///< "mixture" or "nuts"
+  bool converged = false;
+  std::string reason;                        ///< when not converged: what was missed
+  Eigen::VectorXd rhat, ess_bulk, ess_tail;  ///< per coordinate
+  int divergences = 0;
+  double log_evidence = 0.0;         ///< log integral of the density; NaN when the sampler does not give it
+  double log_evidence_error = 0.0;   ///< its standard error
+  double proposal_efficiency = 0.0;  ///< share of an independent draw that one proposal of the mixture is worth
+  std::int64_t evaluations = 0;      ///< of the log density, warm-up included
+
+  int dimension() const { return chains.empty() ? 0 : static_cast<int>(chains.front().x.cols()); }
+  /// iterations x chains of one coordinate, for the diagnostics.
+  Eigen::MatrixXd coordinate(int k) const;
+  /// All draws, chain after chain.
+  Eigen::MatrixXd pooled() const;
+  Eigen::VectorXd pooled_log_density() const;
+};
+
+/// When a sampler may stop.
+struct StopRule {
+  double rhat_max = 1.01;        ///< of every coordinate
+  double ess_per_chain = 100.0;  ///< bulk and tail, of every coordinate
+  double ess_bulk = 1000.0;      ///< over all chains, of every coordinate
+};
+
+/// Fills rhat, ess_bulk, ess_tail, converged and reason.
+void assess(Draws& draws, const StopRule& rule);
+
+}  // namespace uq

@@ -1,0 +1,39 @@
+#pragma once
+// A mixture of multivariate Student-t densities fitted to weighted points: the proposal of the global moves and of the
+// importance-sampled evidence.
+//
+//   q(x) = sum_k w_k t_nu(x; m_k, s^2 C_k),   nu = 8,  s^2 = 1.1
+// m_k, C_k, w_k are a Gaussian mixture's by expectation maximisation (Dempster, Laird, Rubin 1977), its number of
+// components by the Bayesian information criterion. The t's heavier tails and the inflation s keep the ratio p / q
+// bounded where a posterior has tails that the points did not reach (Hesterberg 1995).
+#include <Eigen/Dense>
+#include <vector>
+
+#include "data/random.hpp"
+
+namespace uq {
+
+struct MixtureComponent {
+  double weight = 1.0;
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd factor;     ///< lower Cholesky factor of s^2 C_k
+  double log_constant = 0.0;  ///< log of weight times the t density's constant
+};
+
+struct Mixture {
+  std::vector<MixtureComponent> components;
+  double log_density(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd draw(data::RandomStream& random) const;
+};
+
+struct MixtureOptions {
+  int components_max = 12;  ///< largest number of components tried
+  int iterations = 60;      ///< of expectation maximisation
+  double tolerance = 1e-4;  ///< stop when the mean log density rises by less
+};
+
+/// Fits to the rows of `points` with non-negative `weights` (any scale).
+Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, data::RandomStream& random,
+                    const MixtureOptions& options = {});
+
+}  // namespace uq
