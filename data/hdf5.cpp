@@ -52,6 +52,11 @@ struct Types<std::int64_t> {
   static hid_t file() { return H5T_STD_I64LE; }
 };
 template <>
+struct Types<std::uint64_t> {
+  static hid_t memory() { return H5T_NATIVE_UINT64; }
+  static hid_t file() { return H5T_STD_U64LE; }
+};
+template <>
 struct Types<std::int32_t> {
   static hid_t memory() { return H5T_NATIVE_INT32; }
   static hid_t file() { return H5T_STD_I32LE; }
@@ -335,6 +340,7 @@ Array<T> Hdf5Group::read(const std::string& name) const {
 DEMCAL_INSTANTIATE(double)
 DEMCAL_INSTANTIATE(float)
 DEMCAL_INSTANTIATE(std::int64_t)
+DEMCAL_INSTANTIATE(std::uint64_t)
 DEMCAL_INSTANTIATE(std::int32_t)
 DEMCAL_INSTANTIATE(std::uint8_t)
 #undef DEMCAL_INSTANTIATE

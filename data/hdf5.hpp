@@ -41,8 +41,8 @@ class Hdf5Group {
   double number(const std::string& attribute, const std::string& dataset = "") const;
   std::int64_t integer(const std::string& attribute, const std::string& dataset = "") const;
 
-  /// Datasets of double, float, int64, int32 and uint8. An empty `shape` means one dimension. Numbers are converted to
-  /// the type asked for when read.
+  /// Datasets of double, float, int64, uint64, int32 and uint8. An empty `shape` means one dimension. Numbers are
+  /// converted to the type asked for when read.
   template <class T>
   void write(const std::string& name, std::span<const T> values, std::vector<std::size_t> shape = {}) const;
   template <class T>

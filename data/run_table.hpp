@@ -43,7 +43,8 @@ std::string row_key(const RunRow& row);
 RunTable merge(const RunTable& first, const RunTable& second);
 
 /// Reads .h5 or .csv with the study's columns, in any column order. CSV rows with NaN or an empty cell are left out and
-/// named in `left_out`. Throws InputError: 66 missing file; 65 truncated, missing column, text for a number (file:line).
+/// named in `left_out`. Throws InputError: 66 missing file; 65 truncated, missing column, text for a number
+/// (file:line).
 struct TableRead {
   RunTable table;
   std::vector<std::string> left_out;

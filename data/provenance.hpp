@@ -1,0 +1,23 @@
+#pragma once
+// What made a result: program, instruction set, time. No host or user names.
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace data {
+
+std::string program_version();  ///< "0.1.0"
+std::string built_isa();        ///< "x86-64", "x86-64-v3" or "x86-64-v4": what this program was compiled for
+
+/// The best of the three that this processor runs.
+std::string processor_isa();
+
+/// Throws InputError (69) when the processor lacks the instruction set that the program was built for; call it first.
+void require_processor();
+
+std::string utc_now();  ///< "2026-11-23T05:04:00Z"
+
+/// Name and value of each, for a report or a file's head: demcal, instruction set, compiler, time.
+std::vector<std::pair<std::string, std::string>> provenance();
+
+}  // namespace data

@@ -1,0 +1,48 @@
+#include "data/run_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "data/run_table_files.hpp"
+
+namespace data {
+
+RunTable empty_table(const Study& study) {
+  RunTable table;
+  for (const Parameter& parameter : study.parameters) table.parameters.push_back({parameter.name, parameter.unit});
+  for (const Control& control : study.controls) table.controls.push_back({control.name, control.unit});
+  for (const Output& output : study.outputs) table.outputs.push_back({output.name, output.unit});
+  return table;
+}
+
+std::string row_key(const RunRow& row) {
+  std::string key = row.material;
+  for (const double input : row.inputs) key += fmt::format("|{:.11e}", input + 0.0);  // -0 and 0 are one point
+  return fmt::format("{}|{}|{}", key, row.seed, row.settings);
+}
+
+RunTable merge(const RunTable& first, const RunTable& second) {
+  RunTable merged = first;
+  std::set<std::string> there;
+  for (const RunRow& row : first.rows) there.insert(row_key(row));
+  for (const RunRow& row : second.rows) {
+    const std::string key = row_key(row);
+    if (there.count(key) > 0) continue;
+    const bool has_identity = row.seed != 0 || !row.settings.empty();
+    if (has_identity)
+      there.insert(key);  // rows without seed and settings may be another code's replicates of one point
+    merged.rows.push_back(row);
+  }
+  return merged;
+}
+
+TableRead read_table(const std::string& path, const Study& study) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending == ".h5" || ending == ".hdf5" ? read_table_hdf5(path, study) : read_table_csv(path, study);
+}
+
+}  // namespace data

@@ -1,0 +1,197 @@
+// The run table as CSV, in the study's units:
+//   friction,cohesion,speed,torque,torque_se[,material,seed,settings,isa,origin,cpu_seconds]
+// SI numbers go through the unit and back without losing a bit: v = (si - offset) / factor is taken to long double,
+// written with as few digits as read back to the same `si`, and read in long double again. Our own files state their
+// number of rows in the head ("# rows: 80"), so that one that was cut off is found out.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "data/atomic_file.hpp"
+#include "data/csv.hpp"
+#include "data/error.hpp"
+#include "data/provenance.hpp"
+#include "data/run_table_files.hpp"
+
+namespace data {
+namespace {
+
+double to_si(const std::string& field, const Unit& unit) {
+  long double value = 0.0L;
+  std::from_chars(field.data() + (field.front() == '+' ? 1 : 0), field.data() + field.size(), value);
+  return static_cast<double>(static_cast<long double>(unit.factor) * value + static_cast<long double>(unit.offset));
+}
+
+std::string from_si(double si, const Unit& unit) {
+  const std::string plain = shortest(unit.from_si(si));
+  if (!std::isfinite(si) || to_si(plain, unit) == si) return plain;
+  const long double value =
+      (static_cast<long double>(si) - static_cast<long double>(unit.offset)) / static_cast<long double>(unit.factor);
+  std::string text;
+  for (int digits = 15; digits <= 21; ++digits) {
+    text = fmt::format("{:.{}g}", value, digits);
+    if (to_si(text, unit) == si) break;
+  }
+  return text;
+}
+
+template <class Integer>
+Integer whole_number(const Csv& csv, const CsvRow& row, std::size_t column) {
+  const std::string& field = row.fields[column];
+  Integer value = 0;
+  if (field.empty()) return value;
+  const auto [rest, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc{} || rest != field.data() + field.size()) {
+    throw InputError(ExitStatus::bad_data,
+                     Problem{csv.place(row, column), fmt::format("'{}' is not a whole number", field),
+                             "write a whole number from 0"});
+  }
+  return value;
+}
+
+/// Throws when the head states another number of rows than there are.
+void check_whole(const Csv& csv, const std::string& text) {
+  for (const std::string& comment : csv.comments) {
+    if (comment.rfind("rows: ", 0) != 0) continue;
+    const std::string stated = comment.substr(6);
+    if (stated != std::to_string(csv.rows.size()) || text.back() != '\n') {
+      throw InputError(
+          ExitStatus::bad_data,
+          Problem{fmt::format("{}:{}", csv.file, csv.rows.empty() ? csv.header_line : csv.rows.back().line),
+                  fmt::format("the file ends here after {} rows, but its head states {}", csv.rows.size(), stated),
+                  "it was cut off: make it again (or, after editing by hand, correct the line '# rows:')"});
+    }
+  }
+}
+
+struct Columns {
+  std::vector<std::size_t> inputs, outputs, errors;
+  std::optional<std::size_t> material, seed, settings, isa, origin, cpu_seconds;
+};
+
+Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) {
+  Columns at;
+  for (const Column& column : table.parameters) at.inputs.push_back(csv.column(column.name));
+  for (const Column& column : table.controls) at.inputs.push_back(csv.column(column.name));
+  for (const Column& column : table.outputs) {
+    at.outputs.push_back(csv.column(column.name));
+    at.errors.push_back(csv.column(column.name + "_se"));
+  }
+  at.material = study.materials.size() > 1 ? csv.column("material") : csv.find("material");
+  at.seed = csv.find("seed");
+  at.settings = csv.find("settings");
+  at.isa = csv.find("isa");
+  at.origin = csv.find("origin");
+  at.cpu_seconds = csv.find("cpu_seconds");
+  return at;
+}
+
+std::string read_material(const Csv& csv, const CsvRow& row, const std::optional<std::size_t>& column,
+                          const Study& study) {
+  if (!column) return study.materials.empty() ? "" : study.materials.front().name;
+  const std::string& name = row.fields[*column];
+  std::vector<std::string> names;
+  for (const Material& material : study.materials) {
+    if (material.name == name) return name;
+    names.push_back(material.name);
+  }
+  throw InputError(ExitStatus::bad_data,
+                   Problem{csv.place(row, *column), fmt::format("'{}' is not a material of the study", name),
+                           fmt::format("the study has '{}'", fmt::join(names, "', '"))});
+}
+
+/// The first column of a row in which a number is missing or not finite.
+std::optional<std::size_t> not_finite(const Csv& csv, const CsvRow& row, const Columns& at) {
+  for (const auto* columns : {&at.inputs, &at.outputs, &at.errors}) {
+    for (const std::size_t column : *columns) {
+      if (!std::isfinite(csv.number(row, column))) return column;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+TableRead read_table_csv(const std::string& path, const Study& study) {
+  const std::string text = read_file(path);
+  const Csv csv = parse_csv(text, shown_path(path));
+  check_whole(csv, text);
+  TableRead result{.table = empty_table(study)};
+  RunTable& table = result.table;
+  const Columns at = find_columns(csv, table, study);
+  const std::string file_name = std::filesystem::path(path).filename().string();
+
+  std::vector<const Unit*> input_units;
+  for (const Column& column : table.parameters) input_units.push_back(&column.unit);
+  for (const Column& column : table.controls) input_units.push_back(&column.unit);
+  for (const CsvRow& line : csv.rows) {
+    if (const auto missing = not_finite(csv, line, at)) {
+      const std::string& field = line.fields[*missing];
+      result.left_out.push_back(fmt::format("{}: {}, the row is left out", csv.place(line, *missing),
+                                            field.empty() ? "is empty" : fmt::format("is {}", field)));
+      continue;
+    }
+    RunRow row;
+    row.material = read_material(csv, line, at.material, study);
+    for (std::size_t i = 0; i < at.inputs.size(); ++i)
+      row.inputs.push_back(to_si(line.fields[at.inputs[i]], *input_units[i]));
+    for (std::size_t i = 0; i < at.outputs.size(); ++i) {
+      const Unit& unit = table.outputs[i].unit;
+      Unit difference = unit;
+      difference.offset = 0.0;
+      row.outputs.push_back(to_si(line.fields[at.outputs[i]], unit));
+      row.standard_errors.push_back(to_si(line.fields[at.errors[i]], difference));
+      if (row.standard_errors.back() < 0.0) {
+        throw InputError(ExitStatus::bad_data,
+                         Problem{csv.place(line, at.errors[i]), fmt::format("{} is below 0", line.fields[at.errors[i]]),
+                                 "give the standard error of the run's mean, or 0 when it has none"});
+      }
+    }
+    if (at.seed) row.seed = whole_number<std::uint64_t>(csv, line, *at.seed);
+    if (at.settings) row.settings = line.fields[*at.settings];
+    if (at.isa) row.isa = line.fields[*at.isa];
+    row.origin = at.origin ? line.fields[*at.origin] : fmt::format("{}:{}", file_name, line.line);
+    if (at.cpu_seconds) row.cpu_seconds = csv.number(line, *at.cpu_seconds);
+    table.rows.push_back(std::move(row));
+  }
+  return result;
+}
+
+void write_table_csv(const std::string& path, const RunTable& table, const Study& study) {
+  std::string text =
+      fmt::format("# run table of the study '{}', written by demcal {}\n", study.name, program_version());
+  std::string header, units;
+  const auto add = [&](const std::string& name, const Unit& unit) {
+    header += name + ',';
+    units += fmt::format("{}{} [{}]", units.empty() ? "" : ", ", name, unit.symbol.empty() ? "1" : unit.symbol);
+  };
+  for (const Column& column : table.parameters) add(column.name, column.unit);
+  for (const Column& column : table.controls) add(column.name, column.unit);
+  for (const Column& column : table.outputs) {
+    add(column.name, column.unit);
+    header += column.name + "_se,";
+  }
+  text += fmt::format("# units: {}; NAME_se: the standard error of NAME; cpu_seconds [s]\n# rows: {}\n", units,
+                      table.rows.size());
+  text += header + "material,seed,settings,isa,origin,cpu_seconds\n";
+  for (const RunRow& row : table.rows) {
+    for (std::size_t i = 0; i < row.inputs.size(); ++i) {
+      const bool parameter = i < table.parameters.size();
+      const Column& column = parameter ? table.parameters[i] : table.controls.at(i - table.parameters.size());
+      text += from_si(row.inputs[i], column.unit) + ',';
+    }
+    for (std::size_t i = 0; i < row.outputs.size(); ++i) {
+      Unit difference = table.outputs.at(i).unit;
+      text += from_si(row.outputs[i], difference) + ',';
+      difference.offset = 0.0;
+      text += from_si(row.standard_errors.at(i), difference) + ',';
+    }
+    text += fmt::format("{},{},{},{},{},{}\n", csv_field(row.material), row.seed, csv_field(row.settings),
+                        csv_field(row.isa), csv_field(row.origin), shortest(row.cpu_seconds));
+  }
+  write_atomically(path, text);
+}
+
+}  // namespace data

@@ -1,0 +1,169 @@
+// training.h5: one dataset per column, SI.
+//   /                 attributes format, version, demcal, study, rows, complete (set last)
+//   /parameters/NAME  /controls/NAME  /outputs/NAME  /standard_errors/NAME   attributes "SI unit", "study unit"
+//   /runs/            material, seed, settings, isa, origin, cpu_seconds
+#include <fmt/format.h>
+
+#include "data/atomic_file.hpp"
+#include "data/error.hpp"
+#include "data/hdf5.hpp"
+#include "data/provenance.hpp"
+#include "data/run_table_files.hpp"
+
+namespace data {
+namespace {
+
+constexpr const char* format_name = "demcal run table";
+
+/// A column's numbers, one per row.
+template <class Value>
+std::vector<double> column_of(const RunTable& table, Value value) {
+  std::vector<double> numbers;
+  numbers.reserve(table.rows.size());
+  for (const RunRow& row : table.rows) numbers.push_back(value(row));
+  return numbers;
+}
+
+void write_column(const Hdf5Group& group, const Column& column, const std::vector<double>& values) {
+  group.write(column.name, values);
+  group.set("SI unit", column.unit.si_symbol, column.name);
+  group.set("study unit", column.unit.symbol, column.name);
+}
+
+[[noreturn]] void damaged(const std::string& place, std::string what) {
+  throw InputError(
+      ExitStatus::bad_data,
+      Problem{place, std::move(what), "the file is truncated or was not finished: remove it and train again"});
+}
+
+template <class T>
+std::vector<T> checked(const Hdf5Group& group, const std::string& name, std::vector<T> values, std::size_t rows) {
+  if (values.size() != rows) {
+    damaged(group.place(name), fmt::format("holds {} values where the table has {} rows", values.size(), rows));
+  }
+  return values;
+}
+
+std::vector<double> read_column(const Hdf5Group& group, const Column& column, std::size_t rows) {
+  std::vector<double> values = checked(group, column.name, group.read<double>(column.name).values, rows);
+  if (group.has_attribute("SI unit", column.name)) {
+    const std::string unit = group.text("SI unit", column.name);
+    if (unit != column.unit.si_symbol) {
+      throw InputError(ExitStatus::bad_data,
+                       Problem{group.place(column.name),
+                               fmt::format("is in '{}' where the study measures '{}'", unit, column.unit.si_symbol),
+                               "the table belongs to another study, or the unit was changed"});
+    }
+  }
+  return values;
+}
+
+void refuse_more(const Hdf5Group& group, const std::vector<Column>& columns, const std::string& kind) {
+  for (const std::string& name : group.names()) {
+    bool known = false;
+    for (const Column& column : columns) known = known || column.name == name;
+    if (!known) {
+      throw InputError(ExitStatus::bad_data,
+                       Problem{group.place(name), fmt::format("is a {} that the study does not have", kind),
+                               "the table belongs to another study: choose another --out, or remove the file"});
+    }
+  }
+}
+
+}  // namespace
+
+void write_table_hdf5(const std::string& path, const RunTable& table, const Study& study) {
+  write_atomically(path, [&](const std::string& temporary) {
+    const Hdf5Group root = create_hdf5(temporary);
+    root.set("format", format_name);
+    root.set("version", std::int64_t{1});
+    root.set("demcal", program_version());
+    root.set("study", study.name);
+    root.set("rows", static_cast<std::int64_t>(table.rows.size()));
+    const Hdf5Group parameters = root.create_group("parameters"), controls = root.create_group("controls"),
+                    outputs = root.create_group("outputs"), errors = root.create_group("standard_errors"),
+                    runs = root.create_group("runs");
+    for (std::size_t i = 0; i < table.parameters.size(); ++i) {
+      write_column(parameters, table.parameters[i],
+                   column_of(table, [i](const RunRow& row) { return row.inputs.at(i); }));
+    }
+    for (std::size_t i = 0; i < table.controls.size(); ++i) {
+      const std::size_t at = table.parameters.size() + i;
+      write_column(controls, table.controls[i],
+                   column_of(table, [at](const RunRow& row) { return row.inputs.at(at); }));
+    }
+    for (std::size_t i = 0; i < table.outputs.size(); ++i) {
+      write_column(outputs, table.outputs[i], column_of(table, [i](const RunRow& row) { return row.outputs.at(i); }));
+      write_column(errors, table.outputs[i],
+                   column_of(table, [i](const RunRow& row) { return row.standard_errors.at(i); }));
+    }
+    std::vector<std::string> materials, settings, isas, origins;
+    std::vector<std::uint64_t> seeds;
+    for (const RunRow& row : table.rows) {
+      materials.push_back(row.material);
+      seeds.push_back(row.seed);
+      settings.push_back(row.settings);
+      isas.push_back(row.isa);
+      origins.push_back(row.origin);
+    }
+    runs.write_texts("material", materials);
+    runs.write("seed", seeds);
+    runs.write_texts("settings", settings);
+    runs.write_texts("isa", isas);
+    runs.write_texts("origin", origins);
+    runs.write("cpu_seconds", column_of(table, [](const RunRow& row) { return row.cpu_seconds; }));
+    runs.set("unit", "s", "cpu_seconds");
+    root.set("complete", std::int64_t{1});
+    root.flush();
+  });
+}
+
+TableRead read_table_hdf5(const std::string& path, const Study& study) {
+  const Hdf5Group root = open_hdf5(path);
+  if (!root.has_attribute("format") || root.text("format") != format_name) {
+    throw InputError(ExitStatus::bad_data, Problem{root.place(), "is not a run table of demcal", "name another file"});
+  }
+  if (!root.has_attribute("complete") || root.integer("complete") != 1) damaged(root.place(), "is not marked complete");
+  if (root.integer("version") > 1) {
+    throw InputError(ExitStatus::bad_data, Problem{root.place(), "was written by a newer demcal", "use that one"});
+  }
+  const std::int64_t count = root.integer("rows");
+  if (count < 0) damaged(root.place("@rows"), fmt::format("{} is no number of rows", count));
+  const auto rows = static_cast<std::size_t>(count);
+
+  TableRead result{.table = empty_table(study)};
+  RunTable& table = result.table;
+  table.rows.resize(rows);
+  const Hdf5Group parameters = root.group("parameters"), controls = root.group("controls"),
+                  outputs = root.group("outputs"), errors = root.group("standard_errors"), runs = root.group("runs");
+  refuse_more(parameters, table.parameters, "parameter");
+  refuse_more(controls, table.controls, "control");
+  const auto append = [&](const Hdf5Group& group, const Column& column, std::vector<double> RunRow::*target) {
+    const std::vector<double> values = read_column(group, column, rows);
+    for (std::size_t r = 0; r < rows; ++r) (table.rows[r].*target).push_back(values[r]);
+  };
+  for (const Column& column : table.parameters) append(parameters, column, &RunRow::inputs);
+  for (const Column& column : table.controls) append(controls, column, &RunRow::inputs);
+  for (const Column& column : table.outputs) {
+    append(outputs, column, &RunRow::outputs);
+    append(errors, column, &RunRow::standard_errors);
+  }
+  const auto materials = checked(runs, "material", runs.read_texts("material"), rows);
+  const auto seeds = checked(runs, "seed", runs.read<std::uint64_t>("seed").values, rows);
+  const auto settings = checked(runs, "settings", runs.read_texts("settings"), rows);
+  const auto isas = checked(runs, "isa", runs.read_texts("isa"), rows);
+  const auto origins = checked(runs, "origin", runs.read_texts("origin"), rows);
+  const auto seconds = checked(runs, "cpu_seconds", runs.read<double>("cpu_seconds").values, rows);
+  for (std::size_t r = 0; r < rows; ++r) {
+    RunRow& row = table.rows[r];
+    row.material = materials[r];
+    row.seed = seeds[r];
+    row.settings = settings[r];
+    row.isa = isas[r];
+    row.origin = origins[r];
+    row.cpu_seconds = seconds[r];
+  }
+  return result;
+}
+
+}  // namespace data
