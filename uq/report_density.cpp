@@ -9,6 +9,8 @@
 namespace uq {
 namespace {
 
+constexpr double bandwidth2 = 0.8 * 0.8;  ///< b^2; the neighbours are a piece of the whole, so b is not small
+
 /// A symmetric two-by-two covariance.
 struct Covariance {
   double xx = 0.0, xy = 0.0, yy = 0.0;
@@ -106,16 +108,13 @@ DensityGrid joint_density(const std::vector<double>& x, const std::vector<double
   // A kernel is never narrower than what a cell can show.
   const int cells = options.cells;
   const double floor = 0.8 / cells * 0.8 / cells;
-  const double bandwidth2 = std::pow(static_cast<double>(n), -1.0 / 3.0);
   const auto neighbours =
       std::clamp(static_cast<std::size_t>(options.neighbour_share * static_cast<double>(n)), std::size_t{10}, n - 1);
-  // The neighbours of a draw are a piece of the whole; along the ridge a kernel may be as long as that piece.
-  const double local2 = std::max(bandwidth2, 0.25);
   DensityGrid grid;
   grid.density.assign(static_cast<std::size_t>(cells * cells), 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     Covariance shape = neighbourhood(points, i, neighbours);
-    shape = {local2 * shape.xx + floor, local2 * shape.xy, local2 * shape.yy + floor};
+    shape = {bandwidth2 * shape.xx + floor, bandwidth2 * shape.xy, bandwidth2 * shape.yy + floor};
     add_kernel(grid.density, cells, {points.x[i], points.y[i]}, shape, 1.0 / static_cast<double>(n));
   }
   for (int i = 0; i < cells; ++i) {

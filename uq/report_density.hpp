@@ -1,12 +1,11 @@
 #pragma once
 // The joint density of two parameters from draws, on a grid, for contours of the highest-density regions.
 //
-// Each draw carries a Gaussian kernel whose shape is the covariance C of the draw's own neighbours (the nearest tenth
-// of all draws), scaled by a Silverman-like factor:
-//   p(x) = 1/n sum_i w_i exp(-1/2 (x - x_i)' [b^2 C_i]^-1 (x - x_i)),   b = n^(-1/6),
+// Each draw carries a Gaussian kernel whose shape is the covariance C_i of the draw's own neighbours (the nearest fifth
+// of all draws), scaled:
+//   p(x) = 1/n sum_i w_i exp(-1/2 (x - x_i)' [b^2 C_i]^-1 (x - x_i)),   b = 0.8,
 // so that kernels lie along a curved ridge and do not blur it. w_i makes each kernel sum to one inside the box: at a
-// bound the density does not leak out (Jones 1993 renormalises likewise; the local shapes are the sample-point balloon
-// of Breiman, Meisel & Purcell 1977). For drawing only: no number of the report is computed from it.
+// bound no density leaks out. For drawing only: no number of the report is computed from it.
 #include <vector>
 
 namespace uq {
@@ -23,12 +22,21 @@ struct DensityGrid {
 };
 
 struct DensityOptions {
-  int cells = 96;                 ///< per axis
-  double neighbour_share = 0.10;  ///< of the draws that shape a kernel
+  int cells = 96;                ///< per axis
+  double neighbour_share = 0.2;  ///< of the draws that shape a kernel
 };
 
 /// Draws beyond the box are left out. An empty grid when fewer than 20 are left or they do not vary.
 DensityGrid joint_density(const std::vector<double>& x, const std::vector<double>& y, const Box& box,
                           const DensityOptions& options = {});
+
+/// A closed line; its last point joins its first.
+struct Loop {
+  std::vector<double> x, y;
+};
+
+/// The lines at which the density crosses `level`, by marching squares on the cell centres with linear interpolation.
+/// Beyond the box the density counts as zero, so every line closes, along the box where the region touches it.
+std::vector<Loop> contour(const DensityGrid& grid, const Box& box, double level);
 
 }  // namespace uq

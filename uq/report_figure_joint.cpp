@@ -31,8 +31,9 @@ Extent limits(const Extent& draws, const ParameterReport& parameter) {
     return whole.padded(0.04);
   }
   const Extent wide = draws.padded(0.6);
-  return {.low = std::max(wide.low, parameter.prior_low - 0.04 * width),
-          .high = std::min(wide.high, parameter.prior_high + 0.04 * width),
+  const double margin = 0.05 * (wide.high - wide.low);
+  return {.low = std::max(wide.low, parameter.prior_low - margin),
+          .high = std::min(wide.high, parameter.prior_high + margin),
           .empty = false};
 }
 
@@ -43,20 +44,16 @@ std::pair<double, double> support(const Extent& view, const ParameterReport& par
   return {low, high};
 }
 
-/// The density as rows for splot, with a rim of zeros at the box so that every contour closes.
-std::string density_block(const DensityGrid& grid, const Box& box) {
-  std::vector<double> x{box.x_low}, y{box.y_low};
-  x.insert(x.end(), grid.x.begin(), grid.x.end());
-  y.insert(y.end(), grid.y.begin(), grid.y.end());
-  x.push_back(box.x_high);
-  y.push_back(box.y_high);
-  std::string text = "# density\n";
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    for (std::size_t j = 0; j < y.size(); ++j) {
-      const bool rim = i == 0 || j == 0 || i + 1 == x.size() || j + 1 == y.size();
-      const double value = rim ? 0.0 : grid.density[(i - 1) * grid.y.size() + j - 1];
-      text += fmt::format("{:.8g} {:.8g} {:.5g}\n", x[i], y[j], value);
-    }
+bool shows_bound(const Extent& view, const ParameterReport& parameter) {
+  return (parameter.prior_low >= view.low && parameter.prior_low <= view.high) ||
+         (parameter.prior_high >= view.low && parameter.prior_high <= view.high);
+}
+
+/// The closed lines of a region, each a block of its own for "filledcurves".
+std::string region_block(const char* name, const std::vector<Loop>& loops) {
+  std::string text = fmt::format("# {}\n", name);
+  for (const Loop& loop : loops) {
+    for (std::size_t i = 0; i < loop.x.size(); ++i) text += fmt::format("{:.6g} {:.6g}\n", loop.x[i], loop.y[i]);
     text += "\n";
   }
   return text + "\n";
@@ -84,7 +81,16 @@ std::vector<std::vector<double>> equivalent_columns(const CaseReport& result, co
 
 }  // namespace
 
-Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t> pair, const std::string& stem) {
+bool are_traded(const CaseReport& result, std::pair<std::size_t, std::size_t> pair) {
+  const std::string& a = result.parameters[pair.first].name;
+  const std::string& b = result.parameters[pair.second].name;
+  return std::any_of(result.traded.begin(), result.traded.end(), [&](const TradedPair& traded) {
+    return (traded.first == a && traded.second == b) || (traded.first == b && traded.second == a);
+  });
+}
+
+Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t> pair, FigureSize size,
+                    const std::string& stem) {
   const ParameterReport& a = result.parameters[pair.first];
   const ParameterReport& b = result.parameters[pair.second];
   std::vector<double> x, y;
@@ -114,7 +120,9 @@ Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t
   const Axis horizontal = plot::axis_for(a.name, a.unit, x_view.largest());
   const Axis vertical = plot::axis_for(b.name, b.unit, y_view.largest());
 
-  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 700, .height = 520};
+  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}};
+  figure.width = size == FigureSize::wide ? 700 : 420;
+  figure.height = size == FigureSize::wide ? 520 : 380;
   figure.data = plot::block("draws", {x_shown, y_shown}) + plot::block("equivalent", equivalent) +
                 plot::block("prior", {{a.prior_low, a.prior_high, a.prior_high, a.prior_low, a.prior_low},
                                       {b.prior_low, b.prior_low, b.prior_high, b.prior_high, b.prior_low}}) +
@@ -123,33 +131,28 @@ Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t
   script = plot::look() + plot::label('x', horizontal) + plot::label('y', vertical);
   script += fmt::format("sx = {:.0e}\nsy = {:.0e}\n", horizontal.scale, vertical.scale);
   if (!grid.density.empty()) {
-    figure.data += density_block(grid, box);
-    script += "set contour base\nunset surface\nset cntrparam linear\n";
-    for (const auto& [name, level] : {std::pair{"region90", grid.level90}, std::pair{"region50", grid.level50}}) {
-      script += fmt::format(
-          "set cntrparam levels discrete {:.8g}\nset table ${}\nsplot '{}.dat' index 'density' using "
-          "($1*sx):($2*sy):3\nunset table\n",
-          level, name, stem);
-    }
-    script += "unset contour\nset surface\n";
+    figure.data += region_block("region90", contour(grid, box, grid.level90)) +
+                   region_block("region50", contour(grid, box, grid.level50));
   }
+  script += "set clip two\n";
   script += fmt::format("set xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}*sy:{:.10g}*sy]\nplot ", x_view.low,
                         x_view.high, y_view.low, y_view.high);
+  const std::string source = fmt::format("'{}.dat'", stem);
   if (!grid.density.empty()) {
     script += fmt::format(
-        "$region90 using 1:2 with filledcurves closed fillcolor rgb '{0}' linecolor rgb '{0}' title '90 %', \\\n"
-        "  $region50 using 1:2 with filledcurves closed fillcolor rgb '{1}' linecolor rgb '{1}' title '50 %', \\\n",
-        plot::pale, "#8FC7EA");
+        "{0} index 'region90' using ($1*sx):($2*sy) with filledcurves closed fillcolor rgb '{1}' title '90 %', \\\n"
+        "  {0} index 'region50' using ($1*sx):($2*sy) with filledcurves closed fillcolor rgb '{2}' title '50 %', \\\n",
+        source, plot::pale, "#8FC7EA");
   }
-  const std::string source = fmt::format("'{}.dat'", stem);
   script += fmt::format(
       "  {0} index 'draws' using ($1*sx):($2*sy) with points pointtype 7 pointsize 0.18 linecolor rgb '{1}' "
       "title 'draws', \\\n"
       "  {0} index 'prior' using ($1*sx):($2*sy) with lines dashtype 3 linewidth 1.2 linecolor rgb '{2}' "
-      "title 'prior range', \\\n"
+      "{4}, \\\n"
       "  {0} index 'mode' using ($1*sx):($2*sy) with points pointtype 2 pointsize 1.1 linewidth 2 linecolor rgb '{3}' "
       "title 'mode'",
-      source, plot::blue, plot::grey, plot::ink);
+      source, plot::blue, plot::grey, plot::ink,
+      shows_bound(x_view, a) || shows_bound(y_view, b) ? "title 'prior range'" : "notitle");
   if (!equivalent.front().empty()) {
     script += fmt::format(
         ", \\\n  {0} index 'equivalent' using ($1*sx):($2*sy) with linespoints pointtype 13 pointsize 1.1 linewidth "

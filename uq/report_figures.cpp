@@ -152,11 +152,11 @@ Figure profile_figure(const ParameterReport& parameter, const std::string& stem)
   const double top = std::clamp(up.empty ? 0.0 : up.high, 6.0, 12.0);
   const double low = parameter.profile_low.value_or(across.low), high = parameter.profile_high.value_or(across.high);
 
-  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 520, .height = 340};
+  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 310};
   figure.data = plot::block("profile", {parameter.profile_x, parameter.profile_deviance});
   const Extent range = across.padded(0.02);
   figure.script = plot::look() + plot::label('x', horizontal) +
-                  fmt::format("set ylabel '−2 ln (L / L_max)' textcolor rgb '{}'\n", plot::ink) +
+                  fmt::format("set ylabel '−2 Δ ln L' textcolor rgb '{}'\n", plot::ink) +
                   fmt::format("sx = {:.0e}\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [0:{:.10g}]\n",
                               horizontal.scale, range.low, range.high, top) +
                   fmt::format(
@@ -165,15 +165,15 @@ Figure profile_figure(const ParameterReport& parameter, const std::string& stem)
                       low, high, "#EAF4FB") +
                   fmt::format(
                       "plot {0} with lines linecolor rgb '{1}' linewidth 1.2 dashtype 2 "
-                      "title '95 % level, {0}', \\\n"
+                      "title '95 % ({0})', \\\n"
                       "  '{2}.dat' index 'profile' using ($1*sx):2 with lines linecolor rgb '{3}' linewidth 2 "
-                      "title 'profile likelihood'",
+                      "title 'profile'",
                       chi2_95, plot::vermillion, stem, plot::blue);
   if (std::isfinite(parameter.map)) {
     figure.data += plot::block("map", {{parameter.map}, {0.0}});
     figure.script += fmt::format(
         ", \\\n  '' index 'map' using ($1*sx):2 with points pointtype 9 pointsize 0.9 linecolor rgb '{}' "
-        "title 'posterior mode'",
+        "title 'mode'",
         plot::ink);
   }
   figure.alt = fmt::format("profile likelihood of {}", parameter.name);
@@ -203,17 +203,20 @@ Figure leave_one_out_figure(const SurrogateReport& surrogate, const std::string&
   const Axis horizontal = plot::axis_for("simulated " + surrogate.output, surrogate.unit, both.largest());
   const Axis vertical = plot::axis_for("predicted without that run", surrogate.unit, both.largest());
 
-  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 520, .height = 480};
+  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 410};
   figure.data = plot::block("runs", {x, y, x_error, y_error});
-  figure.script = plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
-                  fmt::format("s = {:.0e}\nset size ratio 1\nset xrange [{:.10g}*s:{:.10g}*s]\n", horizontal.scale,
-                              range.low, range.high) +
-                  fmt::format("set yrange [{:.10g}*s:{:.10g}*s]\n", range.low, range.high) +
-                  fmt::format(
-                      "plot x with lines linecolor rgb '{0}' dashtype 2 title 'identity', \\\n"
-                      "  '{1}.dat' index 'runs' using ($1*s):($2*s):($3*s):($4*s) with xyerrorbars linecolor rgb "
-                      "'{2}' linewidth 0.9 pointtype 7 pointsize 0.4 title 'runs, ±1 standard deviation'",
-                      plot::grey, stem, plot::blue);
+  figure.script =
+      plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
+      fmt::format("s = {:.0e}\nset size ratio 1\nset xrange [{:.10g}*s:{:.10g}*s]\n", horizontal.scale, range.low,
+                  range.high) +
+      fmt::format("set yrange [{:.10g}*s:{:.10g}*s]\n", range.low, range.high) +
+      fmt::format(
+          "plot x with lines linecolor rgb '{0}' dashtype 2 title 'identity', \\\n"
+          "  '{1}.dat' index 'runs' using ($1*s):($2*s):($3*s):($4*s) with xyerrorbars linecolor rgb "
+          "'{3}' linewidth 0.9 pointtype 7 pointsize 0.05 title 'runs, ±1 sd', \\\n"
+          "  '' index 'runs' using ($1*s):($2*s) with points linecolor rgb '{2}' pointtype 7 pointsize 0.35 "
+          "notitle",
+          plot::grey, stem, plot::blue, plot::sky);
   figure.alt = fmt::format("leave-one-out predictions of {} against the {} runs", surrogate.output, n);
   return figure;
 }
@@ -234,23 +237,20 @@ Figure standardised_figure(const SurrogateReport& surrogate, const std::string& 
   const Extent range = across.padded(0.05);
   const Extent y_range = up.padded(0.05);
 
-  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 520, .height = 480};
+  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 410};
   figure.data = plot::block("inside", {x, inside}) + plot::block("beyond", {x_beyond, beyond});
   figure.script = plot::look() + plot::label('x', horizontal) +
                   fmt::format("set ylabel 'standardised leave-one-out error' textcolor rgb '{}'\n", plot::ink) +
                   fmt::format("sx = {:.0e}\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}:{:.10g}]\n",
                               horizontal.scale, range.low, range.high, y_range.low, y_range.high) +
                   fmt::format(
-                      "set arrow 1 from graph 0, first 2 to graph 1, first 2 nohead back dashtype 2 linecolor rgb "
-                      "'{0}'\nset arrow 2 from graph 0, first -2 to graph 1, first -2 nohead back dashtype 2 "
-                      "linecolor rgb '{0}'\n",
-                      plot::grey) +
-                  fmt::format(
-                      "plot '{0}.dat' index 'inside' using ($1*sx):2 with points pointtype 7 pointsize 0.5 "
+                      "plot 2 with lines dashtype 2 linecolor rgb '{3}' notitle, \\\n"
+                      "  -2 with lines dashtype 2 linecolor rgb '{3}' notitle, \\\n"
+                      "  '{0}.dat' index 'inside' using ($1*sx):2 with points pointtype 7 pointsize 0.5 "
                       "linecolor rgb '{1}' title 'within ±2', \\\n"
                       "  '' index 'beyond' using ($1*sx):2 with points pointtype 9 pointsize 0.9 linecolor rgb "
                       "'{2}' title 'beyond ±2'",
-                      stem, plot::blue, plot::vermillion);
+                      stem, plot::blue, plot::vermillion, plot::grey);
   figure.alt = fmt::format("standardised leave-one-out errors of {}", surrogate.output);
   return figure;
 }

@@ -18,7 +18,12 @@ std::vector<PredictiveCurve> curves_to_draw(const CaseReport& result);
 Figure predictive_figure(const CaseReport& result, const PredictiveCurve& curve, const std::string& stem);
 
 /// The joint posterior of two parameters: draws, 50 and 90 % regions, prior box, equivalent points.
-Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t> pair, const std::string& stem);
+enum class FigureSize { wide, half };  ///< of the page's width
+Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t> pair, FigureSize size,
+                    const std::string& stem);
+
+/// Whether two parameters of a case are named as traded.
+bool are_traded(const CaseReport& result, std::pair<std::size_t, std::size_t> pair);
 
 /// The pairs of parameters worth a joint figure: traded ones first, then by falling correlation; at most `limit`.
 std::vector<std::pair<std::size_t, std::size_t>> pairs_to_draw(const CaseReport& result, std::size_t limit);

@@ -60,7 +60,7 @@ std::string contents(const std::vector<std::pair<std::string, std::string>>& sec
   return out + "</ol></nav>\n";
 }
 
-std::string percent(double share) { return significant(100.0 * share, 2, pretty) + "\u00a0%"; }
+std::string percent(double share) { return fmt::format("{:.4g}\u00a0%", 100.0 * share); }
 
 std::string error_scan_section(const CalibrationReport& report) {
   if (report.error_scan.empty()) return {};

@@ -6,6 +6,7 @@
 
 #include "uq/report_figures.hpp"
 #include "uq/report_page.hpp"
+#include "uq/report_plot.hpp"
 
 namespace uq::page {
 namespace {
@@ -41,7 +42,7 @@ std::string verdict_words(const CaseReport& result) {
 std::string parameter_table(const CaseReport& result) {
   Table table{.caption = {},
               .head = {{"Parameter"},
-                       {"Posterior mean \u00b1 sd"},
+                       {"Mean \u00b1 sd"},
                        {"90\u00a0% interval"},
                        {"95\u00a0% profile interval"},
                        number("Contraction"),
@@ -57,8 +58,9 @@ std::string parameter_table(const CaseReport& result) {
     table.rows.push_back(
         {{text(parameter.name)},
          {value(parameter), "nowrap"},
-         {text(format_interval(parameter.q05, parameter.q95, rounding, parameter.unit, pretty))},
-         {text(format_profile_interval(parameter, pretty))},
+         {text(format_interval(parameter.q05, parameter.q95, rounding, parameter.unit, pretty)), "nowrap"},
+         {text(format_profile_interval(parameter, pretty)),
+          parameter.profile_low && parameter.profile_high ? "nowrap" : ""},
          number(significant(parameter.contraction, std::abs(parameter.contraction) < 0.1 ? 1 : 2, pretty)),
          {said}});
     const std::string sentence = shown_sentence(result, parameter);
@@ -81,9 +83,9 @@ std::string fit_and_data(const CaseReport& result) {
   }
   if (!result.linked.empty()) {
     out += fmt::format(
-        "<p>Sampled jointly with <strong>{}</strong>: that data also inform{} the parameters shared with this "
+        "<p>Sampled jointly with <strong>{}</strong>: {} observations also inform the parameters shared with this "
         "case.</p>\n",
-        joined(result.linked), result.linked.size() == 1 ? "s" : "");
+        joined(result.linked), result.linked.size() == 1 ? "its" : "their");
   }
   return out;
 }
@@ -106,7 +108,8 @@ std::string predictive_table(const CaseReport& result, std::size_t rows_shown_op
   };
   Table table{.caption = "Observed and modelled at the observed points.", .head = {}, .rows = {}};
   if (several_sets) table.head.push_back({"Observations"});
-  for (const std::string& control : controls) table.head.push_back(number(text(control + in_unit(unit_of(control)))));
+  for (const std::string& control : controls)
+    table.head.push_back(number(text(name_in_unit(control, unit_of(control)))));
   for (const char* const heading :
        {"Output", "Observed \u00b1 standard error", "Model, mean", "Model, 90\u00a0% interval"}) {
     table.head.push_back(heading == std::string_view("Output") ? Cell{heading} : number(heading));
@@ -117,9 +120,9 @@ std::string predictive_table(const CaseReport& result, std::size_t rows_shown_op
     if (several_sets) row.push_back({text(point.observation_set)});
     for (const std::string& control : controls) {
       const auto found = point.controls.find(control);
-      row.push_back(number(found == point.controls.end() ? "" : significant(found->second, 4, pretty)));
+      row.push_back(number(found == point.controls.end() ? "" : fmt::format("{:.6g}", found->second)));
     }
-    row.push_back({text(point.output + in_unit(point.unit))});
+    row.push_back({text(name_in_unit(point.output, point.unit))});
     row.push_back(number(format_with_error(point.observed, point.standard_error, "", pretty)));
     row.push_back(number(format_value(point.mean, rounding, "", pretty)));
     row.push_back(number(format_interval(point.q05, point.q95, rounding, "", pretty)));
@@ -150,19 +153,26 @@ std::string equivalent_table(const CaseReport& result, const TradedPair& traded)
   Table table{
       .caption = "Equivalent points: the observations cannot tell these apart.", .head = {{"Point"}}, .rows = {}};
   std::vector<const ParameterReport*> columns;
+  std::vector<plot::Axis> axes;
   for (const ParameterReport& parameter : result.parameters) {
     const bool given = std::any_of(traded.equivalent.begin(), traded.equivalent.end(),
                                    [&](const auto& point) { return point.contains(parameter.name); });
     if (!given) continue;
     columns.push_back(&parameter);
-    table.head.push_back(number(text(parameter.name + in_unit(parameter.unit))));
+    double largest = 0.0;
+    for (const auto& point : traded.equivalent) {
+      if (const auto found = point.find(parameter.name); found != point.end())
+        largest = std::max(largest, std::abs(found->second));
+    }
+    axes.push_back(plot::axis_for(parameter.name, parameter.unit, largest));
+    table.head.push_back(number(text(axes.back().label)));
   }
   int index = 0;
   for (const auto& point : traded.equivalent) {
     std::vector<Cell> row{{std::to_string(++index)}};
-    for (const ParameterReport* parameter : columns) {
-      const auto found = point.find(parameter->name);
-      row.push_back(number(found == point.end() ? "" : significant(found->second, 3, pretty)));
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const auto found = point.find(columns[i]->name);
+      row.push_back(number(found == point.end() ? "" : significant(found->second * axes[i].scale, 3, pretty)));
     }
     table.rows.push_back(std::move(row));
   }
@@ -182,18 +192,24 @@ std::string joint_part(const CaseReport& result, const std::string& id, const Co
   if (result.traded.empty()) out += "<p>No pair of parameters is traded against each other.</p>\n";
   if (!result.draws_for_plot.empty()) {
     const auto pairs = pairs_to_draw(result, context.options.joint_figures);
-    if (pairs.size() > 1) out += "<div class=\"pair\">\n";
+    std::string small;
     for (const auto& pair : pairs) {
-      const ParameterReport& a = result.parameters[pair.first];
-      const ParameterReport& b = result.parameters[pair.second];
-      out +=
-          figure(joint_figure(result, pair, fmt::format("{}-joint-{}-{}", id, pair.first + 1, pair.second + 1)),
-                 fmt::format("Joint posterior of {} and {}: draws, the regions that hold 50 and 90\u00a0% of them, the "
-                             "prior's range, and points along the ridge that fit alike, if any.",
-                             text(a.name), text(b.name)),
-                 context);
+      const std::string names =
+          text(result.parameters[pair.first].name) + " and " + text(result.parameters[pair.second].name);
+      const std::string stem = fmt::format("{}-joint-{}-{}", id, pair.first + 1, pair.second + 1);
+      if (pairs.size() == 1 || are_traded(result, pair)) {
+        out += figure(
+            joint_figure(result, pair, FigureSize::wide, stem),
+            fmt::format("Joint posterior of {}: draws, the smallest regions that hold 50 and 90\u00a0% of them, and "
+                        "the prior's range. Numbered points, if any, fit alike.",
+                        names),
+            context);
+      } else {
+        small +=
+            figure(joint_figure(result, pair, FigureSize::half, stem), "Joint posterior of " + names + ".", context);
+      }
     }
-    if (pairs.size() > 1) out += "</div>\n";
+    if (!small.empty()) out += "<div class=\"pair\">\n" + small + "</div>\n";
   }
   for (const TradedPair& traded : result.traded) out += equivalent_table(result, traded);
   if (result.correlation.size() == result.parameters.size()) {

@@ -8,7 +8,7 @@ inline constexpr const char* report_style = R"css(
 :root { color-scheme: light; --ink: #1d2126; --soft: #59626c; --rule: #d9dee3; --panel: #f5f7f9; --link: #0060a0; }
 * { box-sizing: border-box; }
 html { -webkit-text-size-adjust: 100%; }
-body { margin: 0 auto; padding: 2.5rem 1.5rem 4rem; max-width: 56rem; color: var(--ink); background: #fff;
+body { margin: 0 auto; padding: 2.5rem 1.5rem 4rem; max-width: 60rem; color: var(--ink); background: #fff;
   font: 16px/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "DejaVu Sans", sans-serif; }
 h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .3rem; letter-spacing: -.01em; }
 h2 { font-size: 1.4rem; line-height: 1.25; margin: 3.2rem 0 .8rem; padding-top: .9rem; border-top: 2px solid var(--ink); }
@@ -29,7 +29,7 @@ h1, h2, h3, p, li, td, th, dd { overflow-wrap: anywhere; }
 .verdict dd { margin: 0; }
 .verdict dd:first-of-type { font-weight: 600; }
 nav ol { columns: 2; column-gap: 2.5rem; padding-left: 1.3rem; margin: .4rem 0; }
-table { border-collapse: collapse; margin: .7rem 0 1rem; font-size: .92rem; font-variant-numeric: tabular-nums; width: 100%; }
+table { border-collapse: collapse; margin: .7rem 0 1rem; font-size: .9rem; font-variant-numeric: tabular-nums; width: 100%; }
 caption { text-align: left; color: var(--soft); font-size: .9rem; padding-bottom: .35rem; }
 th, td { text-align: left; vertical-align: top; padding: .38rem .9rem .38rem 0; border-bottom: 1px solid var(--rule);
   overflow-wrap: normal; }
@@ -49,9 +49,9 @@ figure { margin: 1.1rem 0 1.4rem; break-inside: avoid; }
 figure svg { display: block; width: 100%; height: auto; margin: 0 auto; }
 figure svg text { font-family: system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "DejaVu Sans", sans-serif; }
 figcaption { font-size: .9rem; margin-top: .35rem; max-width: 46rem; }
-.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(21rem, 1fr)); gap: .5rem 1.5rem; align-items: end; }
+.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(22rem, 1fr)); gap: .5rem 1.5rem; align-items: start; }
 .pair figure { margin: .6rem 0; }
-.pair.single { grid-template-columns: minmax(0, 34rem); }
+.pair.single { grid-template-columns: minmax(0, 29rem); }
 details { margin: .7rem 0; }
 summary { cursor: pointer; color: var(--link); }
 @media (max-width: 40rem) { nav ol { columns: 1; } .verdict dl { grid-template-columns: 1fr; gap: .1rem; }
@@ -65,6 +65,7 @@ summary { cursor: pointer; color: var(--link); }
   .badge, .verdict, .warnings { -webkit-print-color-adjust: exact; print-color-adjust: exact; }
   .pair { grid-template-columns: 1fr 1fr; }
   .wide { overflow: visible; }
+  figure svg { max-height: 92mm; } h3 + p { break-after: avoid; }
 }
 )css";
 

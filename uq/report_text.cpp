@@ -128,8 +128,8 @@ std::string significant(double value, int digits, Typography typography) {
   return format_value(value, rounding, "", typography);
 }
 
-std::string in_unit(std::string_view unit) {
-  return unit.empty() || unit == "1" ? std::string() : fmt::format(" ({})", unit);
+std::string name_in_unit(std::string_view name, std::string_view unit) {
+  return unit.empty() || unit == "1" || unit == name ? std::string(name) : fmt::format("{} ({})", name, unit);
 }
 
 std::string escape_html(std::string_view text) {

@@ -34,8 +34,8 @@ std::string format_profile_interval(const ParameterReport& parameter, Typography
 /// A number to so many significant digits, with a power of ten where the decimals would be unreadable.
 std::string significant(double value, int digits, Typography typography);
 
-/// " (unit)" for a heading or an axis, nothing for a dimensionless quantity.
-std::string in_unit(std::string_view unit);
+/// "name (unit)" for a heading or an axis; the name alone when there is no unit or the name is the unit ("rpm").
+std::string name_in_unit(std::string_view name, std::string_view unit);
 
 /// Text from a file made safe between tags and inside quoted attributes; control characters are dropped.
 std::string escape_html(std::string_view text);

@@ -296,6 +296,8 @@ CalibrationReport misfit() {
   result.ppp = 0.002;
   result.chi2 = 41.2;
   result.finding = "No friction reproduces the measured rise.";
+  result.consequence = "No value of friction found here means anything.";
+  result.remedy = "Check the fill and the offset of the torque sensor.";
   report.cases = {result};
   return report;
 }
