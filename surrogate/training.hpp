@@ -1,0 +1,61 @@
+#pragma once
+// Training data of one output, standardised and with its replicates pooled.
+//
+// Scale. With g(y) = y (linear) or log y (log), z = (g(y) - shift) / unit, where shift is the mean of g(y) (or 0, for a
+// process whose mean is zero) and unit its root mean square about shift: whatever the unit of y, z is of order one. The
+// noise variance of z is var / unit^2 (linear), and var / (y unit)^2 (log, first order): it is divided by the variance
+// of the data and never multiplied by a fitted variance.
+//
+// Replicates. Runs i at the same point, each with known noise variance d_i and its own draw of the nugget g (run-to-run
+// scatter), enter the likelihood exactly through w_i = 1 / (d_i + g):
+//   m = sum w_i z_i / sum w_i,   v = 1 / sum w_i,
+//   prod_i N(z_i | f, 1/w_i) = N(m | f, v) exp(E),
+//   E = 1/2 sum log w_i - 1/2 sum w_i (z_i - m)^2 + 1/2 log v - (r - 1)/2 log(2 pi).
+// A column of x that never changes is left out of the process (active lists the others).
+#include <Eigen/Core>
+#include <vector>
+
+namespace surrogate {
+
+enum class OutputScale { linear, log };
+
+const char* to_text(OutputScale scale);
+
+/// Where z is zero.
+enum class Centre { data_mean, zero };
+
+struct TrainingSet {
+  Eigen::MatrixXd x;               ///< n x d, each input scaled to the unit cube by its training range
+  Eigen::VectorXd y;               ///< n, any unit
+  Eigen::VectorXd noise_variance;  ///< n, unit^2 of y: known variance of each run's mean; empty: none
+};
+
+struct Standardised {
+  OutputScale scale = OutputScale::linear;
+  double shift = 0.0;              ///< g(y) = shift + unit z
+  double unit = 1.0;               ///< unit of g(y)
+  double log_jacobian = 0;         ///< log |dz/dy| summed over runs
+  Eigen::VectorXd z;               ///< n
+  Eigen::VectorXd noise;           ///< n, variance of z
+  Eigen::MatrixXd points;          ///< distinct points, active inputs only
+  std::vector<int> active;         ///< indices of the inputs that vary
+  Eigen::VectorXd low, high;       ///< d, range of every input over the runs
+  std::vector<int> point_of_run;   ///< n, row of `points`
+  std::vector<int> runs_of_point;  ///< how many runs each point has
+};
+
+/// Throws data::InputError (65) where the data cannot be a training set: sizes that differ, values that are not finite,
+/// a negative variance, y <= 0 on the log scale, fewer than two runs.
+Standardised standardise(const TrainingSet& training, OutputScale scale, Centre centre = Centre::data_mean);
+
+/// What pooling makes of the runs, for one nugget variance, with derivatives with respect to the nugget.
+struct Pooled {
+  Eigen::VectorXd mean, variance;              ///< m, v of each distinct point
+  Eigen::VectorXd mean_slope, variance_slope;  ///< dm/dg, dv/dg
+  double log_likelihood = 0.0;                 ///< sum of E
+  double log_likelihood_slope = 0.0;
+};
+
+Pooled pool(const Standardised& data, double nugget_variance);
+
+}  // namespace surrogate
