@@ -112,7 +112,9 @@ std::optional<std::size_t> Csv::find(std::string_view column) const {
 std::size_t Csv::column(std::string_view name) const {
   if (const auto found = find(name)) return *found;
   std::string remedy = fmt::format("the columns are {}", fmt::join(columns, ", "));
-  if (const auto near = nearest(name, columns)) remedy += fmt::format("; is '{}' meant?", *near);
+  if (const auto near = nearest(name, columns); near && edit_distance(name, *near) <= 2) {
+    remedy += fmt::format("; is '{}' meant?", *near);
+  }
   fail(fmt::format("{}:{}", file, header_line), fmt::format("the column '{}' is missing", name), remedy);
 }
 

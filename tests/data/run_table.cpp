@@ -1,0 +1,207 @@
+#include "data/run_table.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "data/hdf5.hpp"
+#include "data/random.hpp"
+#include "tests/data/temporary.hpp"
+
+namespace {
+
+data::Study study_of(const TemporaryFolder& folder, const std::string& more = "") {
+  const std::string text =
+      "[parameters.friction]\nlow = 0.1\nhigh = 0.8\n[parameters.cohesion]\nunit = \"mJ/m2\"\nlow = 0\nhigh = 10\n"
+      "[controls.speed]\nunit = \"rpm\"\nlow = 50\nhigh = 300\n[controls.warmth]\nunit = \"degC\"\nlow = 10\nhigh = "
+      "30\n"
+      "[training]\ntable = \"runs.csv\"\n[outputs.torque]\nunit = \"mN m\"\n";
+  const data::StudyFile file = data::StudyFile::open(folder.write("study.toml", text + more));
+  data::Study study = data::read_study(file);
+  return study;
+}
+
+data::RunTable random_table(const data::Study& study, std::size_t rows) {
+  data::RandomStream random(3, data::Purpose::test);
+  data::RunTable table = data::empty_table(study);
+  for (std::size_t i = 0; i < rows; ++i) {
+    data::RunRow row;
+    row.material = study.materials.front().name;
+    row.inputs = {random.uniform(0.1, 0.8), random.uniform(0.0, 0.01), random.uniform(5.0, 31.0),
+                  random.uniform(283.0, 303.0)};
+    row.outputs = {random.uniform(0.001, 0.02)};
+    row.standard_errors = {random.uniform(1e-5, 1e-4)};
+    row.seed = random();
+    row.settings = "0123abcd";
+    row.isa = "x86-64-v3";
+    row.origin = "demcal 0.1.0, \"quoted\"";
+    row.cpu_seconds = random.uniform(1.0, 30.0);
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+void check_same(const data::RunTable& a, const data::RunTable& b) {
+  REQUIRE(a.rows.size() == b.rows.size());
+  for (std::size_t i = 0; i < a.rows.size(); ++i) {
+    CHECK(a.rows[i].material == b.rows[i].material);
+    CHECK(a.rows[i].inputs == b.rows[i].inputs);
+    CHECK(a.rows[i].outputs == b.rows[i].outputs);
+    CHECK(a.rows[i].standard_errors == b.rows[i].standard_errors);
+    CHECK(a.rows[i].seed == b.rows[i].seed);
+    CHECK(a.rows[i].settings == b.rows[i].settings);
+    CHECK(a.rows[i].isa == b.rows[i].isa);
+    CHECK(a.rows[i].origin == b.rows[i].origin);
+    CHECK(a.rows[i].cpu_seconds == b.rows[i].cpu_seconds);
+  }
+}
+
+const std::string header = "friction,cohesion,speed,warmth,torque,torque_se";
+
+}  // namespace
+
+TEST_CASE("a table comes back from CSV and from HDF5 with the same bits, through units with factor and offset") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder, "[materials.\"z 8,00\"]\n");
+  const data::RunTable table = random_table(study, 300);
+  data::write_table_csv(folder.path("t.csv"), table, study);
+  const data::TableRead csv = data::read_table(folder.path("t.csv"), study);
+  check_same(table, csv.table);
+  CHECK(csv.left_out.empty());
+  data::write_table_hdf5(folder.path("t.h5"), table, study);
+  check_same(table, data::read_table(folder.path("t.h5"), study).table);
+}
+
+TEST_CASE("an empty table and one whose columns stand in another order are read") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder);
+  data::write_table_hdf5(folder.path("t.h5"), data::empty_table(study), study);
+  CHECK(data::read_table(folder.path("t.h5"), study).table.rows.empty());
+  const auto path =
+      folder.write("t.csv", "torque_se,note,torque,warmth,speed,friction,cohesion\n0.1,x,8,20,60,0.4,4\n");
+  const data::RunRow row = data::read_table(path, study).table.rows.at(0);
+  CHECK(row.inputs[1] == Approx(0.004));
+  CHECK(row.inputs[3] == Approx(293.15));
+  CHECK(row.outputs[0] == Approx(0.008));
+  CHECK(row.origin == "t.csv:2");
+}
+
+TEST_CASE("rows with NaN or an empty cell are left out and named") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder);
+  const auto path = folder.write("t.csv", header + "\n0.4,4,60,20,nan,0.1\n0.4,4,60,20,8,0.1\n0.4,,60,20,8,0.1\n");
+  const data::TableRead read = data::read_table(path, study);
+  CHECK(read.table.rows.size() == 1);
+  REQUIRE(read.left_out.size() == 2);
+  CHECK(read.left_out[0].find("t.csv:2: torque: is nan, the row is left out") != std::string::npos);
+  CHECK(read.left_out[1].find("t.csv:4: cohesion: is empty, the row is left out") != std::string::npos);
+}
+
+TEST_CASE("what is wrong with a table in CSV is named with line and column") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder);
+  const auto failure = [&](const std::string& text) {
+    return failure_of(folder, [&] { data::read_table(folder.write("t.csv", text), study); });
+  };
+  CHECK(failure("friction,speed,warmth,torque,torque_se\n") ==
+        "65: t.csv:1: the column 'cohesion' is missing (the columns are friction, speed, warmth, torque, torque_se)");
+  CHECK(failure(header + "\n0.4,4,fast,20,8,0.1\n") ==
+        "65: t.csv:2: speed: 'fast' is not a number (write a plain number with a decimal point)");
+  CHECK(failure(header + "\n0.4,4,60,20,8,-0.1\n").find("65: t.csv:2: torque_se: -0.1 is below 0") == 0);
+  CHECK(failure(header + ",material\n0.4,4,60,20,8,0.1,sand\n")
+            .find("65: t.csv:2: material: 'sand' is not a material of the study") == 0);
+  CHECK(failure_of(folder, [&] {
+          data::read_table(folder.path("none.csv"), study);
+        }).find("66: none.csv: there is no such file") == 0);
+}
+
+TEST_CASE("a table that was cut off anywhere is refused with its place") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder);
+  const data::RunTable table = random_table(study, 40);
+  data::write_table_csv(folder.path("t.csv"), table, study);
+  data::write_table_hdf5(folder.path("t.h5"), table, study);
+  for (const std::string name : {"t.csv", "t.h5"}) {
+    const std::string whole = folder.read(name);
+    for (std::size_t kept = 0; kept < whole.size(); kept += name == "t.csv" ? 37 : 501) {
+      folder.write(name, whole.substr(0, kept));
+      const std::string found = failure_of(folder, [&] { data::read_table(folder.path(name), study); });
+      INFO(kept << " of " << whole.size() << ": " << found);
+      CHECK(found.find("65: " + name) == 0);
+      CHECK(found.find('\n') == std::string::npos);
+    }
+    for (const std::size_t missing : {1, 2}) {
+      folder.write(name, whole.substr(0, whole.size() - missing));
+      CHECK(failure_of(folder, [&] { data::read_table(folder.path(name), study); }).find("65: " + name) == 0);
+    }
+  }
+}
+
+TEST_CASE("an HDF5 table that is unfinished, short of values or of another study is refused with its place") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder);
+  const std::string path = folder.path("t.h5");
+  const auto failure = [&] { return failure_of(folder, [&] { data::read_table(path, study); }); };
+  data::write_table_hdf5(path, random_table(study, 5), study);
+  data::open_hdf5_to_write(path).set("complete", std::int64_t{0});
+  CHECK(failure().find("65: t.h5: /: is not marked complete") == 0);
+  data::open_hdf5_to_write(path).set("complete", std::int64_t{1});
+  data::open_hdf5_to_write(path).set("rows", std::int64_t{6});
+  CHECK(failure().find("65: t.h5: /parameters/friction: holds 5 values where the table has 6 rows") == 0);
+  data::open_hdf5_to_write(path).set("rows", std::int64_t{5});
+  data::open_hdf5_to_write(path).group("parameters").set("SI unit", "m", "friction");
+  CHECK(failure().find("65: t.h5: /parameters/friction: is in 'm' where the study measures '1'") == 0);
+  data::open_hdf5_to_write(path).group("parameters").set("SI unit", "1", "friction");
+  data::open_hdf5_to_write(path).group("parameters").write("stiffness", std::vector<double>(5));
+  CHECK(failure().find("65: t.h5: /parameters/stiffness: is a parameter that the study does not have") == 0);
+  data::create_hdf5(path).set("format", "something else");
+  CHECK(failure().find("65: t.h5: /: is not a run table of demcal") == 0);
+}
+
+TEST_CASE("the other-code table reads whole") {
+  const data::StudyFile file = data::StudyFile::open(DEMCAL_SOURCE_DIR "/data/other-code");
+  const data::Study study = data::read_study(file);
+  const data::TableRead read = data::read_table(study.training.table, study);
+  CHECK(read.table.rows.size() == 80);
+  CHECK(read.left_out.empty());
+  for (const data::RunRow& row : read.table.rows) {
+    CHECK(row.inputs[0] >= study.parameters[0].low);
+    CHECK(row.inputs[2] <= study.controls[0].high * (1.0 + 1e-12));
+    CHECK(row.standard_errors[0] / row.outputs[0] == Approx(0.01).epsilon(0.05));
+  }
+}
+
+TEST_CASE("merging keeps what is there and adds only new points") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder);
+  const data::RunTable table = random_table(study, 4);
+  data::RunTable other = table;
+  other.rows[1].seed += 1;           // a replicate
+  other.rows[2].settings = "other";  // another time step
+  other.rows[3].inputs[0] += 1e-15;  // the same point to 12 digits
+  other.rows[0].outputs[0] = 1.0;    // the same run
+  const data::RunTable merged = data::merge(table, other);
+  CHECK(merged.rows.size() == 6);
+  CHECK(merged.rows[0].outputs == table.rows[0].outputs);
+  CHECK(data::merge(merged, other).rows.size() == 6);
+  CHECK(data::merge(data::empty_table(study), table).rows.size() == 4);
+}
+
+TEST_CASE("another code's replicates of one point are all kept") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder);
+  const auto path = folder.write("t.csv", header + "\n0.4,4,60,20,8,0.1\n0.4,4,60,20,8.2,0.1\n");
+  const data::RunTable shipped = data::read_table(path, study).table;
+  const data::RunTable merged = data::merge(data::empty_table(study), shipped);
+  CHECK(merged.rows.size() == 2);
+  CHECK(data::merge(merged, shipped).rows.size() == 2);
+}
+
+TEST_CASE("the key of a row tells material, point, seed and settings apart, and not the sign of zero") {
+  data::RunRow row;
+  row.inputs = {0.4, 0.0};
+  data::RunRow same = row;
+  same.inputs[1] = -0.0;
+  same.outputs = {3.0};
+  CHECK(data::row_key(row) == data::row_key(same));
+  same.material = "carrier";
+  CHECK(data::row_key(row) != data::row_key(same));
+}
