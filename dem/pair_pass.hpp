@@ -39,7 +39,7 @@ struct PairLoad {
 
 /// `deliver(PairLoad)` is called for each slot in range of particles [begin, end), in slot order.
 template <class Law, class Deliver>
-void pair_pass(const Law& law, const PairView& v, std::size_t begin, std::size_t end, Deliver&& deliver) {
+void pair_pass(Law law, PairView v, std::size_t begin, std::size_t end, Deliver&& deliver) {
   thread_local std::vector<Hit> hits;
   hits.resize(v.first[end] - v.first[begin] + lanes);
   std::size_t count = 0;
@@ -61,9 +61,12 @@ void pair_pass(const Law& law, const PairView& v, std::size_t begin, std::size_t
   }
   for (std::size_t k = count; k < (count + lanes - 1) / lanes * lanes; ++k) hits[k] = hits[count - 1];
 
-  using Array = double[lanes];
-  alignas(64) Array dx, dy, dz, sum, ux, uy, uz, wx, wy, wz, sx, sy, sz;  // separation, radii, velocity, r w, spring
-  alignas(64) Array fx, fy, fz, mx, my, mz, push, distance;
+  struct alignas(64) Lanes {
+    double dx[lanes], dy[lanes], dz[lanes], sum[lanes];                       // separation, sum of the radii
+    double ux[lanes], uy[lanes], uz[lanes], wx[lanes], wy[lanes], wz[lanes];  // velocity, r spin
+    double sx[lanes], sy[lanes], sz[lanes];                                   // spring
+    double fx[lanes], fy[lanes], fz[lanes], mx[lanes], my[lanes], mz[lanes], push[lanes], distance[lanes];
+  } l;
   for (std::size_t base = 0; base < count; base += lanes) {
     for (int k = 0; k < lanes; ++k) {
       const Hit hit = hits[base + k];
@@ -71,55 +74,55 @@ void pair_pass(const Law& law, const PairView& v, std::size_t begin, std::size_t
       const PositionRow &a = v.position[hit.i], &b = v.position[j];
       const MotionRow &ma = v.motion[hit.i], &mb = v.motion[j];
       const Vec3& image = v.image[p >> image_shift];
-      dx[k] = a.at.x - b.at.x - image.x;
-      dy[k] = a.at.y - b.at.y - image.y;
-      dz[k] = a.at.z - b.at.z - image.z;
-      sum[k] = a.radius + b.radius;
-      ux[k] = ma.velocity.x - mb.velocity.x;
-      uy[k] = ma.velocity.y - mb.velocity.y;
-      uz[k] = ma.velocity.z - mb.velocity.z;
-      wx[k] = a.radius * ma.spin.x + b.radius * mb.spin.x;
-      wy[k] = a.radius * ma.spin.y + b.radius * mb.spin.y;
-      wz[k] = a.radius * ma.spin.z + b.radius * mb.spin.z;
+      l.dx[k] = a.at.x - b.at.x - image.x;
+      l.dy[k] = a.at.y - b.at.y - image.y;
+      l.dz[k] = a.at.z - b.at.z - image.z;
+      l.sum[k] = a.radius + b.radius;
+      l.ux[k] = ma.velocity.x - mb.velocity.x;
+      l.uy[k] = ma.velocity.y - mb.velocity.y;
+      l.uz[k] = ma.velocity.z - mb.velocity.z;
+      l.wx[k] = a.radius * ma.spin.x + b.radius * mb.spin.x;
+      l.wy[k] = a.radius * ma.spin.y + b.radius * mb.spin.y;
+      l.wz[k] = a.radius * ma.spin.z + b.radius * mb.spin.z;
       const double keep = (hit.slot >> 31) != 0 ? 1.0 : 0.0;
-      sx[k] = keep * v.spring[slot].x;
-      sy[k] = keep * v.spring[slot].y;
-      sz[k] = keep * v.spring[slot].z;
+      l.sx[k] = keep * v.spring[slot].x;
+      l.sy[k] = keep * v.spring[slot].y;
+      l.sz[k] = keep * v.spring[slot].z;
     }
     for (int k = 0; k < lanes; ++k) {
-      const double d = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
-      const Vec3 n = (1.0 / d) * Vec3{dx[k], dy[k], dz[k]};
-      const double arm = d / sum[k];  // arms r_i d / (r_i + r_j): to the contact point, and together the distance
-      const Vec3 surface_velocity = Vec3{ux[k], uy[k], uz[k]} - arm * cross(Vec3{wx[k], wy[k], wz[k]}, n);
-      const ContactForce c = law(n, sum[k] - d, surface_velocity, {sx[k], sy[k], sz[k]}, v.time_step);
-      fx[k] = c.push * n.x + c.tangential.x;
-      fy[k] = c.push * n.y + c.tangential.y;
-      fz[k] = c.push * n.z + c.tangential.z;
-      mx[k] = n.y * c.tangential.z - n.z * c.tangential.y;
-      my[k] = n.z * c.tangential.x - n.x * c.tangential.z;
-      mz[k] = n.x * c.tangential.y - n.y * c.tangential.x;
-      sx[k] = c.spring.x;
-      sy[k] = c.spring.y;
-      sz[k] = c.spring.z;
-      push[k] = c.push;
-      distance[k] = d;
+      const double d = std::sqrt(l.dx[k] * l.dx[k] + l.dy[k] * l.dy[k] + l.dz[k] * l.dz[k]);
+      const Vec3 n = (1.0 / d) * Vec3{l.dx[k], l.dy[k], l.dz[k]};
+      const double arm = d / l.sum[k];  // arms r_i d / (r_i + r_j): to the contact point, and together the distance
+      const Vec3 surface_velocity = Vec3{l.ux[k], l.uy[k], l.uz[k]} - arm * cross(Vec3{l.wx[k], l.wy[k], l.wz[k]}, n);
+      const ContactForce c = law(n, l.sum[k] - d, surface_velocity, {l.sx[k], l.sy[k], l.sz[k]}, v.time_step);
+      l.fx[k] = c.push * n.x + c.tangential.x;
+      l.fy[k] = c.push * n.y + c.tangential.y;
+      l.fz[k] = c.push * n.z + c.tangential.z;
+      l.mx[k] = n.y * c.tangential.z - n.z * c.tangential.y;
+      l.my[k] = n.z * c.tangential.x - n.x * c.tangential.z;
+      l.mz[k] = n.x * c.tangential.y - n.y * c.tangential.x;
+      l.sx[k] = c.spring.x;
+      l.sy[k] = c.spring.y;
+      l.sz[k] = c.spring.z;
+      l.push[k] = c.push;
+      l.distance[k] = d;
     }
     const int used = count - base < lanes ? static_cast<int>(count - base) : lanes;
     for (int k = 0; k < used; ++k) {
       const Hit hit = hits[base + k];
       const std::uint32_t slot = hit.slot & 0x7fffffffu, j = v.partner[slot] & partner_mask;
-      v.spring[slot] = {sx[k], sy[k], sz[k]};
-      const double arm = distance[k] / sum[k];
+      v.spring[slot] = {l.sx[k], l.sy[k], l.sz[k]};
+      const double arm = l.distance[k] / l.sum[k];
       deliver(PairLoad{slot,
                        hit.i,
                        j,
-                       {fx[k], fy[k], fz[k]},
-                       {mx[k], my[k], mz[k]},
+                       {l.fx[k], l.fy[k], l.fz[k]},
+                       {l.mx[k], l.my[k], l.mz[k]},
                        v.position[hit.i].radius * arm,
                        v.position[j].radius * arm,
-                       push[k],
-                       distance[k],
-                       sum[k] - distance[k]});
+                       l.push[k],
+                       l.distance[k],
+                       l.sum[k] - l.distance[k]});
     }
   }
 }
