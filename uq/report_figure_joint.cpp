@@ -15,8 +15,8 @@ namespace {
 using plot::Axis;
 using plot::Extent;
 
-constexpr std::size_t points_drawn = 600;     ///< beyond that the page only grows
-constexpr double share_for_whole_box = 0.25;  ///< draws that span this much of the range: the whole range is shown
+constexpr std::size_t points_drawn_wide = 600;  ///< beyond that the page only grows
+constexpr double share_for_whole_box = 0.25;    ///< draws that span this much of the range: the whole range is shown
 
 /// Axis limits: the whole prior range where the draws fill a good part of it, else the draws with a wide margin.
 Extent limits(const Extent& draws, const ParameterReport& parameter) {
@@ -37,10 +37,11 @@ Extent limits(const Extent& draws, const ParameterReport& parameter) {
           .empty = false};
 }
 
-/// The part of the plot in which density is drawn: the view, cut at the prior's bounds.
-std::pair<double, double> support(const Extent& view, const ParameterReport& parameter) {
-  const double low = std::isfinite(parameter.prior_low) ? std::max(view.low, parameter.prior_low) : view.low;
-  const double high = std::isfinite(parameter.prior_high) ? std::min(view.high, parameter.prior_high) : view.high;
+/// Where density is drawn: around the draws, so that the grid resolves a narrow ridge, and cut at the prior's bounds.
+std::pair<double, double> support(const Extent& draws, const ParameterReport& parameter) {
+  const Extent around = draws.padded(0.15);
+  const double low = std::isfinite(parameter.prior_low) ? std::max(around.low, parameter.prior_low) : around.low;
+  const double high = std::isfinite(parameter.prior_high) ? std::min(around.high, parameter.prior_high) : around.high;
   return {low, high};
 }
 
@@ -104,13 +105,14 @@ Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t
     up.include(y.back());
   }
   const Extent x_view = limits(across, a), y_view = limits(up, b);
-  const auto [x_low, x_high] = support(x_view, a);
-  const auto [y_low, y_high] = support(y_view, b);
+  const auto [x_low, x_high] = support(across, a);
+  const auto [y_low, y_high] = support(up, b);
   const Box box{.x_low = x_low, .x_high = x_high, .y_low = y_low, .y_high = y_high};
   const DensityGrid grid = joint_density(x, y, box);
 
   // Thinned evenly: the order of the draws does not matter to the eye.
   std::vector<double> x_shown, y_shown;
+  const std::size_t points_drawn = size == FigureSize::wide ? points_drawn_wide : points_drawn_wide / 2;
   const double step = std::max(1.0, static_cast<double>(x.size()) / static_cast<double>(points_drawn));
   for (double at = 0.0; at < static_cast<double>(x.size()); at += step) {
     x_shown.push_back(x[static_cast<std::size_t>(at)]);
