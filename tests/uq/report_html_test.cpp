@@ -23,7 +23,7 @@ std::string page_of(const CalibrationReport& report) {
 
 /// The page of the three cases, made once.
 const std::string& three_case_page() {
-  static const std::string& page = three_case_page();
+  static const std::string page = page_of(report_fixture::three_cases());
   return page;
 }
 
