@@ -49,7 +49,8 @@ struct LinearTangential {
     const double elastic = stiffness * length(spring);
     const bool sliding = elastic > cap;
     const double cut = sliding ? cap / elastic : 1.0;
-    const double dashpot = (sliding ? 0.0 : 1.0) * damping;  // a product: no load under a condition, which keeps lanes apart
+    const double dashpot =
+        (sliding ? 0.0 : 1.0) * damping;  // a product: no load under a condition, which keeps lanes apart
     const Vec3 kept = cut * spring;
     return {-stiffness * kept - dashpot * slip_velocity, kept};
   }
