@@ -1,0 +1,265 @@
+#include "uq/calibrate.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "data/error.hpp"
+#include "uq/diagnostics.hpp"
+#include "uq/posterior.hpp"
+#include "uq/quadrature.hpp"
+
+namespace uq {
+namespace {
+
+std::uint64_t seed_of(const data::Study& study, const CalibrateOptions& options) {
+  return options.seed.value_or(study.seed);
+}
+
+MixtureSamplerOptions sampler_options(const data::Study& study, const CalibrateOptions& options) {
+  MixtureSamplerOptions sampler = options.sampler;
+  sampler.seed = seed_of(study, options);
+  sampler.threads = options.threads;
+  return sampler;
+}
+
+/// Convergence of each parameter, and the Monte Carlo error of its mean in the study's unit.
+void add_diagnostics(CaseReport& report, const SampledCase& sampled) {
+  for (std::size_t k = 0; k < report.parameters.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    ParameterReport& parameter = report.parameters[k];
+    parameter.rhat = sampled.draws.rhat[column];
+    parameter.ess_bulk = sampled.draws.ess_bulk[column];
+    parameter.ess_tail = sampled.draws.ess_tail[column];
+    const data::Parameter& source = sampled.model->slots[k].prior.parameter();
+    Eigen::MatrixXd values = sampled.draws.coordinate(static_cast<int>(k));
+    for (double& value : values.reshaped()) value = source.unit.from_si(from_scaled(source, value));
+    parameter.mcse = mean_mcse(values);
+  }
+}
+
+/// Draws of the case's own parameters in the study's units, and their correlation.
+void add_draws(CaseReport& report, const CaseModel& model, const Eigen::MatrixXd& draws) {
+  const Eigen::Index own = model.own_count();
+  Eigen::MatrixXd values = draws.leftCols(own);
+  for (Eigen::Index k = 0; k < own; ++k) {
+    const data::Parameter& parameter = model.slots[static_cast<std::size_t>(k)].prior.parameter();
+    for (Eigen::Index i = 0; i < values.rows(); ++i)
+      values(i, k) = parameter.unit.from_si(from_scaled(parameter, values(i, k)));
+  }
+  const Eigen::MatrixXd centred = values.rowwise() - values.colwise().mean();
+  const Eigen::VectorXd length = centred.colwise().norm();
+  report.correlation.assign(static_cast<std::size_t>(own), std::vector<double>(static_cast<std::size_t>(own), 1.0));
+  for (Eigen::Index a = 0; a < own; ++a)
+    for (Eigen::Index b = 0; b < own; ++b)
+      if (a != b)
+        report.correlation[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =
+            centred.col(a).dot(centred.col(b)) / (length[a] * length[b]);
+  const Eigen::MatrixXd plotted = thinned(values, 1500);
+  for (Eigen::Index i = 0; i < plotted.rows(); ++i) {
+    std::vector<double> row;
+    for (Eigen::Index k = 0; k < own; ++k) row.push_back(plotted(i, k));
+    report.draws_for_plot.push_back(std::move(row));
+  }
+}
+
+/// Largest difference of mean and sd between draws and quadrature, in posterior sd.
+double difference(const Eigen::MatrixXd& draws, const Quadrature& exact) {
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < draws.cols(); ++k) {
+    const double mean = draws.col(k).mean();
+    const double sd = std::sqrt((draws.col(k).array() - mean).square().mean());
+    largest =
+        std::max({largest, std::abs(mean - exact.mean[k]) / exact.sd[k], std::abs(sd - exact.sd[k]) / exact.sd[k]});
+  }
+  return largest;
+}
+
+void add_quadrature(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
+                    const CalibrateOptions& options) {
+  const Quadrature exact = integrate(
+      posterior_target(sampled.model),
+      {.tolerance = 1e-4, .evaluations_max = 60000, .threads = options.threads, .guides = thinned(draws, 1000)});
+  if (!exact.resolved) return;
+  report.grid_difference = difference(draws, exact);
+  // The draws' own error is 1 / sqrt(ESS) sd; beyond five of these the two disagree.
+  double least = sampled.draws.ess_bulk.minCoeff();
+  least = std::min(least, sampled.draws.ess_tail.minCoeff());
+  if (*report.grid_difference > 5.0 / std::sqrt(least))
+    report.warnings.push_back(fmt::format("case {}: sampler and grid quadrature differ by {:.2g} posterior sd",
+                                          report.name, *report.grid_difference));
+}
+
+void add_warnings(CaseReport& report, const SampledCase& sampled) {
+  if (!report.converged)
+    report.warnings.push_back(
+        fmt::format("case {}: the chains have not converged: {}", report.name, sampled.draws.reason));
+  if (!report.fits) report.warnings.push_back(fmt::format("case {}: the model does not fit the data", report.name));
+  if (!(report.log_evidence_error < 0.2))
+    report.warnings.push_back(
+        fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
+  for (const auto& slot : sampled.model->slots)
+    if (slot.prior.kept_mass() < 0.99)
+      report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
+                                            slot.label, 100.0 * (1.0 - slot.prior.kept_mass())));
+}
+
+}  // namespace
+
+SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
+                        const CalibrateOptions& options) {
+  SampledCase sampled;
+  sampled.model = std::make_shared<const CaseModel>(build_case(study, emulators, case_index));
+  check_priors(study, *sampled.model);
+  sampled.draws = sample_mixture(posterior_target(sampled.model), sampler_options(study, options));
+  return sampled;
+}
+
+CaseReport report_case(const data::Study& study, const SampledCase& sampled, const CalibrateOptions& options) {
+  const CaseModel& model = *sampled.model;
+  CaseReport report;
+  report.name = model.name;
+  report.linked = model.linked;
+  report.observed_sets = model.observed_sets;
+  for (const auto& name : model.observed_sets) {
+    std::string note;
+    for (const auto& line : study.observations[study.observation_index(name).value()].header)
+      note += (note.empty() ? "" : "\n") + line;
+    report.observed_notes.push_back(note);
+  }
+  report.converged = sampled.draws.converged;
+  report.chains = static_cast<int>(sampled.draws.chains.size());
+  report.divergences = sampled.draws.divergences;
+  report.log_evidence = sampled.draws.log_evidence;
+  report.log_evidence_error = sampled.draws.log_evidence_error;
+  if (sampled.draws.chains.empty()) {
+    // Nothing was drawn: no verdict, and the reason in the first lines.
+    report.fits = false;
+    report.warnings.push_back(fmt::format("case {}: sampling failed: {}", report.name, sampled.draws.reason));
+    report.finding = "The posterior could not be sampled: " + sampled.draws.reason + ".";
+    report.consequence = "There is no result for this case.";
+    report.remedy = "Check the priors and the measurement errors.";
+    return report;
+  }
+  report.draws = static_cast<int>(sampled.draws.chains.front().x.rows());
+
+  const Eigen::MatrixXd draws = sampled.draws.pooled();
+  Identification found = identify(model, draws, options.identify);
+  report.chi2 = found.check.chi2;
+  report.dof = found.check.dof;
+  report.ppp = found.check.predictive_p;
+  report.fits = found.fits;
+  report.parameters = std::move(found.parameters);
+  report.fisher_condition = found.fisher.condition;
+  report.collinearity = found.fisher.collinearity;
+  report.traded = found.traded;
+  add_diagnostics(report, sampled);
+  add_draws(report, model, draws);
+  const std::uint64_t seed = seed_of(study, options);
+  report.predictive = predictive_points(study, model, draws, seed);
+  report.curves = predictive_curves(study, model, draws, seed);
+  if (options.quadrature && model.dimension() <= 2) add_quadrature(report, sampled, draws, options);
+  const Words words = summarise(model, found, options.identify.thresholds);
+  report.finding = words.finding;
+  report.consequence = words.consequence;
+  report.remedy = words.remedy;
+  add_warnings(report, sampled);
+  return report;
+}
+
+std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& sampled, std::size_t case_index,
+                                   const CalibrateOptions& options) {
+  std::vector<ErrorScan> scans;
+  if (sampled.draws.chains.empty()) return scans;
+  const Eigen::VectorXd truth = mean_prediction(*sampled.model, sampled.draws.pooled());
+  data::RandomStream random(seed_of(study, options), data::Purpose::measurement_noise,
+                            static_cast<std::uint32_t>(case_index));
+  Eigen::VectorXd normal(truth.size());
+  for (double& value : normal) value = random.normal();
+  for (const double error : options.error_scan) {
+    const Eigen::VectorXd sd = error * truth.cwiseAbs();
+    const Eigen::VectorXd y = truth + sd.cwiseProduct(normal);
+    const auto model = std::make_shared<const CaseModel>(with_data(*sampled.model, y, sd.cwiseAbs2()));
+    MixtureSamplerOptions sampler = sampler_options(study, options);
+    sampler.draws = 500;
+    const Draws draws = sample_mixture(posterior_target(model), sampler);
+    ErrorScan scan;
+    scan.case_name = model->name;
+    scan.relative_error = error;
+    if (!draws.chains.empty()) {
+      const Identification found = identify(*model, draws.pooled(), options.identify);
+      scan.ppp = found.check.predictive_p;
+      for (const auto& parameter : found.parameters) {
+        scan.parameters.push_back(parameter.name);
+        std::string verdict = to_text(parameter.verdict);
+        if (parameter.reason) verdict += " (" + *parameter.reason + ")";
+        if (parameter.borderline) verdict += ", borderline";
+        scan.verdicts.push_back(verdict);
+        scan.mean.push_back(parameter.mean);
+        scan.sd.push_back(parameter.sd);
+      }
+    }
+    scans.push_back(std::move(scan));
+  }
+  return scans;
+}
+
+Calibration calibrate_all(const data::Study& study, const data::RunTable& table, const CalibrateOptions& options) {
+  if (study.cases.empty())
+    throw data::InputError(data::ExitStatus::bad_study, {study.file, "the study has no [[calibrate]] case",
+                                                         "add one: what to free, given which observations"});
+  const auto begin = std::chrono::steady_clock::now();
+  const double steps = 1.0 + static_cast<double>(study.cases.size()) * (options.error_scan.empty() ? 1.0 : 2.0);
+  double done = 0.0;
+  auto tell = [&](const std::string& step) {
+    if (options.progress) options.progress(step, done / steps);
+    done += 1.0;
+  };
+  Calibration result;
+  CalibrationReport& report = result.report;
+  report.study_name = study.name;
+  report.study_description = study.description;
+  report.study_file = study.file;
+
+  tell("surrogates");
+  SurrogateOptions surrogates = options.surrogates;
+  surrogates.threads = options.threads;
+  surrogates.fit.seed = seed_of(study, options);
+  result.surrogates = fit_surrogates(study, table, surrogates);
+  const std::vector<Emulator> emulators = emulators_of(result.surrogates);
+  for (const auto& fitted : result.surrogates) {
+    report.surrogates.push_back(fitted.report);
+    if (fitted.report.verdict == "unusable")
+      report.warnings.push_back(fmt::format("the surrogate of {}{} is unusable: {}", fitted.report.output,
+                                            fitted.report.material.empty() ? "" : " of " + fitted.report.material,
+                                            fitted.report.finding));
+  }
+
+  for (std::size_t index = 0; index < study.cases.size(); ++index) {
+    tell("case " + study.cases[index].name);
+    result.cases.push_back(sample_case(study, emulators, index, options));
+    report.cases.push_back(report_case(study, result.cases.back(), options));
+    const CaseReport& made = report.cases.back();
+    report.warnings.insert(report.warnings.end(), made.warnings.begin(), made.warnings.end());
+    if (options.error_scan.empty()) continue;
+    tell("error scan of case " + study.cases[index].name);
+    for (auto& scan : scan_errors(study, result.cases.back(), index, options))
+      report.error_scan.push_back(std::move(scan));
+  }
+  report.warning = !report.warnings.empty();
+  report.thresholds = describe(options.identify.thresholds);
+  report.provenance.emplace_back("seed", std::to_string(seed_of(study, options)));
+  report.provenance.emplace_back("runs in the table", std::to_string(table.rows.size()));
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  report.provenance.emplace_back("calibration time", fmt::format("{:.1f} s", elapsed.count()));
+  if (options.progress) options.progress("done", 1.0);
+  return result;
+}
+
+CalibrationReport calibrate(const data::Study& study, const data::RunTable& table, const CalibrateOptions& options) {
+  return calibrate_all(study, table, options).report;
+}
+
+}  // namespace uq

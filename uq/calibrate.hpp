@@ -1,0 +1,61 @@
+#pragma once
+// The main job: surrogates, posterior draws, verdicts and figures' data for every case of a study. Its parts are the
+// commands `fit`, `sample` and `calibrate`:
+//   fit_surrogates (uq/surrogates.hpp) -> sample_case -> report_case -> scan_errors
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data/run_table.hpp"
+#include "data/study.hpp"
+#include "uq/draws.hpp"
+#include "uq/identifiability.hpp"
+#include "uq/mixture_sampler.hpp"
+#include "uq/results.hpp"
+#include "uq/surrogates.hpp"
+
+namespace uq {
+
+struct CalibrateOptions {
+  SurrogateOptions surrogates = {};
+  MixtureSamplerOptions sampler = {};  ///< its seed and threads are set from those below
+  IdentifyOptions identify = {};
+  std::vector<double> error_scan = {0.01, 0.03, 0.05};  ///< relative measurement errors; empty: no scan
+  bool quadrature = true;                               ///< check one- and two-dimensional posteriors by integration
+  int threads = 0;                                      ///< 0: as many as the machine has
+  std::optional<std::uint64_t> seed = {};               ///< instead of the study's
+  std::function<void(const std::string& step, double share)> progress = {};  ///< share of the whole job done, 0 to 1
+};
+
+/// One case, resolved and sampled.
+struct SampledCase {
+  std::shared_ptr<const CaseModel> model;
+  Draws draws;
+};
+
+struct Calibration {
+  CalibrationReport report;
+  std::vector<FittedSurrogate> surrogates;
+  std::vector<SampledCase> cases;  ///< in the study's order
+};
+
+SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
+                        const CalibrateOptions& options = {});
+
+CaseReport report_case(const data::Study& study, const SampledCase& sampled, const CalibrateOptions& options = {});
+
+/// What the verdicts would be at other measurement errors. The observed numbers keep the noise that they have, so they
+/// are replaced by the posterior mean of what is predicted there, plus noise of the stated relative error, the same
+/// standard normal numbers (the study's seed, the case's index) at every error.
+std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& sampled, std::size_t case_index,
+                                   const CalibrateOptions& options = {});
+
+Calibration calibrate_all(const data::Study& study, const data::RunTable& table, const CalibrateOptions& options = {});
+
+/// The report alone.
+CalibrationReport calibrate(const data::Study& study, const data::RunTable& table,
+                            const CalibrateOptions& options = {});
+
+}  // namespace uq

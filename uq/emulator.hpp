@@ -1,0 +1,42 @@
+#pragma once
+// What predicts one output of one material: a Gaussian process over the inputs that its runs vary, or any other
+// function. Inputs are in the unit cube: parameters by uq/prior.hpp's u, controls by (x - low) / (high - low).
+#include <Eigen/Dense>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "data/study.hpp"
+#include "surrogate/gaussian_process.hpp"
+
+namespace uq {
+
+enum class InputKind { parameter, control };
+
+struct EmulatorInput {
+  InputKind kind = InputKind::parameter;
+  std::size_t index = 0;  ///< in Study::parameters or Study::controls
+};
+
+struct Emulator {
+  std::string material;
+  std::size_t output = 0;                   ///< in Study::outputs
+  std::vector<EmulatorInput> inputs;        ///< columns of the points
+  std::map<std::size_t, double> constants;  ///< parameters that the material's runs hold at one value, SI
+  std::map<std::size_t, std::pair<double, double>> control_range;  ///< SI, of the runs
+  std::function<surrogate::Prediction(const Eigen::MatrixXd& points)> predict;
+  /// Derivatives to a common shift of each coordinate of all rows; empty where there are none.
+  std::function<surrogate::PredictionGradient(const Eigen::MatrixXd& points, std::span<const int> coordinates)>
+      predict_with_gradient = {};
+  /// Points stacked in groups of `group` rows; empty where there is none.
+  std::function<std::vector<surrogate::Prediction>(const Eigen::MatrixXd& points, int group)> predict_batch = {};
+};
+
+/// The process as an emulator; it is shared, not copied.
+Emulator make_emulator(std::shared_ptr<const surrogate::GaussianProcess> process, std::string material,
+                       std::size_t output, std::vector<EmulatorInput> inputs);
+
+}  // namespace uq

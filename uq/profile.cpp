@@ -1,0 +1,190 @@
+#include "uq/profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "uq/posterior.hpp"
+
+namespace uq {
+namespace {
+
+/// Values at which unknown k is held: spread over the support, and denser over where the draws lie.
+std::vector<double> held_values(const Box& box, int k, const Eigen::VectorXd& draws, double best,
+                                const ProfileOptions& options) {
+  const double low = box.lower[k], high = box.upper[k];
+  std::vector<double> values = {best};
+  auto spread = [&](double from, double to, int count) {
+    for (int i = 0; i < count; ++i) values.push_back(from + (to - from) * i / (count - 1));
+  };
+  spread(low, high, options.even_points);
+  const double mean = draws.mean();
+  const double sd = std::sqrt((draws.array() - mean).square().mean());
+  spread(std::max(low, mean - 3.5 * sd), std::min(high, mean + 3.5 * sd), options.near_points);
+  std::sort(values.begin(), values.end());
+  const double apart = 1e-6 * (high - low);
+  values.erase(std::unique(values.begin(), values.end(), [&](double a, double b) { return b - a < apart; }),
+               values.end());
+  return values;
+}
+
+/// The most likely draw near u_k = value, or nothing when none is near.
+std::optional<Eigen::VectorXd> draw_near(const Guides& guides, int k, double value, double width) {
+  std::optional<Eigen::Index> chosen;
+  for (Eigen::Index i = 0; i < guides.draws.rows(); ++i)
+    if (std::abs(guides.draws(i, k) - value) < width &&
+        (!chosen || guides.log_likelihood[i] > guides.log_likelihood[*chosen]))
+      chosen = i;
+  if (!chosen) return {};
+  return Eigen::VectorXd(guides.draws.row(*chosen).transpose());
+}
+
+Differentiable likelihood_of(const CaseModel& model) {
+  return [&model](const Eigen::VectorXd& u) { return log_likelihood_gradient(model, u); };
+}
+
+/// Bisection for the crossing between an inside and an outside value of unknown k.
+double crossing(const CaseModel& model, const Box& box, Held inside, Held outside, const Eigen::VectorXd& start,
+                double level) {
+  Eigen::VectorXd warm = start;
+  for (int i = 0; i < 14; ++i) {
+    const double middle = 0.5 * (inside.value + outside.value);
+    const Maximum found = maximise(likelihood_of(model), box, warm.transpose(), Held{inside.coordinate, middle});
+    if (found.value >= level) {
+      inside.value = middle;
+      warm = found.x;
+    } else {
+      outside.value = middle;
+    }
+  }
+  return 0.5 * (inside.value + outside.value);
+}
+
+Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guides, const Maximum& best,
+              const ProfileOptions& options) {
+  const std::vector<double> values = held_values(box, k, guides.draws.col(k), best.x[k], options);
+  const auto count = static_cast<Eigen::Index>(values.size());
+  Profile profile{.unknown = k,
+                  .u = Eigen::Map<const Eigen::VectorXd>(values.data(), count),
+                  .deviance = Eigen::VectorXd(count),
+                  .path = Eigen::MatrixXd(count, best.x.size()),
+                  .low = {},
+                  .high = {}};
+  Eigen::VectorXd level(count);
+  const auto centre = std::lower_bound(values.begin(), values.end(), best.x[k] - 1e-9) - values.begin();
+  const double width = 0.02 * (box.upper[k] - box.lower[k]);
+  auto solve = [&](Eigen::Index i, const Eigen::VectorXd& neighbour) {
+    Eigen::MatrixXd starts = neighbour.transpose();
+    if (const auto near = draw_near(guides, k, values[static_cast<std::size_t>(i)], width)) {
+      starts.conservativeResize(2, Eigen::NoChange);
+      starts.row(1) = near->transpose();
+    }
+    const Maximum found = maximise(likelihood_of(model), box, starts, Held{k, values[static_cast<std::size_t>(i)]});
+    level[i] = found.value;
+    profile.path.row(i) = found.x.transpose();
+  };
+  // Outward from the best fit, each start from its inner neighbour, then once inward from the ends where that is
+  // better.
+  const auto middle = static_cast<Eigen::Index>(std::min<std::ptrdiff_t>(centre, count - 1));
+  solve(middle, best.x);
+  for (Eigen::Index i = middle + 1; i < count; ++i) solve(i, profile.path.row(i - 1).transpose());
+  for (Eigen::Index i = middle - 1; i >= 0; --i) solve(i, profile.path.row(i + 1).transpose());
+  auto improve = [&](Eigen::Index i, Eigen::Index from) {
+    const Eigen::VectorXd start = profile.path.row(from).transpose();
+    Eigen::VectorXd moved = start;
+    moved[k] = values[static_cast<std::size_t>(i)];
+    if (log_likelihood(model, moved) <= level[i]) return;
+    const Maximum found =
+        maximise(likelihood_of(model), box, start.transpose(), Held{k, values[static_cast<std::size_t>(i)]});
+    if (found.value <= level[i]) return;
+    level[i] = found.value;
+    profile.path.row(i) = found.x.transpose();
+  };
+  for (Eigen::Index i = count - 2; i >= middle; --i) improve(i, i + 1);
+  for (Eigen::Index i = 1; i <= middle; ++i) improve(i, i - 1);
+  profile.deviance = level;  // turned into deviances once the largest likelihood of all is known
+  return profile;
+}
+
+/// From log likelihoods to deviances, and the ends of the interval.
+void finish(const CaseModel& model, const Box& box, Profile& profile, const Maximum& best, double drop) {
+  const Eigen::VectorXd level = profile.deviance;
+  profile.deviance = (2.0 * (best.value - level.array())).max(0.0);
+  const Eigen::Index count = level.size();
+  profile.deviance_at_low = profile.deviance[0];
+  profile.deviance_at_high = profile.deviance[count - 1];
+  Eigen::Index first = 0, last = count - 1;
+  while (first < count && profile.deviance[first] > drop) ++first;
+  while (last >= 0 && profile.deviance[last] > drop) --last;
+  if (first == count) return;  // no point inside: the best fit itself is one, so this does not happen
+  const double wanted = best.value - 0.5 * drop;
+  const int k = profile.unknown;
+  if (first > 0)
+    profile.low = crossing(model, box, {k, profile.u[first]}, {k, profile.u[first - 1]},
+                           profile.path.row(first).transpose(), wanted);
+  if (last < count - 1)
+    profile.high = crossing(model, box, {k, profile.u[last]}, {k, profile.u[last + 1]},
+                            profile.path.row(last).transpose(), wanted);
+}
+
+}  // namespace
+
+Maximum maximum_likelihood(const CaseModel& model, const Eigen::MatrixXd& starts) {
+  return maximise(likelihood_of(model), {model.lower(), model.upper()}, starts);
+}
+
+Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const ProfileOptions& options) {
+  const Box box{model.lower(), model.upper()};
+  // Starts: the most likely draws.
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(guides.draws.rows()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const std::size_t top = std::min<std::size_t>(4, order.size());
+  std::partial_sort(
+      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(top), order.end(),
+      [&](Eigen::Index a, Eigen::Index b) { return guides.log_likelihood[a] > guides.log_likelihood[b]; });
+  Eigen::MatrixXd starts(static_cast<Eigen::Index>(top), model.dimension());
+  for (std::size_t i = 0; i < top; ++i) starts.row(static_cast<Eigen::Index>(i)) = guides.draws.row(order[i]);
+
+  Profiles found{.profiles = {}, .best = maximum_likelihood(model, starts)};
+  for (int k = 0; k < model.dimension(); ++k) {
+    if (!model.slots[static_cast<std::size_t>(k)].own) continue;
+    Profile profile = sweep(model, box, k, guides, found.best, options);
+    Eigen::Index highest = 0;
+    if (profile.deviance.maxCoeff(&highest) > found.best.value) {
+      found.best.value = profile.deviance[highest];
+      found.best.x = profile.path.row(highest).transpose();
+    }
+    found.profiles.push_back(std::move(profile));
+  }
+  for (auto& profile : found.profiles) finish(model, box, profile, found.best, options.drop);
+  return found;
+}
+
+NoiseFree noise_free_deviance(const CaseModel& model, const Profile& profile, const Eigen::VectorXd& best,
+                              double variance_factor) {
+  const Box box{model.lower(), model.upper()};
+  const Eigen::VectorXd truth = predict(model, best).mean;
+  const Eigen::VectorXd variance = variance_factor * observed_variance(model);
+  auto match = [&](const Eigen::VectorXd& u) { return -chi_squared(predict(model, u), variance, truth); };
+  const Differentiable function = with_differences(match, box);
+  // Followed along the profile's path towards each bound, so that a curved ridge is not lost.
+  auto follow = [&](Eigen::Index from, Eigen::Index to) {
+    const Eigen::Index step = to >= from ? 1 : -1;
+    Eigen::VectorXd at = best;
+    double deviance = 0.0;
+    for (Eigen::Index i = from; step > 0 ? i <= to : i >= to; i += step) {
+      Eigen::MatrixXd starts(2, at.size());
+      starts << at.transpose(), profile.path.row(i);
+      const Maximum found = maximise(function, box, starts, Held{profile.unknown, profile.u[i]});
+      at = found.x;
+      deviance = std::max(deviance, -found.value);
+    }
+    return deviance;
+  };
+  Eigen::Index nearest = 0;
+  (profile.u.array() - best[profile.unknown]).abs().minCoeff(&nearest);
+  return {.at_low = follow(nearest, 0), .at_high = follow(nearest, profile.u.size() - 1)};
+}
+
+}  // namespace uq
