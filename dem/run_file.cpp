@@ -1,0 +1,202 @@
+#include "dem/run_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+
+#include "data/atomic_file.hpp"
+#include "data/error.hpp"
+#include "data/hdf5.hpp"
+#include "data/provenance.hpp"
+#include "dem/target.hpp"
+
+namespace dem {
+namespace {
+
+constexpr std::int64_t format = 1;
+
+/// Calls visit(name, vector) for each vector of the state; rows are plain data.
+template <class AnyState, class Visit>
+void each_vector(AnyState& s, Visit&& visit) {
+  visit("turning", s.turning);
+  visit("position", s.position);
+  visit("motion", s.motion);
+  visit("half", s.half);
+  visit("load", s.load);
+  visit("reference", s.reference);
+  visit("id", s.id);
+  visit("first", s.first);
+  visit("partner", s.partner);
+  visit("in_range", s.in_range);
+  visit("spring", s.spring);
+  visit("wall", s.wall);
+  visit("wall_first", s.wall_first);
+  visit("features", s.features);
+  visit("angle_at_rebuild", s.angle_at_rebuild);
+}
+
+template <class AnySeries, class Visit>
+void each_series(AnySeries& s, Visit&& visit) {
+  visit("time", "s", s.time);
+  visit("torque", "N m", s.torque);
+  visit("axial_flow", "kg/s", s.axial_flow);
+  visit("coordination", "1", s.coordination);
+  visit("kinetic_energy", "J", s.kinetic_energy);
+  visit("normal_stress", "Pa", s.normal_stress);
+}
+
+void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
+  group.set("step", static_cast<std::int64_t>(now.state.step));
+  group.set("rebuilds", static_cast<std::int64_t>(now.state.rebuilds));
+  each_vector(now.state, [&](const char* name, const auto& rows) {
+    const std::size_t row = sizeof(rows[0]);
+    std::vector<std::uint8_t> bytes(rows.size() * row);
+    if (!bytes.empty()) std::memcpy(bytes.data(), rows.data(), bytes.size());
+    group.write(name, bytes, {rows.size(), row});
+  });
+  const Progressing& p = now.under_way;
+  group.write("under_way", std::vector<double>{static_cast<double>(p.steps), p.torque, p.contacts, p.virial,
+                                               static_cast<double>(p.deep_contacts), p.max_overlap, p.cpu_seconds});
+}
+
+Checkpoint read_checkpoint(const data::Hdf5Group& group) {
+  Checkpoint now;
+  now.state.step = static_cast<std::uint64_t>(group.integer("step"));
+  now.state.rebuilds = static_cast<std::uint64_t>(group.integer("rebuilds"));
+  each_vector(now.state, [&](const char* name, auto& rows) {
+    const auto bytes = group.read<std::uint8_t>(name);
+    const std::size_t row = sizeof(rows[0]);
+    if (bytes.shape.size() != 2 || bytes.shape[1] != row) {
+      throw data::InputError(data::ExitStatus::bad_data, {group.place(name), "is a checkpoint of another build",
+                                                          "start the run again from the beginning"});
+    }
+    rows.resize(bytes.shape[0]);
+    if (!rows.empty()) std::memcpy(static_cast<void*>(rows.data()), bytes.values.data(), bytes.values.size());
+  });
+  const std::vector<double> p = group.read<double>("under_way").values;
+  if (p.size() != 7)
+    throw data::InputError(data::ExitStatus::bad_data,
+                           {group.place("under_way"), "does not have 7 numbers", "start the run again"});
+  now.under_way = {static_cast<std::uint64_t>(p[0]), p[1], p[2], p[3], static_cast<std::uint64_t>(p[4]), p[5], p[6]};
+  return now;
+}
+
+void write_diagnostics(const data::Hdf5Group& group, const Diagnostics& g) {
+  const Derived& d = g.derived;
+  const std::array<std::pair<const char*, double>, 17> numbers{
+      {{"sphere_mass_kg", d.mass},
+       {"weight_N", d.weight},
+       {"length_scale_m", d.length_scale},
+       {"pull_off_N", d.pull_off},
+       {"wall_pull_off_N", d.wall_pull_off},
+       {"bond_number", d.bond},
+       {"wall_bond_number", d.wall_bond},
+       {"hamaker_J", d.hamaker},
+       {"original_hamaker_J", d.original_hamaker},
+       {"contact_duration_s", d.contact_duration},
+       {"time_step_s", d.time_step},
+       {"skin_m", d.skin},
+       {"max_overlap_of_radius", g.max_overlap},
+       {"simulated_s", g.simulated},
+       {"particle_steps_per_second", g.steps_per_second},
+       {"steps", static_cast<double>(g.steps)},
+       {"deep_contacts", static_cast<double>(g.deep_contacts)}}};
+  for (const auto& [name, value] : numbers) group.set(name, value);
+  group.set("spheres", static_cast<std::int64_t>(d.spheres));
+  group.set("rebuilds", static_cast<std::int64_t>(g.rebuilds));
+  group.set("threads", static_cast<std::int64_t>(g.threads));
+}
+
+}  // namespace
+
+void write_run(const std::string& path, const Case& c, const RunResult& result) {
+  data::write_atomically(path, [&](const std::string& temporary) {
+    const data::Hdf5Group file = data::create_hdf5(temporary);
+    file.set("format", format);
+    for (const auto& [name, value] : data::provenance()) file.set(name, value);
+    file.set("isa", data::built_isa());
+    file.set("seed", fmt::format("{}", result.seed));
+    file.set("status", static_cast<std::int64_t>(result.status));
+    file.set("reason", result.reason);
+    file.set("material", c.material.name);
+    file.set("settings", settings_text(c));
+    file.set("cpu_seconds", result.summary.cpu_seconds);
+    file.write_texts("warnings", result.warnings);
+    const data::Hdf5Group series = file.create_group("series");
+    each_series(result.series, [&](const char* name, const char* unit, const std::vector<double>& values) {
+      series.write(name, values);
+      series.set("unit", unit, name);
+    });
+    const data::Hdf5Group summary = file.create_group("summary");
+    std::vector<std::string> names, units;
+    std::array<std::vector<double>, 7> columns;
+    for (std::size_t k = 0; k < result.summary.mean.size(); ++k) {
+      const data::SeriesMean& m = result.summary.mean[k];
+      names.push_back(outputs()[k].name);
+      units.push_back(outputs()[k].unit);
+      const std::array<double, 7> row{m.mean,
+                                      m.standard_error,
+                                      m.sd,
+                                      m.integrated_time,
+                                      m.effective_samples,
+                                      static_cast<double>(m.dropped),
+                                      m.reliable ? 1.0 : 0.0};
+      for (std::size_t j = 0; j < row.size(); ++j) columns[j].push_back(row[j]);
+    }
+    summary.write_texts("names", names);
+    summary.write_texts("units", units);
+    constexpr std::array<const char*, 7> heads{
+        "mean", "standard_error", "sd", "integrated_time", "effective_samples", "dropped", "reliable"};
+    for (std::size_t j = 0; j < heads.size(); ++j) summary.write(heads[j], columns[j]);
+    summary.set("reached_target", static_cast<std::int64_t>(result.summary.reached_target));
+    write_diagnostics(file.create_group("diagnostics"), result.diagnostics);
+    write_checkpoint(file.create_group("checkpoint"), result.checkpoint);
+    file.flush();
+  });
+}
+
+SavedRun read_run(const std::string& path) {
+  const data::Hdf5Group file = data::open_hdf5(path);
+  if (!file.has_attribute("format") || file.integer("format") != format) {
+    throw data::InputError(data::ExitStatus::bad_data,
+                           {path, "is not a run of this program", "remove it, and the run is made again"});
+  }
+  SavedRun saved;
+  RunResult& r = saved.result;
+  saved.settings = file.text("settings");
+  saved.isa = file.text("isa");
+  r.seed = std::stoull(file.text("seed"));
+  r.status = static_cast<RunStatus>(file.integer("status"));
+  r.reason = file.text("reason");
+  r.warnings = file.read_texts("warnings");
+  r.summary.cpu_seconds = file.number("cpu_seconds");
+  const data::Hdf5Group series = file.group("series");
+  each_series(r.series, [&](const char* name, const char*, std::vector<double>& values) {
+    values = series.read<double>(name).values;
+  });
+  const data::Hdf5Group summary = file.group("summary");
+  const auto column = [&](const char* name) { return summary.read<double>(name).values; };
+  const std::vector<double> mean = column("mean"), error = column("standard_error"), sd = column("sd"),
+                            time = column("integrated_time"), samples = column("effective_samples"),
+                            dropped = column("dropped"), reliable = column("reliable");
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    r.summary.mean.push_back(
+        {mean[k], error[k], sd[k], time[k], samples[k], static_cast<std::size_t>(dropped[k]), reliable[k] != 0.0});
+  }
+  r.summary.reached_target = summary.integer("reached_target") != 0;
+  r.checkpoint = read_checkpoint(file.group("checkpoint"));
+  r.checkpoint.series = r.series;
+  Diagnostics& g = r.diagnostics;
+  const data::Hdf5Group diagnostics = file.group("diagnostics");
+  g.steps = static_cast<std::uint64_t>(diagnostics.number("steps"));
+  g.rebuilds = static_cast<std::uint64_t>(diagnostics.integer("rebuilds"));
+  g.deep_contacts = static_cast<std::uint64_t>(diagnostics.number("deep_contacts"));
+  g.max_overlap = diagnostics.number("max_overlap_of_radius");
+  g.simulated = diagnostics.number("simulated_s");
+  g.steps_per_second = diagnostics.number("particle_steps_per_second");
+  g.threads = static_cast<int>(diagnostics.integer("threads"));
+  return saved;
+}
+
+}  // namespace dem
