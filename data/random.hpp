@@ -74,7 +74,8 @@ class RandomStream {
 
  private:
   void refill() {
-    words_ = philox({static_cast<std::uint32_t>(block_), static_cast<std::uint32_t>(block_ >> 32), index_, purpose_}, key_);
+    words_ =
+        philox({static_cast<std::uint32_t>(block_), static_cast<std::uint32_t>(block_ >> 32), index_, purpose_}, key_);
     ++block_;
     used_ = 0;
   }

@@ -41,8 +41,7 @@ TEST_CASE("on a terminal the bar is redrawn in place at intervals and ends its l
   }
   CHECK(std::count(screen.text.begin(), screen.text.end(), '\n') == 1);
   CHECK(std::count(screen.text.begin(), screen.text.end(), '\r') <= 55);
-  CHECK(screen.text.find("fit [########################] 100 %  1000 of 1000, 100 /s, took 10 s") !=
-        std::string::npos);
+  CHECK(screen.text.find("fit [########################] 100 %  1000 of 1000, 100 /s, took 10 s") != std::string::npos);
   CHECK(screen.text.back() == '\n');
 }
 
