@@ -104,7 +104,7 @@ Figure predictive_figure(const CaseReport& result, const PredictiveCurve& curve,
                               x_range.high, y_range.low, y_range.high) +
                   fmt::format(
                       "plot '{0}.dat' index 'band' using ($1*sx):($3*sy):($4*sy) with filledcurves "
-                      "linecolor rgb '{1}' title 'model, 90 % of the posterior', \\\n"
+                      "linecolor rgb '{1}' title 'model, 90 %', \\\n"
                       "  '' index 'band' using ($1*sx):($2*sy) with lines linecolor rgb '{2}' linewidth 2 "
                       "title 'model, mean', \\\n"
                       "  '' index 'observed' using ($1*sx):($2*sy):($3*sy) with yerrorbars linecolor rgb '{3}' "

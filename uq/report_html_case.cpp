@@ -106,12 +106,16 @@ std::string predictive_table(const CaseReport& result, std::size_t rows_shown_op
     }
     return std::string();
   };
-  Table table{.caption = "Observed and modelled at the observed points.", .head = {}, .rows = {}};
+  Table table{.caption =
+                  "Observed and modelled at the observed points. The interval is that of a new measurement with the "
+                  "same error.",
+              .head = {},
+              .rows = {}};
   if (several_sets) table.head.push_back({"Observations"});
   for (const std::string& control : controls)
     table.head.push_back(number(text(name_in_unit(control, unit_of(control)))));
   for (const char* const heading :
-       {"Output", "Observed \u00b1 standard error", "Model, mean", "Model, 90\u00a0% interval"}) {
+       {"Output", "Observed \u00b1 standard error", "Model, mean", "Predicted measurement, 90\u00a0%"}) {
     table.head.push_back(heading == std::string_view("Output") ? Cell{heading} : number(heading));
   }
   for (const PredictivePoint& point : result.predictive) {
@@ -135,15 +139,18 @@ std::string predictive_table(const CaseReport& result, std::size_t rows_shown_op
 std::string predictive_part(const CaseReport& result, const std::string& id, const Context& context) {
   const auto curves = curves_to_draw(result);
   if (curves.empty() && result.predictive.empty()) return {};
+  // Curves made of the predictive points carry those points' measurement error.
+  const bool made_of_points = std::all_of(result.curves.begin(), result.curves.end(),
+                                          [](const PredictiveCurve& curve) { return curve.x.empty(); });
   std::string out = "<h3>Model against observation</h3>\n";
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const std::string set = curves[i].observation_set.empty() ? "" : " (" + text(curves[i].observation_set) + ")";
-    out += figure(
-        predictive_figure(result, curves[i], fmt::format("{}-predictive-{}", id, i + 1)),
-        fmt::format("{} against {}{}. Points: observed, bars of one standard error. Line and band: the model's mean "
-                    "and 90\u00a0% of its posterior, surrogate uncertainty included, measurement error not.",
-                    text(curves[i].output), text(curves[i].control), set),
-        context);
+    out +=
+        figure(predictive_figure(result, curves[i], fmt::format("{}-predictive-{}", id, i + 1)),
+               fmt::format("{} against {}{}. Points: observed, bars of one standard error. Line and band: the model's "
+                           "mean and 90\u00a0% of its posterior, surrogate uncertainty included, measurement error {}.",
+                           text(curves[i].output), text(curves[i].control), set, made_of_points ? "too" : "not"),
+               context);
   }
   return out + predictive_table(result, context.options.rows_shown_openly);
 }

@@ -54,6 +54,7 @@ struct TradedPair {
   std::vector<std::map<std::string, double>> equivalent;  ///< points along the ridge, each with every free parameter
 };
 
+/// The posterior predictive of a measurement at an observed point, its error included.
 struct PredictivePoint {
   std::map<std::string, double> controls;
   std::string output, unit;

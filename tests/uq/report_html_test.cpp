@@ -170,7 +170,9 @@ TEST_CASE("numbers that are not numbers are named as not available and drawn now
 TEST_CASE("without curves the band is drawn through the predictive points") {
   CalibrationReport report = report_fixture::three_cases();
   for (CaseReport& result : report.cases) result.curves.clear();
-  CHECK(count(page_of(report), "observed points with their errors") == 3);
+  const std::string page = page_of(report);
+  CHECK(count(page, "observed points with their errors") == 3);
+  CHECK(count(page, "measurement error too") == 3);
 }
 
 TEST_CASE("a missing gnuplot is named with what to install") {
