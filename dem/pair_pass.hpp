@@ -11,16 +11,21 @@
 
 namespace dem {
 
+/// Four doubles moved and added as one; lowered to what the instruction set has.
+typedef double Four __attribute__((vector_size(32), may_alias));
+inline const Four& four(const double& first) { return reinterpret_cast<const Four&>(first); }
+inline Four& four(double& first) { return reinterpret_cast<Four&>(first); }
+
 struct PairView {
   const PositionRow* position;
   const MotionRow* motion;
   const std::uint32_t* first;
   const std::uint32_t* partner;
   std::uint8_t* in_range;
-  Vec3* spring;
-  const Vec3* image;  ///< [27]
-  double time_step;   ///< s
-  double range;       ///< m, of the attraction
+  VectorRow* spring;
+  const VectorRow* image;  ///< [27]
+  double time_step;        ///< s
+  double range;            ///< m, of the attraction
 };
 
 struct Hit {
@@ -29,19 +34,19 @@ struct Hit {
 
 inline constexpr int lanes = 16;
 
-/// What one contact does: `force` on i (its negative on j), torques -arm moment on both.
-struct PairLoad {
-  std::uint32_t slot, i, j;
-  Vec3 force, moment;
-  double arm_i, arm_j;
-  double push, distance, overlap;
+/// Contacts under way: rows of four (x, y, z and padding) where whole rows are read or written, else plain arrays.
+struct alignas(64) Lanes {
+  double apart[lanes][4], velocity[lanes][4], roll[lanes][4], spring[lanes][4];  // roll: r_i spin_i + r_j spin_j
+  double force[lanes][4], moment[lanes][4];                                      // on i; torque is -arm moment on both
+  double sum[lanes], push[lanes], distance[lanes], arm[lanes];                   // sum of radii; arm / radius
 };
 
-/// `deliver(PairLoad)` is called for each slot in range of particles [begin, end), in slot order.
+/// `deliver(slot, i, j, lanes, k)` is called for each slot in range of particles [begin, end), in slot order.
 template <class Law, class Deliver>
 void pair_pass(Law law, PairView v, std::size_t begin, std::size_t end, Deliver&& deliver) {
   thread_local std::vector<Hit> hits;
   hits.resize(v.first[end] - v.first[begin] + lanes);
+  Hit* const list = hits.data();
   std::size_t count = 0;
   for (std::size_t i = begin; i < end; ++i) {
     const PositionRow a = v.position[i];
@@ -49,80 +54,63 @@ void pair_pass(Law law, PairView v, std::size_t begin, std::size_t end, Deliver&
     for (std::uint32_t slot = v.first[i]; slot < last; ++slot) {
       const std::uint32_t p = v.partner[slot];
       const PositionRow& b = v.position[p & partner_mask];
-      const Vec3& image = v.image[p >> image_shift];
-      const double dx = a.at.x - b.at.x - image.x, dy = a.at.y - b.at.y - image.y, dz = a.at.z - b.at.z - image.z;
+      const Vec3 apart = a.at - b.at - v.image[p >> image_shift].v;
       const double reach = a.radius + b.radius + v.range;
-      const bool near = dx * dx + dy * dy + dz * dz < reach * reach;
+      const bool near = dot(apart, apart) < reach * reach;
       // The flag of the step before rides in the top bit: a spring starts from nothing.
-      hits[count] = {slot | (static_cast<std::uint32_t>(v.in_range[slot]) << 31), static_cast<std::uint32_t>(i)};
+      list[count] = {slot | (static_cast<std::uint32_t>(v.in_range[slot]) << 31), static_cast<std::uint32_t>(i)};
       v.in_range[slot] = near;
       count += near;
     }
   }
-  for (std::size_t k = count; k < (count + lanes - 1) / lanes * lanes; ++k) hits[k] = hits[count - 1];
+  for (std::size_t k = count; k < (count + lanes - 1) / lanes * lanes; ++k) list[k] = list[count - 1];
 
-  struct alignas(64) Lanes {
-    double dx[lanes], dy[lanes], dz[lanes], sum[lanes];                       // separation, sum of the radii
-    double ux[lanes], uy[lanes], uz[lanes], wx[lanes], wy[lanes], wz[lanes];  // velocity, r spin
-    double sx[lanes], sy[lanes], sz[lanes];                                   // spring
-    double fx[lanes], fy[lanes], fz[lanes], mx[lanes], my[lanes], mz[lanes], push[lanes], distance[lanes];
-  } l;
+  Lanes l;
   for (std::size_t base = 0; base < count; base += lanes) {
     for (int k = 0; k < lanes; ++k) {
-      const Hit hit = hits[base + k];
+      const Hit hit = list[base + k];
       const std::uint32_t slot = hit.slot & 0x7fffffffu, p = v.partner[slot], j = p & partner_mask;
       const PositionRow &a = v.position[hit.i], &b = v.position[j];
       const MotionRow &ma = v.motion[hit.i], &mb = v.motion[j];
-      const Vec3& image = v.image[p >> image_shift];
-      l.dx[k] = a.at.x - b.at.x - image.x;
-      l.dy[k] = a.at.y - b.at.y - image.y;
-      l.dz[k] = a.at.z - b.at.z - image.z;
+      four(l.apart[k][0]) = four(a.at.x) - four(b.at.x) - four(v.image[p >> image_shift].v.x);
+      four(l.velocity[k][0]) = four(ma.velocity.x) - four(mb.velocity.x);
+      four(l.roll[k][0]) = a.radius * four(ma.spin.x) + b.radius * four(mb.spin.x);
+      const double keep = static_cast<double>(hit.slot >> 31);
+      four(l.spring[k][0]) = keep * four(v.spring[slot].v.x);
       l.sum[k] = a.radius + b.radius;
-      l.ux[k] = ma.velocity.x - mb.velocity.x;
-      l.uy[k] = ma.velocity.y - mb.velocity.y;
-      l.uz[k] = ma.velocity.z - mb.velocity.z;
-      l.wx[k] = a.radius * ma.spin.x + b.radius * mb.spin.x;
-      l.wy[k] = a.radius * ma.spin.y + b.radius * mb.spin.y;
-      l.wz[k] = a.radius * ma.spin.z + b.radius * mb.spin.z;
-      const double keep = (hit.slot >> 31) != 0 ? 1.0 : 0.0;
-      l.sx[k] = keep * v.spring[slot].x;
-      l.sy[k] = keep * v.spring[slot].y;
-      l.sz[k] = keep * v.spring[slot].z;
     }
     for (int k = 0; k < lanes; ++k) {
-      const double d = std::sqrt(l.dx[k] * l.dx[k] + l.dy[k] * l.dy[k] + l.dz[k] * l.dz[k]);
-      const Vec3 n = (1.0 / d) * Vec3{l.dx[k], l.dy[k], l.dz[k]};
+      const Vec3 apart{l.apart[k][0], l.apart[k][1], l.apart[k][2]};
+      const double d = length(apart);
+      const Vec3 n = (1.0 / d) * apart;
       const double arm = d / l.sum[k];  // arms r_i d / (r_i + r_j): to the contact point, and together the distance
-      const Vec3 surface_velocity = Vec3{l.ux[k], l.uy[k], l.uz[k]} - arm * cross(Vec3{l.wx[k], l.wy[k], l.wz[k]}, n);
-      const ContactForce c = law(n, l.sum[k] - d, surface_velocity, {l.sx[k], l.sy[k], l.sz[k]}, v.time_step);
-      l.fx[k] = c.push * n.x + c.tangential.x;
-      l.fy[k] = c.push * n.y + c.tangential.y;
-      l.fz[k] = c.push * n.z + c.tangential.z;
-      l.mx[k] = n.y * c.tangential.z - n.z * c.tangential.y;
-      l.my[k] = n.z * c.tangential.x - n.x * c.tangential.z;
-      l.mz[k] = n.x * c.tangential.y - n.y * c.tangential.x;
-      l.sx[k] = c.spring.x;
-      l.sy[k] = c.spring.y;
-      l.sz[k] = c.spring.z;
+      const Vec3 surface_velocity = Vec3{l.velocity[k][0], l.velocity[k][1], l.velocity[k][2]} -
+                                    arm * cross(Vec3{l.roll[k][0], l.roll[k][1], l.roll[k][2]}, n);
+      const ContactForce c =
+          law(n, l.sum[k] - d, surface_velocity, {l.spring[k][0], l.spring[k][1], l.spring[k][2]}, v.time_step);
+      const Vec3 moment = cross(n, c.tangential);
+      l.force[k][0] = c.push * n.x + c.tangential.x;
+      l.force[k][1] = c.push * n.y + c.tangential.y;
+      l.force[k][2] = c.push * n.z + c.tangential.z;
+      l.force[k][3] = 0.0;
+      l.moment[k][0] = moment.x;
+      l.moment[k][1] = moment.y;
+      l.moment[k][2] = moment.z;
+      l.moment[k][3] = 0.0;
+      l.spring[k][0] = c.spring.x;
+      l.spring[k][1] = c.spring.y;
+      l.spring[k][2] = c.spring.z;
+      l.spring[k][3] = 0.0;
       l.push[k] = c.push;
       l.distance[k] = d;
+      l.arm[k] = arm;
     }
     const int used = count - base < lanes ? static_cast<int>(count - base) : lanes;
     for (int k = 0; k < used; ++k) {
-      const Hit hit = hits[base + k];
-      const std::uint32_t slot = hit.slot & 0x7fffffffu, j = v.partner[slot] & partner_mask;
-      v.spring[slot] = {l.sx[k], l.sy[k], l.sz[k]};
-      const double arm = l.distance[k] / l.sum[k];
-      deliver(PairLoad{slot,
-                       hit.i,
-                       j,
-                       {l.fx[k], l.fy[k], l.fz[k]},
-                       {l.mx[k], l.my[k], l.mz[k]},
-                       v.position[hit.i].radius * arm,
-                       v.position[j].radius * arm,
-                       l.push[k],
-                       l.distance[k],
-                       l.sum[k] - l.distance[k]});
+      const Hit hit = list[base + k];
+      const std::uint32_t slot = hit.slot & 0x7fffffffu;
+      four(v.spring[slot].v.x) = four(l.spring[k][0]);
+      deliver(slot, hit.i, v.partner[slot] & partner_mask, l, k);
     }
   }
 }

@@ -30,6 +30,17 @@ int cell_along(double x, double low, double size, int n) {
   return std::clamp(static_cast<int>((x - low) / size), 0, n - 1);
 }
 
+/// A cell index put back into the box, and the image it came from: 0 below, 1 inside, 2 above.
+struct Wrapped {
+  int cell;
+  std::uint32_t image;
+};
+Wrapped wrap_cell(int cell, int n) {
+  if (cell < 0) return {cell + n, 0};
+  if (cell >= n) return {cell - n, 2};
+  return {cell, 1};
+}
+
 double wrapped(double x, double low, double high, bool periodic) {
   if (!periodic) return x;
   const double period = high - low;
@@ -112,7 +123,7 @@ void Simulation::rebuild() {
   // Pairs, with the springs of the old list.
   std::vector<std::uint32_t> first(n + 1, 0), partner;
   std::vector<std::uint8_t> in_range;
-  std::vector<Vec3> spring;
+  std::vector<VectorRow> spring;
   partner.reserve(s.partner.size() + n);
   in_range.reserve(s.partner.size() + n);
   spring.reserve(s.partner.size() + n);
@@ -122,7 +133,7 @@ void Simulation::rebuild() {
       if ((s.partner[slot] & partner_mask) != high) continue;
       in_range.push_back(s.in_range[slot]);
       const double sign = s.in_range[slot] ? (a < b ? 1.0 : -1.0) : 0.0;
-      spring.push_back(sign * s.spring[slot]);
+      spring.push_back({sign * s.spring[slot].v});
       return;
     }
     in_range.push_back(0);
@@ -132,30 +143,31 @@ void Simulation::rebuild() {
     const Vec3 p = s.position[i].at;
     const auto c = static_cast<int>(cell[i]);
     const int cx = c / (cells.n[1] * cells.n[2]), cy = c / cells.n[2] % cells.n[1], cz = c % cells.n[2];
+    // The cells around, as runs of cells that follow each other along z; only partners after i.
+    const auto visit = [&](std::size_t from, std::size_t to, std::uint32_t code) {
+      const std::uint32_t last = start[to + 1];
+      const Vec3 from_image = p - image_[code].v;
+      for (std::uint32_t j = std::max(start[from], i + 1); j < last; ++j) {
+        const Vec3 apart = from_image - s.position[j].at;
+        if (dot(apart, apart) >= reach * reach) continue;
+        partner.push_back(j | code << image_shift);
+        take_over(i, j);
+      }
+    };
+    const int z_low = std::max(cz - 1, 0), z_high = std::min(cz + 1, cells.n[2] - 1);
+    const bool wrap_low = setup_.periodic[2] && cz == 0, wrap_high = setup_.periodic[2] && cz == cells.n[2] - 1;
     for (int dx = -1; dx <= 1; ++dx) {
+      const Wrapped x = wrap_cell(cx + dx, cells.n[0]);
+      if (x.image != 1 && !setup_.periodic[0]) continue;
       for (int dy = -1; dy <= 1; ++dy) {
-        for (int dz = -1; dz <= 1; ++dz) {
-          int at[3] = {cx + dx, cy + dy, cz + dz}, image[3] = {1, 1, 1};
-          bool inside = true;
-          for (int a = 0; a < 3; ++a) {
-            if (at[a] < 0 || at[a] >= cells.n[a]) {
-              inside = inside && setup_.periodic[a];
-              image[a] = at[a] < 0 ? 0 : 2;
-              at[a] = at[a] < 0 ? at[a] + cells.n[a] : at[a] - cells.n[a];
-            }
-          }
-          if (!inside) continue;
-          const std::size_t other = (static_cast<std::size_t>(at[0]) * cells.n[1] + at[1]) * cells.n[2] + at[2];
-          if (start[other + 1] <= i + 1) continue;
-          const auto code = static_cast<std::uint32_t>(image[0] + 3 * image[1] + 9 * image[2]);
-          const Vec3 shift = image_[code];
-          for (std::uint32_t j = std::max(start[other], i + 1); j < start[other + 1]; ++j) {
-            const Vec3 apart = p - s.position[j].at - shift;
-            if (dot(apart, apart) >= reach * reach) continue;
-            partner.push_back(j | code << image_shift);
-            take_over(i, j);
-          }
-        }
+        const Wrapped y = wrap_cell(cy + dy, cells.n[1]);
+        if (y.image != 1 && !setup_.periodic[1]) continue;
+        const std::size_t column = (static_cast<std::size_t>(x.cell) * cells.n[1] + y.cell) * cells.n[2];
+        if (start[column + cells.n[2]] <= i + 1) continue;
+        const std::uint32_t code = x.image + 3 * y.image;
+        visit(column + z_low, column + z_high, code + 9);
+        if (wrap_low) visit(column + cells.n[2] - 1, column + cells.n[2] - 1, code);
+        if (wrap_high) visit(column, column, code + 18);
       }
     }
     first[i + 1] = static_cast<std::uint32_t>(partner.size());
@@ -185,15 +197,22 @@ void Simulation::list_walls(const std::vector<std::uint32_t>& place) {
     rotation[b] = rotation_about(setup_.bodies[b].axis, angle(b));
   }
   std::vector<WallSlot> wall;
+  std::vector<NearFeature> near;
   s.features.clear();
+  s.feature_gap.clear();
   s.wall_first.assign(1, 0);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t b = 0; b < bodies; ++b) {
       const Vec3 point = setup_.bodies[b].axis_point;
       const Vec3 in_body = point + rotate_back(rotation[b], s.position[i].at - point);
       const std::size_t before = s.features.size();
-      find_features(surface_[b], in_body, s.position[i].radius + range_ + setup_.skin, s.features);
-      if (s.features.size() == before) continue;
+      const double touching = s.position[i].radius + range_;
+      find_features(surface_[b], in_body, touching + setup_.skin, near);
+      if (near.empty()) continue;
+      for (const NearFeature& f : near) {
+        s.features.push_back(f.feature);
+        s.feature_gap.push_back(f.distance - touching);
+      }
       WallSlot slot;
       if (old[i * bodies + b] != none) slot = s.wall[old[i * bodies + b]];
       slot.particle = static_cast<std::uint32_t>(i);

@@ -33,6 +33,7 @@ void each_vector(AnyState& s, Visit&& visit) {
   visit("wall", s.wall);
   visit("wall_first", s.wall_first);
   visit("features", s.features);
+  visit("feature_gap", s.feature_gap);
   visit("angle_at_rebuild", s.angle_at_rebuild);
 }
 

@@ -15,8 +15,13 @@ namespace {
 std::size_t blocks_of(std::size_t particles) { return (particles + block_size - 1) / block_size; }
 
 struct Frame {
+  bool turned = false;  ///< else the rotation is none
   Rotation rotation;
   Vec3 point, spin;
+  double moved = 0.0;  ///< m, how far any point of the body came since the rebuild, at most
+
+  Vec3 to_lab(Vec3 a) const { return turned ? rotate(rotation, a) : a; }
+  Vec3 to_body(Vec3 a) const { return turned ? rotate_back(rotation, a) : a; }
 };
 
 /// Contacts of one sphere with one body: finds them, carries their springs over, returns the load on the sphere.
@@ -24,11 +29,21 @@ template <class Law>
 LoadRow wall_contact(const Law& law, const Surface& surface, const Frame& frame, const State& s, WallSlot& slot,
                      double time_step, StepSums& sums) {
   const PositionRow& at = s.position[slot.particle];
-  const Vec3 arm_of_body = at.at - frame.point;
-  const Vec3 in_body = frame.point + rotate_back(frame.rotation, arm_of_body);
-  const Touches touches = find_touches(surface, {s.features.data() + slot.feature_first, slot.feature_count}, in_body,
-                                       at.radius + law.range());
   LoadRow load;
+  // Features are sorted by their gap at the rebuild: those that the sphere and the body cannot have closed are not
+  // asked.
+  const double moved = length(at.at - s.reference[slot.particle]) + frame.moved + 1e-9 * at.radius;
+  const double* gap = s.feature_gap.data() + slot.feature_first;
+  std::uint32_t asked = 0;
+  while (asked < slot.feature_count && gap[asked] <= moved) ++asked;
+  if (asked == 0) {
+    slot.touching = 0;
+    return load;
+  }
+  const Vec3 arm_of_body = at.at - frame.point;
+  const Vec3 in_body = frame.point + frame.to_body(arm_of_body);
+  const Touches touches =
+      find_touches(surface, {s.features.data() + slot.feature_first, asked}, in_body, at.radius + law.range());
   if (touches.count == 0) {
     slot.touching = 0;
     return load;
@@ -47,17 +62,17 @@ LoadRow wall_contact(const Law& law, const Surface& surface, const Frame& frame,
         spring = slot.contact[k].spring;
       }
     }
-    const Vec3 n = rotate(frame.rotation, touch.normal);
+    const Vec3 n = frame.to_lab(touch.normal);
     const Vec3 arm = arm_of_body - touch.distance * n;  // from the axis point to the contact point
     const double overlap = at.radius - touch.distance;
     const Vec3 surface_velocity = motion.velocity - touch.distance * cross(motion.spin, n) - cross(frame.spin, arm);
-    const ContactForce c = law(n, overlap, surface_velocity, rotate(frame.rotation, spring), time_step);
+    const ContactForce c = law(n, overlap, surface_velocity, frame.to_lab(spring), time_step);
     const Vec3 force = c.push * n + c.tangential;
     load.force += force;
     load.torque -= touch.distance * cross(n, c.tangential);
     sums.body[slot.body].force -= force;
     sums.body[slot.body].torque -= cross(arm, force);
-    kept[t] = {touch.normal, rotate_back(frame.rotation, c.spring)};
+    kept[t] = {touch.normal, frame.to_body(c.spring)};
     if (overlap > 0.0) ++sums.wall_contacts;
     if (overlap > 0.1 * at.radius) ++sums.deep;
     sums.max_overlap = std::max(sums.max_overlap, overlap / at.radius);
@@ -92,7 +107,7 @@ Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.thr
   if (setup_.bodies.size() > max_bodies) throw Fault(fmt::format("more than {} bodies", max_bodies));
 
   const Vec3 size = setup_.high - setup_.low;
-  for (int k = 0; k < 27; ++k) image_[k] = {(k % 3 - 1) * size.x, (k / 3 % 3 - 1) * size.y, (k / 9 - 1) * size.z};
+  for (int k = 0; k < 27; ++k) image_[k].v = {(k % 3 - 1) * size.x, (k / 3 % 3 - 1) * size.y, (k / 9 - 1) * size.z};
   for (const Body& b : setup_.bodies) {
     surface_.push_back(make_surface(b.mesh, r + range_ + setup_.skin));
     double far = 0.0;
@@ -146,7 +161,11 @@ void Simulation::contacts(const Law& grain, const Law& wall) {
   for (std::size_t b = 0; b < setup_.bodies.size(); ++b) {
     const Body& body = setup_.bodies[b];
     const double turned = angle(b);
-    if (turned != 0.0) frames[b].rotation = rotation_about(body.axis, turned);
+    if (turned != 0.0) {
+      frames[b].turned = true;
+      frames[b].rotation = rotation_about(body.axis, turned);
+    }
+    frames[b].moved = std::abs(turned - s.angle_at_rebuild[b]) * body_radius_[b];
     frames[b].point = body.axis_point;
     frames[b].spin = s.turning[b].angular_velocity * body.axis;
   }
@@ -155,10 +174,10 @@ void Simulation::contacts(const Law& grain, const Law& wall) {
   block_sums_.assign(blocks, {});
   const bool direct = team_.size() == 1;
 
-  const auto count_contact = [](StepSums& sums, const PairLoad& c) {
-    const double relative = 2.0 * c.overlap / (c.distance + c.overlap);
-    sums.virial += c.push * c.distance;
-    sums.contacts += c.overlap > 0.0;
+  const auto count_contact = [](StepSums& sums, const Lanes& l, int k) {
+    const double overlap = l.sum[k] - l.distance[k], relative = 2.0 * overlap / l.sum[k];
+    sums.virial += l.push[k] * l.distance[k];
+    sums.contacts += overlap > 0.0;
     sums.deep += relative > 0.1;
     sums.max_overlap = std::max(sums.max_overlap, relative);
   };
@@ -170,19 +189,25 @@ void Simulation::contacts(const Law& grain, const Law& wall) {
     StepSums& sums = block_sums_[block];
     const std::size_t begin = block * block_size, end = std::min(n, begin + block_size);
     if (direct) {
-      pair_pass(grain, view, begin, end, [&](const PairLoad& c) {
-        LoadRow &i = s.load[c.i], &j = s.load[c.j];
-        i.force += c.force;
-        i.torque -= c.arm_i * c.moment;
-        j.force -= c.force;
-        j.torque -= c.arm_j * c.moment;
-        count_contact(sums, c);
+      pair_pass(grain, view, begin, end, [&](std::uint32_t, std::uint32_t i, std::uint32_t j, const Lanes& l, int k) {
+        LoadRow &a = s.load[i], &b = s.load[j];
+        const Four force = four(l.force[k][0]), moment = l.arm[k] * four(l.moment[k][0]);
+        four(a.force.x) += force;
+        four(a.torque.x) -= s.position[i].radius * moment;
+        four(b.force.x) -= force;
+        four(b.torque.x) -= s.position[j].radius * moment;
+        count_contact(sums, l, k);
       });
     } else {
-      pair_pass(grain, view, begin, end, [&](const PairLoad& c) {
-        slot_load_[c.slot] = {c.force, c.moment, c.arm_i, c.arm_j};
-        count_contact(sums, c);
-      });
+      pair_pass(grain, view, begin, end,
+                [&](std::uint32_t slot, std::uint32_t i, std::uint32_t j, const Lanes& l, int k) {
+                  SlotLoad& to = slot_load_[slot];
+                  const Four moment = l.arm[k] * four(l.moment[k][0]);
+                  four(to.force.v.x) = four(l.force[k][0]);
+                  four(to.torque_i.v.x) = s.position[i].radius * moment;
+                  four(to.torque_j.v.x) = s.position[j].radius * moment;
+                  count_contact(sums, l, k);
+                });
     }
     for (std::uint32_t w = s.wall_first[block]; w < s.wall_first[block + 1]; ++w) {
       WallSlot& slot = s.wall[w];
@@ -205,13 +230,13 @@ void Simulation::contacts(const Law& grain, const Law& wall) {
         for (std::uint32_t k = reverse_first_[p]; k < reverse_first_[p + 1]; ++k) {
           const std::uint32_t slot = reverse_[k];
           if (!s.in_range[slot]) continue;
-          to.force -= slot_load_[slot].force;
-          to.torque -= slot_load_[slot].arm_j * slot_load_[slot].moment;
+          to.force -= slot_load_[slot].force.v;
+          to.torque -= slot_load_[slot].torque_j.v;
         }
         for (std::uint32_t slot = s.first[p]; slot < s.first[p + 1]; ++slot) {
           if (!s.in_range[slot]) continue;
-          to.force += slot_load_[slot].force;
-          to.torque -= slot_load_[slot].arm_i * slot_load_[slot].moment;
+          to.force += slot_load_[slot].force.v;
+          to.torque -= slot_load_[slot].torque_i.v;
         }
       }
       for (std::uint32_t w = s.wall_first[block]; w < s.wall_first[block + 1]; ++w) {

@@ -111,15 +111,14 @@ class Simulation {
   std::vector<Surface> surface_;
   std::vector<double> body_radius_;  ///< m, largest distance from the axis
   double mass_ = 0.0, inertia_ = 0.0, range_ = 0.0;
-  std::array<Vec3, 27> image_;      ///< m, added to the partner's position
-  double max_displacement2_ = 0.0;  ///< m2
+  std::array<VectorRow, 27> image_;  ///< m, added to the partner's position
+  double max_displacement2_ = 0.0;   ///< m2
   StepSums sums_;
   std::vector<StepSums> block_sums_;
   std::vector<double> block_displacement2_;
   // several threads only: what each slot does, and the slots in which a particle is the partner
   struct SlotLoad {
-    Vec3 force, moment;
-    double arm_i = 0.0, arm_j = 0.0;
+    VectorRow force, torque_i, torque_j;
   };
   std::vector<SlotLoad> slot_load_;
   std::vector<std::uint32_t> reverse_first_, reverse_;

@@ -19,13 +19,20 @@ struct alignas(32) PositionRow {
 };
 struct alignas(64) MotionRow {
   Vec3 velocity;  ///< m/s
-  Vec3 spin;      ///< rad/s
-  double unused[2] = {0.0, 0.0};
+  double unused = 0.0;
+  Vec3 spin;  ///< rad/s
+  double unused_too = 0.0;
 };
 struct alignas(64) LoadRow {
-  Vec3 force;   ///< N
+  Vec3 force;  ///< N
+  double unused = 0.0;
   Vec3 torque;  ///< N m
-  double unused[2] = {0.0, 0.0};
+  double unused_too = 0.0;
+};
+/// A vector padded to four lanes.
+struct alignas(32) VectorRow {
+  Vec3 v;
+  double unused = 0.0;
 };
 
 /// One contact of a sphere with a body, kept in the body's frame so that it turns with the tool.
@@ -60,12 +67,13 @@ struct State {
   // pairs
   std::vector<std::uint32_t> first, partner;  ///< partner | image << 27
   std::vector<std::uint8_t> in_range;
-  std::vector<Vec3> spring;
+  std::vector<VectorRow> spring;
   // walls
   std::vector<WallSlot> wall;             ///< sorted by particle
   std::vector<std::uint32_t> wall_first;  ///< per block of particles
-  std::vector<std::uint32_t> features;
-  std::vector<double> angle_at_rebuild;  ///< per body [rad]
+  std::vector<std::uint32_t> features;    ///< of each slot, nearest first
+  std::vector<double> feature_gap;        ///< m, from the sphere to the feature at the rebuild, at least
+  std::vector<double> angle_at_rebuild;   ///< per body [rad]
 };
 
 inline constexpr std::uint32_t image_shift = 27;

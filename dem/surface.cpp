@@ -76,7 +76,7 @@ void make_grid(const std::vector<Box>& boxes, Surface& s) {
   const Vec3 size = high - low;
   const double largest = std::max({size.x, size.y, size.z});
   s.low = low;
-  s.cell = std::max(s.reach, largest / 128.0);
+  s.cell = std::max(0.5 * s.reach, largest / 128.0);
   for (int a = 0; a < 3; ++a) s.cells[a] = static_cast<int>((a == 0 ? size.x : a == 1 ? size.y : size.z) / s.cell) + 1;
   const auto index = [&](double x, double origin, int n) {
     return std::clamp(static_cast<int>((x - origin) / s.cell), 0, n - 1);
@@ -126,7 +126,8 @@ Surface make_surface(const TriangleMesh& mesh, double reach) {
   return s;
 }
 
-void find_features(const Surface& s, Vec3 point, double distance, std::vector<std::uint32_t>& found) {
+void find_features(const Surface& s, Vec3 point, double distance, std::vector<NearFeature>& found) {
+  found.clear();
   const Vec3 p = point - s.low;
   if (!(p.x >= 0.0 && p.y >= 0.0 && p.z >= 0.0)) return;
   const int x = static_cast<int>(p.x / s.cell), y = static_cast<int>(p.y / s.cell), z = static_cast<int>(p.z / s.cell);
@@ -135,23 +136,25 @@ void find_features(const Surface& s, Vec3 point, double distance, std::vector<st
   const std::size_t faces = s.faces.size(), edges = s.edges.size();
   for (std::uint32_t i = s.first[c]; i < s.first[c + 1]; ++i) {
     const std::uint32_t feature = s.features[i];
-    bool near = true;
+    double away = 0.0;  // a lower bound of the distance
     if (feature < faces) {
       const Face& f = s.faces[feature];
-      near = std::abs(dot(f.normal, point) - f.offset) < distance;
-      for (int k = 0; k < 3; ++k) near = near && dot(f.out[k], point) - f.bound[k] < distance;
+      away = std::abs(dot(f.normal, point) - f.offset);
+      for (int k = 0; k < 3; ++k) away = std::max(away, dot(f.out[k], point) - f.bound[k]);
     } else if (feature < faces + edges) {
       const Edge& e = s.edges[feature - faces];
       const Vec3 w = point - e.start;
-      const double u = dot(w, e.direction);
-      const Vec3 p_perp = w - u * e.direction;
-      near = u > -distance && u < e.length + distance && dot(p_perp, p_perp) < distance * distance;
+      const double u = dot(w, e.direction), beyond = std::max({0.0, -u, u - e.length});
+      const Vec3 across = w - u * e.direction;
+      away = std::sqrt(dot(across, across) + beyond * beyond);
     } else {
-      const Vec3 w = point - s.vertices[feature - faces - edges].point;
-      near = dot(w, w) < distance * distance;
+      away = length(point - s.vertices[feature - faces - edges].point);
     }
-    if (near) found.push_back(feature);
+    if (away < distance) found.push_back({away, feature});
   }
+  std::sort(found.begin(), found.end(), [](const NearFeature& a, const NearFeature& b) {
+    return a.distance < b.distance || (a.distance == b.distance && a.feature < b.feature);
+  });
 }
 
 Touches find_touches(const Surface& s, std::span<const std::uint32_t> features, Vec3 point, double distance) {
@@ -179,9 +182,10 @@ Touches find_touches(const Surface& s, std::span<const std::uint32_t> features, 
     if (feature < faces) {
       const Face& f = s.faces[feature];
       const double height = dot(f.normal, point) - f.offset;
+      if (!(std::abs(height) < distance)) continue;
       const double outside = std::max(
           {dot(f.out[0], point) - f.bound[0], dot(f.out[1], point) - f.bound[1], dot(f.out[2], point) - f.bound[2]});
-      if (std::abs(height) < distance && outside <= tolerance) {
+      if (outside <= tolerance) {
         add(height > 0.0 ? f.normal : -f.normal, std::abs(height));
       }
     } else if (feature < faces + edges) {

@@ -51,8 +51,13 @@ struct Surface {
 /// `reach` [m]: how far from the surface a sphere's centre is ever asked about.
 Surface make_surface(const TriangleMesh& welded, double reach);
 
-/// Features within `distance` <= reach of `point`, appended to `found` in ascending order.
-void find_features(const Surface& surface, Vec3 point, double distance, std::vector<std::uint32_t>& found);
+struct NearFeature {
+  double distance = 0.0;  ///< m, from the point, at least
+  std::uint32_t feature = 0;
+};
+
+/// Features within `distance` <= reach of `point`, nearest first.
+void find_features(const Surface& surface, Vec3 point, double distance, std::vector<NearFeature>& found);
 
 struct Touch {
   Vec3 normal;            ///< unit, from the surface to the sphere's centre
