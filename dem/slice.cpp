@@ -146,7 +146,6 @@ Setup make_slice(const Case& c, std::uint64_t seed, int threads) {
   const Rig& rig = c.rig;
   Setup s;
   Packing packing = pack(c, seed);
-  // Walls two blade radii above what is filled and above the blade: nothing but a fault throws a sphere over them.
   // High enough that a grain which the blade pinches against the trough and lets go does not fly over the rim.
   const double top = std::max(packing.top, rig.blade_radius) + 8.0 * rig.blade_radius;
   const double length = rig.pitches * rig.pitch, side = rig.trough_radius;
