@@ -151,7 +151,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.dof = found.check.dof;
   report.ppp = found.check.predictive_p;
   report.fits = found.fits;
-  report.parameters = std::move(found.parameters);
+  report.parameters = found.parameters;
   report.fisher_condition = found.fisher.condition;
   report.collinearity = found.fisher.collinearity;
   report.traded = found.traded;
@@ -225,7 +225,6 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
 
   tell("surrogates");
   SurrogateOptions surrogates = options.surrogates;
-  surrogates.threads = options.threads;
   surrogates.fit.seed = seed_of(study, options);
   result.surrogates = fit_surrogates(study, table, surrogates);
   const std::vector<Emulator> emulators = emulators_of(result.surrogates);

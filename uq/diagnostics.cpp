@@ -125,9 +125,17 @@ double quantile(const Eigen::VectorXd& values, double probability) {
   return low + (position - static_cast<double>(below)) * (high - low);
 }
 
+/// The mean of the two middle values, so that both lie equally far from it and share a rank once folded.
+static double median(const Eigen::VectorXd& values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t n = sorted.size();
+  return n % 2 == 1 ? sorted[n / 2] : 0.5 * (sorted[n / 2 - 1] + sorted[n / 2]);
+}
+
 double rank_rhat(const Eigen::MatrixXd& draws) {
   if (unusable(draws)) return not_a_number;
-  const double centre = quantile(draws.reshaped(), 0.5);
+  const double centre = median(draws.reshaped());
   const Eigen::MatrixXd folded = (draws.array() - centre).abs();
   return std::max(plain_rhat(normal_scores(split(draws))), plain_rhat(normal_scores(split(folded))));
 }

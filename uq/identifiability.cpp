@@ -25,12 +25,6 @@ double shown(const Slot& slot, double u) {
   return parameter.unit.from_si(from_scaled(parameter, u));
 }
 
-/// The parameter's range ends at 0 because nothing lies below, and the prior lets it come there.
-bool physical_low(const Slot& slot) {
-  const data::Parameter& parameter = slot.prior.parameter();
-  return parameter.scale == data::Scale::linear && parameter.low == 0.0 && slot.prior.low() < 1e-12;
-}
-
 ParameterReport describe_draws(const Slot& slot, const Eigen::VectorXd& u, const Profile& profile) {
   const data::Parameter& parameter = slot.prior.parameter();
   ParameterReport report;
@@ -107,11 +101,13 @@ Identification identify(const CaseModel& model, const Eigen::MatrixXd& draws, co
                                .deviance_at_low = profile.deviance_at_low,
                                .deviance_at_high = profile.deviance_at_high,
                                .physical_low = physical_low(slot)};
+    if (profile.low_pinned) evidence.low_pinned_by = model.slots[static_cast<std::size_t>(*profile.low_pinned)].label;
+    if (profile.high_pinned)
+      evidence.high_pinned_by = model.slots[static_cast<std::size_t>(*profile.high_pinned)].label;
     if (found.fits && !profile.closed() && found.surrogate_share <= options.thresholds.surrogate_share) {
-      const NoiseFree free =
-          noise_free_deviance(model, profile, found.best_fit.x, options.thresholds.noise_free_factor);
-      evidence.structural_low = !profile.low && free.at_low <= options.thresholds.profile_drop;
-      evidence.structural_high = !profile.high && free.at_high <= options.thresholds.profile_drop;
+      const NoiseFree free = noise_free_extent(model, profile, found.best_fit.x, options.thresholds.noise_free_factor,
+                                               options.thresholds.profile_drop);
+      evidence.structural = free.share >= options.thresholds.noise_free_share;
     }
     const ParameterVerdict verdict = judge(evidence, fit, options.thresholds);
     report.verdict = verdict.verdict;

@@ -44,9 +44,15 @@ Differentiable likelihood_of(const CaseModel& model) {
   return [&model](const Eigen::VectorXd& u) { return log_likelihood_gradient(model, u); };
 }
 
-/// Bisection for the crossing between an inside and an outside value of unknown k.
-double crossing(const CaseModel& model, const Box& box, Held inside, Held outside, const Eigen::VectorXd& start,
-                double level) {
+/// Where the deviance crosses the drop, and the maximiser there.
+struct Crossing {
+  double at = 0.0;
+  Eigen::VectorXd maximiser;
+};
+
+/// Bisection between an inside and an outside value of unknown k.
+Crossing find_crossing(const CaseModel& model, const Box& box, Held inside, Held outside, const Eigen::VectorXd& start,
+                       double level) {
   Eigen::VectorXd warm = start;
   for (int i = 0; i < 14; ++i) {
     const double middle = 0.5 * (inside.value + outside.value);
@@ -58,7 +64,18 @@ double crossing(const CaseModel& model, const Box& box, Held inside, Held outsid
       outside.value = middle;
     }
   }
-  return 0.5 * (inside.value + outside.value);
+  return {.at = 0.5 * (inside.value + outside.value), .maximiser = warm};
+}
+
+/// Another unknown that sits at the end of its range, if one does.
+std::optional<int> pinned(const CaseModel& model, const Box& box, int k, const Eigen::VectorXd& at) {
+  for (int other = 0; other < model.dimension(); ++other) {
+    if (other == k) continue;
+    const double near = 1e-4 * (box.upper[other] - box.lower[other]);
+    const bool low = at[other] - box.lower[other] < near && !physical_low(model.slots[static_cast<std::size_t>(other)]);
+    if (low || box.upper[other] - at[other] < near) return other;
+  }
+  return {};
 }
 
 Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guides, const Maximum& best,
@@ -120,12 +137,14 @@ void finish(const CaseModel& model, const Box& box, Profile& profile, const Maxi
   if (first == count) return;  // no point inside: the best fit itself is one, so this does not happen
   const double wanted = best.value - 0.5 * drop;
   const int k = profile.unknown;
-  if (first > 0)
-    profile.low = crossing(model, box, {k, profile.u[first]}, {k, profile.u[first - 1]},
-                           profile.path.row(first).transpose(), wanted);
-  if (last < count - 1)
-    profile.high = crossing(model, box, {k, profile.u[last]}, {k, profile.u[last + 1]},
-                            profile.path.row(last).transpose(), wanted);
+  auto end = [&](Eigen::Index inside, Eigen::Index outside, std::optional<double>& at, std::optional<int>& by) {
+    const Eigen::VectorXd start = profile.path.row(inside).transpose();
+    const Crossing found = find_crossing(model, box, {k, profile.u[inside]}, {k, profile.u[outside]}, start, wanted);
+    by = pinned(model, box, k, found.maximiser);
+    if (!by) at = found.at;
+  };
+  if (first > 0) end(first, first - 1, profile.low, profile.low_pinned);
+  if (last < count - 1) end(last, last + 1, profile.high, profile.high_pinned);
 }
 
 }  // namespace
@@ -161,30 +180,41 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
   return found;
 }
 
-NoiseFree noise_free_deviance(const CaseModel& model, const Profile& profile, const Eigen::VectorXd& best,
-                              double variance_factor) {
+bool physical_low(const Slot& slot) {
+  const data::Parameter& parameter = slot.prior.parameter();
+  return parameter.scale == data::Scale::linear && parameter.low == 0.0 && slot.prior.low() < 1e-12;
+}
+
+NoiseFree noise_free_extent(const CaseModel& model, const Profile& profile, const Eigen::VectorXd& best,
+                            double variance_factor, double drop) {
   const Box box{model.lower(), model.upper()};
   const Eigen::VectorXd truth = predict(model, best).mean;
   const Eigen::VectorXd variance = variance_factor * observed_variance(model);
   auto match = [&](const Eigen::VectorXd& u) { return -chi_squared(predict(model, u), variance, truth); };
   const Differentiable function = with_differences(match, box);
-  // Followed along the profile's path towards each bound, so that a curved ridge is not lost.
-  auto follow = [&](Eigen::Index from, Eigen::Index to) {
-    const Eigen::Index step = to >= from ? 1 : -1;
-    Eigen::VectorXd at = best;
-    double deviance = 0.0;
-    for (Eigen::Index i = from; step > 0 ? i <= to : i >= to; i += step) {
-      Eigen::MatrixXd starts(2, at.size());
-      starts << at.transpose(), profile.path.row(i);
-      const Maximum found = maximise(function, box, starts, Held{profile.unknown, profile.u[i]});
-      at = found.x;
-      deviance = std::max(deviance, -found.value);
-    }
-    return deviance;
-  };
   Eigen::Index nearest = 0;
   (profile.u.array() - best[profile.unknown]).abs().minCoeff(&nearest);
-  return {.at_low = follow(nearest, 0), .at_high = follow(nearest, profile.u.size() - 1)};
+  NoiseFree found{.low = profile.u[nearest], .high = profile.u[nearest]};
+  // Followed along the profile's path towards each bound, so that a curved ridge is not lost, until the means differ.
+  for (const Eigen::Index step : {-1, 1}) {
+    Eigen::VectorXd at = best;
+    for (Eigen::Index i = nearest + step; i >= 0 && i < profile.u.size() && profile.deviance[i] <= drop; i += step) {
+      Eigen::MatrixXd starts(2, at.size());
+      starts << at.transpose(), profile.path.row(i);
+      const Maximum closest = maximise(function, box, starts, Held{profile.unknown, profile.u[i]});
+      if (-closest.value > drop) break;
+      at = closest.x;
+      (step < 0 ? found.low : found.high) = profile.u[i];
+    }
+  }
+  double low = profile.u[nearest], high = low;
+  for (Eigen::Index i = 0; i < profile.u.size(); ++i)
+    if (profile.deviance[i] <= drop) {
+      low = std::min(low, profile.u[i]);
+      high = std::max(high, profile.u[i]);
+    }
+  found.share = high > low ? (found.high - found.low) / (high - low) : 0.0;
+  return found;
 }
 
 }  // namespace uq

@@ -25,6 +25,7 @@ struct Profile {
   Eigen::VectorXd deviance;                              ///< at each
   Eigen::MatrixXd path;                                  ///< points x unknowns: the maximiser at each
   std::optional<double> low, high;                       ///< ends of the interval, in u; none: open
+  std::optional<int> low_pinned, high_pinned;            ///< unknown at the end of whose range an open side ends
   double deviance_at_low = 0.0, deviance_at_high = 0.0;  ///< at the support's bounds
   bool closed() const { return low && high; }
   bool flat() const { return !low && !high; }
@@ -45,16 +46,19 @@ struct Guides {
 };
 Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const ProfileOptions& options = {});
 
-/// Deviance of the best fit to noise-free data: how far the predicted means can stay the same while unknown k goes to
-/// u_k.
+/// How far unknown k can go while the predicted means stay the same:
 ///   d(u) = (m(u) - m(u*))' (f D + C(u))^-1 (m(u) - m(u*)),   minimised over the other unknowns
-/// with the measurement variance D cut by f. Where even this stays below the drop up to the bound, no better
-/// measurement of the same kind closes the interval: the confounding is structural, as far as the emulator's own error
-/// C lets one see.
+/// stays below the drop, with the measurement variance D cut by f. What still spans most of the profile's interval
+/// cannot be closed by a better measurement of the same kind: the confounding is structural, as far as the emulator's
+/// own error C lets one see.
 struct NoiseFree {
-  double at_low = 0.0, at_high = 0.0;  ///< deviance at the support's bounds
+  double low = 0.0, high = 0.0;  ///< u reached on each side
+  double share = 0.0;            ///< of the profile's interval
 };
-NoiseFree noise_free_deviance(const CaseModel& model, const Profile& profile, const Eigen::VectorXd& best,
-                              double variance_factor);
+NoiseFree noise_free_extent(const CaseModel& model, const Profile& profile, const Eigen::VectorXd& best,
+                            double variance_factor, double drop);
+
+/// The low end of an unknown's support is a bound that nature sets, not the user: a linear range that begins at 0.
+bool physical_low(const Slot& slot);
 
 }  // namespace uq

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "data/error.hpp"
-#include "uq/parallel.hpp"
 #include "uq/prior.hpp"
 
 namespace uq {
@@ -74,30 +73,6 @@ TrainingRows rows_of(const data::Study& study, const std::vector<const data::Run
   return found;
 }
 
-/// 1 - mean squared error over variance.
-double q_squared(const Eigen::VectorXd& y, const Eigen::VectorXd& predicted) {
-  return 1.0 - (y - predicted).squaredNorm() / (y.array() - y.mean()).square().sum();
-}
-
-/// Predictions of each fold's rows by a process fitted to the others. Rows go to folds in turn.
-Eigen::VectorXd held_out(const surrogate::TrainingSet& set, const SurrogateOptions& options) {
-  const Eigen::Index n = set.y.size();
-  Eigen::VectorXd predicted(n);
-  surrogate::FitOptions fit = options.fit;
-  fit.starts = std::min(fit.starts, 3);
-  for_each_index(options.folds, options.threads, [&](int fold) {
-    std::vector<Eigen::Index> in, out;
-    for (Eigen::Index i = 0; i < n; ++i) (i % options.folds == fold ? out : in).push_back(i);
-    const surrogate::TrainingSet part{
-        .x = set.x(in, Eigen::all), .y = set.y(in), .noise_variance = set.noise_variance(in)};
-    const surrogate::GaussianProcess process = surrogate::fit(part, fit);
-    const Eigen::MatrixXd points = set.x(out, Eigen::all);
-    const Eigen::VectorXd means = process.predict_marginal(points).mean;
-    for (std::size_t i = 0; i < out.size(); ++i) predicted[out[i]] = means[static_cast<Eigen::Index>(i)];
-  });
-  return predicted;
-}
-
 std::vector<double> in_unit(const Eigen::VectorXd& values, const data::Unit& unit) {
   std::vector<double> shown;
   for (const double value : values) shown.push_back(unit.from_si(value));
@@ -107,19 +82,21 @@ std::vector<double> in_unit(const Eigen::VectorXd& values, const data::Unit& uni
 SurrogateReport report_of(const data::Study& study, const TrainingRows& rows, const surrogate::GaussianProcess& process,
                           const SurrogateOptions& options) {
   const data::Output& output = study.outputs[rows.output];
-  const surrogate::LeaveOneOut loo = process.leave_one_out();
+  surrogate::ValidationOptions validation_options = options.validation;
+  validation_options.seed = options.fit.seed;
+  const surrogate::Validation found = surrogate::validate(rows.set, options.fit, process, validation_options);
   SurrogateReport report;
   report.output = output.name;
   report.material = rows.material;
-  report.runs = static_cast<int>(rows.set.y.size());
+  report.runs = found.runs;
   report.unit = output.unit.symbol;
-  report.q2 = q_squared(rows.set.y, loo.mean);
-  report.coverage95 = static_cast<double>((loo.standardised.array().abs() <= 1.959964).count()) /
-                      static_cast<double>(loo.standardised.size());
+  report.q2 = found.q2_leave_one_out;
+  report.q2_held_out = found.q2_held_out;
+  report.coverage95 = found.coverage_leave_one_out.observed[2];
   const surrogate::HyperParameters hyper = process.hyper_parameters();
+  // On the log scale the nugget is relative; shown at the mean output.
   const bool logarithmic = options.fit.scale == surrogate::OutputScale::log;
-  report.nugget_sd =
-      logarithmic ? hyper.nugget_sd * output.unit.from_si(rows.set.y.mean()) : hyper.nugget_sd / output.unit.factor;
+  report.nugget_sd = hyper.nugget_sd * (logarithmic ? std::abs(rows.set.y.mean()) : 1.0) / output.unit.factor;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     const EmulatorInput& input = rows.inputs[k];
     report.inputs.push_back(input.kind == InputKind::parameter ? study.parameters[input.index].name
@@ -127,43 +104,15 @@ SurrogateReport report_of(const data::Study& study, const TrainingRows& rows, co
     report.length_scales.push_back(hyper.length_scales[static_cast<Eigen::Index>(k)]);
   }
   report.observed = in_unit(rows.set.y, output.unit);
-  report.predicted = in_unit(loo.mean, output.unit);
-  report.standardised.assign(loo.standardised.begin(), loo.standardised.end());
+  report.predicted = in_unit(found.leave_one_out.mean, output.unit);
+  report.standardised.assign(found.leave_one_out.standardised.begin(), found.leave_one_out.standardised.end());
   for (const double variance : rows.set.noise_variance)
     report.observed_se.push_back(std::sqrt(variance) / output.unit.factor);
-
-  const surrogate::FitDiagnostics& diagnostics = process.diagnostics();
-  if (!diagnostics.converged) report.notes.push_back("the hyper-parameters' optimiser did not converge");
-  if (diagnostics.jitter > 0.0)
-    report.notes.push_back(fmt::format("jitter {:.1e} of the output's variance was needed", diagnostics.jitter));
-  for (const auto& hit : diagnostics.bound_hits)
-    report.notes.push_back(fmt::format("{} is on its {} bound {:.3g}{}", hit.parameter, hit.upper ? "upper" : "lower",
-                                       hit.value, hit.harmless ? " (harmless)" : ""));
-  report.notes.push_back(fmt::format("{} of {} starts of the optimiser ended at the same likelihood",
-                                     diagnostics.agreeing_starts, diagnostics.starts.size()));
-
-  report.q2_held_out =
-      report.runs >= 3 * options.folds ? q_squared(rows.set.y, held_out(rows.set, options)) : std::nan("");
-  const double q2 = std::isfinite(report.q2_held_out) ? std::min(report.q2, report.q2_held_out) : report.q2;
-  const double median_noise = std::sqrt(rows.set.noise_variance.mean());
-  const double scatter = std::sqrt((rows.set.y.array() - rows.set.y.mean()).square().mean());
-  report.finding = fmt::format(
-      "Q2 is {:.3f} (leave-one-out) and {:.3f} (held out, refitted); {:.0f} % of the runs lie in their 95 % intervals; "
-      "the runs' own noise is {:.1f} % of their scatter.",
-      report.q2, report.q2_held_out, 100.0 * report.coverage95, 100.0 * median_noise / scatter);
-  if (q2 >= 0.9 && report.coverage95 >= 0.85) {
-    report.verdict = "good";
-    report.consequence = "Its error is small beside what the parameters change, and is counted in every result.";
-    report.remedy = "None needed.";
-  } else if (q2 >= 0.6 && report.coverage95 >= 0.75) {
-    report.verdict = "caution";
-    report.consequence = "Its error widens the posteriors; where it understates that error they are too narrow.";
-    report.remedy = "More training runs, or longer ones.";
-  } else {
-    report.verdict = "unusable";
-    report.consequence = "Results that rest on it mean little.";
-    report.remedy = "More training runs, a narrower range of the parameters, or longer runs.";
-  }
+  report.verdict = surrogate::to_text(found.verdict);
+  report.finding = found.finding;
+  report.consequence = found.consequence;
+  report.remedy = found.remedy;
+  report.notes = found.notes;
   return report;
 }
 

@@ -9,6 +9,7 @@
 #include "data/run_table.hpp"
 #include "data/study.hpp"
 #include "surrogate/fit.hpp"
+#include "surrogate/validation.hpp"
 #include "uq/emulator.hpp"
 #include "uq/results.hpp"
 
@@ -16,8 +17,7 @@ namespace uq {
 
 struct SurrogateOptions {
   surrogate::FitOptions fit = {};
-  int folds = 5;    ///< of the held-out check; hyper-parameters are refitted without each
-  int threads = 0;  ///< 0: as many as the machine has
+  surrogate::ValidationOptions validation = {};  ///< its seed is that of the fit
 };
 
 /// A material's rows of one output, as the surrogate sees them.

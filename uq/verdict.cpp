@@ -54,8 +54,9 @@ std::vector<std::pair<std::string, std::string>> describe(const VerdictThreshold
       {"chi-squared tail of the best fit for a fit", fmt::format("at least {:g}", thresholds.best_fit_p)},
       {"correlation of a traded pair",
        fmt::format("at least {:g} (plain or of logarithms)", thresholds.traded_correlation)},
-      {"structural", fmt::format("interval still open with the measurement error {:.3g} times smaller",
-                                 1.0 / std::sqrt(thresholds.noise_free_factor))},
+      {"structural",
+       fmt::format("at least {:g} of the interval is left with the measurement error {:.3g} times smaller",
+                   thresholds.noise_free_share, 1.0 / std::sqrt(thresholds.noise_free_factor))},
       {"surrogate sharp enough to call it structural",
        fmt::format("its sd at most {:.2g} of the measurement's", thresholds.surrogate_share)},
       {"borderline",
@@ -81,7 +82,7 @@ ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fi
   const bool open_low = !parameter.profile_low, open_high = !parameter.profile_high;
   const bool contracted = parameter.contraction >= thresholds.contraction_identified;
   const bool narrowed = parameter.contraction >= thresholds.contraction_weak;
-  const bool structural = (open_low && parameter.structural_low) || (open_high && parameter.structural_high);
+  const bool structural = parameter.structural;
 
   // Near a threshold: of contraction, or of a bound's deviance.
   auto near_bound = [&](double deviance) {
@@ -122,20 +123,30 @@ ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fi
     return found;
   }
   found.reason = structural ? "structural" : (open_low != open_high ? "one-sided" : "practical");
+  const std::string& by = open_high ? parameter.high_pinned_by : parameter.low_pinned_by;
+  const std::string why = structural ? ", and a better measurement of the same kind would not help" : "";
   if (open_low && open_high) {
     found.sentence = fmt::format(
-        "{} is not identified: no value between {} fits worse than the noise allows; {}.", parameter.name,
-        in_unit(number(parameter.range_low) + " and " + number(parameter.range_high), parameter.unit),
+        "{} is not identified: the data leave it open on both sides{}; {}.", parameter.name,
+        by.empty() ? ""
+                   : fmt::format(
+                         " (between {} only the ranges of other parameters limit it)",
+                         in_unit(number(parameter.range_low) + " and " + number(parameter.range_high), parameter.unit)),
         structural ? "a better measurement of the same kind would not help" : "the measurement's noise hides it");
-  } else {
-    const std::string limit =
-        open_high ? "at least " + in_unit(with_error(*parameter.profile_low, parameter.sd), parameter.unit)
-                  : "at most " + in_unit(with_error(*parameter.profile_high, parameter.sd), parameter.unit);
+    return found;
+  }
+  const std::string limit =
+      open_high ? "at least " + in_unit(with_error(*parameter.profile_low, parameter.sd), parameter.unit)
+                : "at most " + in_unit(with_error(*parameter.profile_high, parameter.sd), parameter.unit);
+  if (by.empty()) {
+    const std::string end = in_unit(number(open_high ? parameter.range_high : parameter.range_low), parameter.unit);
     found.sentence = fmt::format(
-        "{} is not identified: {} (95 % profile), but {} every value up to the end of its range, {}, fits{}.",
-        parameter.name, limit, open_high ? "above that" : "below that",
-        in_unit(number(open_high ? parameter.range_high : parameter.range_low), parameter.unit),
-        structural ? ", and a better measurement of the same kind would not help" : "");
+        "{} is not identified: {} (95 % profile), but {} that every value up to the end of its range, {}, fits{}.",
+        parameter.name, limit, open_high ? "above" : "below", end, why);
+  } else {
+    found.sentence = fmt::format(
+        "{} is not identified: {} (95 % profile), but on the other side only the end of the range of {} limits it{}.",
+        parameter.name, limit, by, why);
   }
   return found;
 }

@@ -26,9 +26,9 @@ struct VerdictThresholds {
   double predictive_p = 0.01;           ///< a case below does not fit
   double best_fit_p = 0.001;  ///< chi-squared tail of the best fit; a case below does not fit. The predictive p is
                               ///< conservative with few data, since the same data chose the parameters
-  double traded_correlation = 0.8;  ///< of a pair, plain or in logarithms, at least
-  double noise_free_factor =
-      1.0 / 900.0;  ///< of the measurement variance (30 times better): an interval still open then is structural
+  double traded_correlation = 0.8;         ///< of a pair, plain or in logarithms, at least
+  double noise_free_factor = 1.0 / 900.0;  ///< of the measurement variance: 30 times better
+  double noise_free_share = 0.5;           ///< of the interval that is left by such a measurement, at least: structural
   double surrogate_share =
       1.0 / 3.0;  ///< of the measurement's sd: a surrogate less certain than this cannot show a structural confounding
   double borderline_variance =
@@ -47,8 +47,9 @@ struct ParameterEvidence {
   std::optional<double> profile_low, profile_high;
   double range_low = 0.0, range_high = 0.0;  ///< the support
   double deviance_at_low = 0.0, deviance_at_high = 0.0;
-  bool physical_low = false;  ///< the support's low end is a bound that nature sets (0), not the user
-  bool structural_low = false, structural_high = false;  ///< still open there for noise-free data
+  bool physical_low = false;                  ///< the support's low end is a bound that nature sets (0), not the user
+  std::string low_pinned_by, high_pinned_by;  ///< another parameter whose range ends an open side; may be empty
+  bool structural = false;                    ///< a better measurement of the same kind would not close it
 };
 
 /// How well the case fits.
