@@ -16,12 +16,17 @@ struct Cells {
   std::size_t total() const { return static_cast<std::size_t>(n[0]) * n[1] * n[2]; }
 };
 
+/// Cells at least `reach` long; no more of them than a few per particle, so that a large empty box costs nothing.
 Cells make_cells(const Setup& setup, double reach) {
   Cells c;
   c.low = setup.low;
   const Vec3 size = setup.high - setup.low;
   const double length[3] = {size.x, size.y, size.z};
-  for (int a = 0; a < 3; ++a) c.n[a] = std::clamp(static_cast<int>(length[a] / reach), 1, 512);
+  const std::size_t most = std::max<std::size_t>(32768, 16 * setup.spheres.position.size());
+  for (double edge = reach;; edge *= 1.25) {
+    for (int a = 0; a < 3; ++a) c.n[a] = std::clamp(static_cast<int>(length[a] / edge), 1, 512);
+    if (c.total() <= most) break;
+  }
   c.size = {size.x / c.n[0], size.y / c.n[1], size.z / c.n[2]};
   return c;
 }

@@ -1,0 +1,67 @@
+#pragma once
+// Small scenes for the tests: a few spheres, a plane of triangles, and a contact law from a Case's coefficients.
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "dem/derived.hpp"
+#include "dem/mesh.hpp"
+#include "dem/simulation.hpp"
+
+namespace scene {
+
+/// A box without walls, bodies or gravity; laws and time step from the case.
+inline dem::Setup box(const dem::Case& c, std::vector<dem::Vec3> position, std::vector<dem::Vec3> velocity) {
+  const dem::Derived d = dem::derive(c);
+  const double size = 100.0 * c.material.diameter;
+  dem::Setup s;
+  s.low = {-size, -size, -size};
+  s.high = {size, size, size};
+  s.periodic = {false, false, false};
+  s.spheres.radius = 0.5 * c.material.diameter;
+  s.spheres.density = c.material.density;
+  s.spheres.position = std::move(position);
+  s.spheres.velocity = std::move(velocity);
+  const dem::Laws laws = dem::make_laws(c);
+  s.grain = laws.grain;
+  s.wall = laws.wall;
+  s.gravity = {};
+  s.time_step = d.time_step;
+  s.skin = 0.1 * c.material.diameter;
+  return s;
+}
+
+/// The plane z = 0 for |x|, |y| < half, as nx by ny rectangles of two triangles.
+inline dem::TriangleMesh plane(double half, int nx, int ny) {
+  dem::TriangleMesh mesh;
+  for (int i = 0; i <= nx; ++i) {
+    for (int j = 0; j <= ny; ++j)
+      mesh.vertices.push_back({half * (2.0 * i / nx - 1.0), half * (2.0 * j / ny - 1.0), 0.0});
+  }
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i * (ny + 1) + j); };
+  for (int i = 0; i < nx; ++i) {
+    for (int j = 0; j < ny; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return mesh;
+}
+
+inline dem::Body floor(double half, int nx = 1, int ny = 1) {
+  return {
+      .name = "floor", .mesh = plane(half, nx, ny), .axis_point = {}, .axis = {1.0, 0.0, 0.0}, .angular_velocity = 0.0};
+}
+
+/// Row of the particle that was given first, second, ...: particles are sorted as they move.
+inline std::size_t row_of(const dem::Simulation& s, std::uint32_t id) {
+  std::size_t i = 0;
+  while (s.state().id[i] != id) ++i;
+  return i;
+}
+inline dem::MotionRow motion_of(const dem::Simulation& s, std::uint32_t id) { return s.motion(row_of(s, id)); }
+inline dem::Vec3 position_of(const dem::Simulation& s, std::uint32_t id) {
+  return s.state().position[row_of(s, id)].at;
+}
+
+}  // namespace scene

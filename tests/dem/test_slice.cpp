@@ -1,0 +1,245 @@
+// The auger slice as a whole: balances, bits, and what a run hands out.
+#include <catch2/catch.hpp>
+
+#include <xxhash.h>
+
+#include "data/error.hpp"
+#include "data/random.hpp"
+#include "dem/run.hpp"
+#include "dem/slice.hpp"
+#include "dem/target.hpp"
+#include "scene.hpp"
+
+namespace {
+
+/// A short box of large spheres: a few hundred, so that seconds are enough.
+dem::Case small_case() {
+  dem::Case c;
+  c.rig.fill = 350.0;
+  c.material.diameter = 1.5e-3;
+  c.contact.stiffness = 200.0;
+  c.contact.friction = 0.4;
+  c.run.settle = 0.03;
+  c.run.start_up = 0.02;
+  c.run.shortest = 0.03;
+  c.run.longest = 0.05;
+  return c;
+}
+
+std::uint64_t hash(const dem::State& s) {
+  std::uint64_t h = XXH3_64bits(s.id.data(), s.id.size() * sizeof s.id[0]);
+  const auto add = [&](dem::Vec3 v) {
+    const double x[3] = {v.x, v.y, v.z};
+    h = XXH3_64bits_withSeed(x, sizeof x, h);
+  };
+  for (std::size_t i = 0; i < s.id.size(); ++i) {
+    add(s.position[i].at);
+    add(s.half[i].velocity);
+    add(s.half[i].spin);
+    add(s.load[i].force);
+    add(s.load[i].torque);
+  }
+  return h;
+}
+
+}  // namespace
+
+TEST_CASE("spheres start clear of each other and of the walls, as many as were asked for, and by the seed alone") {
+  dem::Case c;
+  const dem::Packing packing = dem::pack(c, 3);
+  REQUIRE(packing.position.size() == 2400);
+  const dem::Simulation s(dem::make_slice(c, 3, 1));
+  CHECK(s.sums().contacts == 0);
+  CHECK(s.sums().wall_contacts == 0);
+  CHECK(dem::pack(c, 3).position[17].x == packing.position[17].x);
+  CHECK(dem::pack(c, 4).position[17].x != packing.position[17].x);
+}
+
+TEST_CASE("the mixer's meshes are closed along the axis and have the volume of a shaft in a trough") {
+  const dem::Rig rig;
+  for (const dem::TriangleMesh& one : {dem::auger_mesh(rig), dem::trough_mesh(rig, 0.01)}) {
+    const dem::TriangleMesh three = dem::with_copies(one, {rig.pitch, 0.0, 0.0});
+    CHECK(three.triangles.size() == 3 * one.triangles.size());
+    CHECK(three.vertices.size() < 3 * one.vertices.size());  // the copies share their seams
+  }
+}
+
+TEST_CASE("momentum is kept to rounding in a periodic gas of rough, sticky spheres") {
+  dem::Case c;
+  c.contact.hamaker = 2e-18;
+  const double size = c.material.diameter;
+  dem::Setup setup = scene::box(c, {}, {});
+  setup.low = {};
+  setup.high = {10.0 * size, 10.0 * size, 10.0 * size};
+  setup.periodic = {true, true, true};
+  data::RandomStream random(5, data::Purpose::test);
+  for (int k = 0; k < 512; ++k) {
+    setup.spheres.position.push_back(
+        {(k % 8 + 0.5) * 1.25 * size, (k / 8 % 8 + 0.5) * 1.25 * size, (k / 64 + 0.5) * 1.25 * size});
+    setup.spheres.velocity.push_back({random.normal(), random.normal(), random.normal()});
+    setup.spheres.spin.push_back({1e3 * random.normal(), 1e3 * random.normal(), 1e3 * random.normal()});
+  }
+  dem::Simulation s(std::move(setup));
+  const dem::Vec3 before = s.momentum();
+  double typical = 0.0, contacts = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    s.step();
+    contacts += static_cast<double>(s.sums().contacts);
+  }
+  typical = 512.0 * s.mass();  // kg m/s, the sum of the speeds' order
+  CHECK(contacts > 10000.0);
+  CHECK(dem::length(s.momentum() - before) < 1e-13 * typical);
+}
+
+TEST_CASE("the slice has the same bits with 1, 2 and 4 threads") {
+  for (const double hamaker : {0.0, 4e-18}) {
+    dem::Case c = small_case();
+    c.contact.hamaker = hamaker;
+    std::vector<std::uint64_t> hashes;
+    for (const int threads : {1, 2, 4}) {
+      dem::Simulation s(dem::make_slice(c, 1, threads));
+      s.turn(dem::mixer, 100.0);
+      for (int k = 0; k < 800; ++k) s.step();
+      CHECK(s.state().rebuilds > 3);
+      hashes.push_back(hash(s.state()));
+    }
+    CHECK(hashes[0] == hashes[1]);
+    CHECK(hashes[0] == hashes[2]);
+  }
+}
+
+TEST_CASE("a run stopped and gone on from its checkpoint ends with the same bits") {
+  const dem::Case c = small_case();
+  const dem::RunResult whole = dem::run(c, 1);
+  REQUIRE(whole.status == dem::RunStatus::done);
+  dem::Checkpoint middle;
+  int calls = 0;
+  dem::RunOptions first;
+  first.checkpoint_interval = 0.0;
+  first.checkpoint = [&](const dem::Checkpoint& now) {
+    if (++calls == 12) middle = now;
+  };
+  dem::run(c, 1, first);
+  REQUIRE(calls >= 12);
+  dem::RunOptions second;
+  second.resume = &middle;
+  second.threads = 2;
+  const dem::RunResult resumed = dem::run(c, 1, second);
+  CHECK(hash(resumed.checkpoint.state) == hash(whole.checkpoint.state));
+  CHECK(resumed.series.torque == whole.series.torque);
+  CHECK(resumed.summary.mean[0].mean == whole.summary.mean[0].mean);
+}
+
+TEST_CASE("a stop request ends a run early with a checkpoint to go on from") {
+  std::stop_source source;
+  source.request_stop();
+  dem::RunOptions options;
+  options.stop = source.get_token();
+  const dem::RunResult result = dem::run(small_case(), 1, options);
+  CHECK(result.status == dem::RunStatus::interrupted);
+  CHECK(result.checkpoint.state.position.size() == 350);
+}
+
+TEST_CASE("a sphere that leaves the rig ends the run with who, where and when") {
+  dem::Case c = small_case();
+  dem::Setup setup = dem::make_slice(c, 1, 1);
+  setup.bodies.pop_back();  // no trough
+  dem::Simulation s(std::move(setup));
+  CHECK_THROWS_WITH(
+      [&] {
+        while (s.time() < 1.0) s.step();
+      }(),
+      Catch::Contains("outside the rig") && Catch::Contains("m, at"));
+}
+
+TEST_CASE("spheres that start inside each other end the run instead of spreading nonsense") {
+  const dem::Case c;
+  dem::Setup setup = scene::box(c, {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {});
+  CHECK_THROWS_AS(
+      [&] {
+        dem::Simulation s(setup);
+        for (int k = 0; k < 100; ++k) s.step();
+      }(),
+      dem::Fault);
+}
+
+TEST_CASE("a quantity is set and read by its full and its short name, and refused out of its range") {
+  dem::Case c;
+  dem::set_target(c, "friction", 0.25);
+  CHECK(dem::get_target(c, "contact.wall_friction") == 0.25);
+  dem::set_target(c, "contact.wall_friction", 0.5);
+  dem::set_target(c, "friction", 0.3);
+  CHECK(dem::get_target(c, "wall_friction") == 0.5);
+  CHECK_THROWS_AS(dem::set_target(c, "friction", -1.0), data::InputError);
+  CHECK_THROWS_AS(dem::set_target(c, "frikction", 0.1), data::InputError);
+  for (const dem::Target& t : dem::targets()) {
+    const double before = dem::get_target(c, t.name);
+    dem::set_target(c, t.name, before);
+    CHECK(dem::get_target(c, t.name) == Approx(before));
+  }
+}
+
+TEST_CASE("two cases have the same settings text only when no setting differs") {
+  dem::Case a, b;
+  CHECK(dem::settings_text(a) == dem::settings_text(b));
+  for (const dem::Target& t : dem::targets()) {
+    dem::Case changed = a;
+    const double x = dem::get_target(a, t.name);
+    dem::set_target(changed, t.name, x == 0.0 ? 0.5 * t.high : x * 1.25);
+    INFO(t.name);
+    CHECK(dem::settings_text(changed) != dem::settings_text(a));
+  }
+}
+
+TEST_CASE("what cannot be simulated is named before it is tried") {
+  dem::Case c;
+  CHECK(dem::problems(c).empty());
+  c.contact.stiffness = 1e-3;
+  c.rig.blade_radius = 8e-3;
+  c.rig.angular_velocity = 0.0;
+  CHECK(dem::problems(c).size() == 3);
+  CHECK_THROWS_AS(dem::run(c, 1), data::InputError);
+}
+
+TEST_CASE("in steady state the torques of mixer and trough and the weight's moment balance", "[slow]") {
+  // T_mixer + T_trough + sum m g y = rate of change of the angular momentum, which averages out.
+  dem::Case c;
+  dem::Simulation s(dem::make_slice(c, 2, 2));
+  while (s.time() < 0.06) s.step();
+  s.turn(dem::mixer, c.rig.angular_velocity);
+  const double start = s.time() + 0.15;
+  while (s.time() < start) s.step();
+  double mixer = 0.0, trough = 0.0, weight = 0.0;
+  int steps = 0;
+  const auto spin = [&] {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < s.state().half.size(); ++i) {
+      const dem::Vec3 p = s.state().position[i].at;
+      const dem::MotionRow m = s.motion(i);
+      sum += s.mass() * (p.y * m.velocity.z - p.z * m.velocity.y) + s.inertia() * m.spin.x;
+    }
+    return sum;
+  };
+  const double before = spin(), time = s.time();
+  while (s.time() < start + 0.1) {
+    s.step();
+    ++steps;
+    mixer += s.sums().body[dem::mixer].torque.x;
+    trough += s.sums().body[dem::trough].torque.x;
+    for (const dem::PositionRow& p : s.state().position) weight += s.mass() * 9.81 * p.at.y;
+  }
+  const double rate = (spin() - before) / (s.time() - time);
+  const double torque = -mixer / steps;
+  INFO("torque " << 1e6 * torque << " uN m, trough " << 1e6 * trough / steps << ", weight " << 1e6 * weight / steps
+                 << ", rate " << 1e6 * rate);
+  CHECK(torque > 0.0);
+  CHECK(std::abs(mixer / steps + trough / steps + weight / steps + rate) < 2e-3 * torque);
+}
+
+TEST_CASE("powder at rest pushes a mixer at rest with no torque that grows, and keeps no kinetic energy", "[slow]") {
+  dem::Case c = small_case();
+  dem::Simulation s(dem::make_slice(c, 1, 1));
+  while (s.time() < 0.5) s.step();
+  const double d = dem::derive(c).weight * c.material.diameter;
+  CHECK(s.kinetic_energy() < 1e-4 * 350.0 * d);
+}
