@@ -142,6 +142,7 @@ Study read_study(const StudyFile& file) {
   study.name = head.text("name", fs::path(study.folder).filename().string());
   check_file_name(head, study.name);
   study.description = head.text("description", "");
+  study.notes = head.texts("notes");
   study.seed = static_cast<std::uint64_t>(head.integer("seed", non_negative, 1));
 
   read_parameters(root, study);

@@ -109,6 +109,7 @@ struct CalibrationCase {
 struct Study {
   std::string name;
   std::string description;
+  std::vector<std::string> notes;  ///< choices that the source does not give; the report shows them beside the verdicts
   std::uint64_t seed = 1;
   std::string file;    ///< absolute path of study.toml
   std::string folder;  ///< that holds it

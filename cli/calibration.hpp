@@ -1,0 +1,40 @@
+#pragma once
+// What `fit`, `sample` and `calibrate` share: options from the command line, the rows to learn from, and the files
+// written.
+#include <string>
+
+#include "cli/command.hpp"
+#include "data/progress.hpp"
+#include "uq/calibrate.hpp"
+
+namespace cli {
+
+/// The rows of the run table. Throws InputError (66) when there are none, saying how to get some; prints what was left
+/// out.
+TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace);
+
+/// Fits and saves every surrogate (OUT/surrogate.h5).
+void save_surrogates(const Workspace& workspace, const data::RunTable& table,
+                     const std::vector<uq::FittedSurrogate>& fitted);
+
+/// The report's provenance and the choices behind it, as the study, the table and the DEM's settings tell them.
+void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const TrainingRows& rows);
+
+/// report.json, report.html with figures, results.json in OUT, and what the terminal says.
+data::ExitStatus write_report(const Common& common, const Workspace& workspace, const uq::CalibrationReport& report);
+
+/// "posterior-CASE.nc" in OUT.
+std::string posterior_path(const Workspace& workspace, const std::string& case_name);
+
+/// A progress display of `what`, fed by CalibrateOptions::progress.
+class JobProgress {
+ public:
+  JobProgress(const Common& common, const std::string& what)
+      : progress_(what, 1000, {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic}) {}
+  void operator()(const std::string&, double share) { progress_.set(static_cast<std::uint64_t>(1000.0 * share + 0.5)); }
+
+ private:
+  data::Progress progress_;
+};
+
+}  // namespace cli

@@ -1,0 +1,131 @@
+#include "cli/campaign.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "data/atomic_file.hpp"
+#include "data/csv.hpp"
+#include "data/hash.hpp"
+#include "surrogate/design.hpp"
+
+namespace cli {
+namespace {
+
+/// The value that is typed with five digits in the unit, so that table, terminal and simulation mean the same point.
+double rounded(double si, const data::Unit& unit) {
+  return unit.to_si(std::stod(fmt::format("{:.5g}", unit.from_si(si))));
+}
+
+double scaled(const data::Parameter& p, double u) {
+  return p.scale == data::Scale::log ? p.low * std::pow(p.high / p.low, u) : p.low + (p.high - p.low) * u;
+}
+
+std::string point_key(const Workspace& workspace, const Point& point) {
+  return data::row_key({.material = point.material,
+                        .inputs = point.inputs,
+                        .seed = workspace.study.seed,
+                        .settings = settings_hash(workspace, point.material)});
+}
+
+std::string design_path(const Workspace& workspace) {
+  return (std::filesystem::path(workspace.out) / "design.csv").string();
+}
+
+}  // namespace
+
+std::vector<Point> training_design(const Workspace& workspace, const std::string& material, int first, int runs) {
+  const data::Study& study = workspace.study;
+  const data::Material& rows = study.material(material);
+  const int dimension = static_cast<int>(study.parameters.size() - rows.fixed.size() + study.controls.size());
+  const std::uint64_t seed = number_from(fmt::format("{} {}", study.seed, material));
+  const Eigen::MatrixXd cube = surrogate::scrambled_sobol(runs, dimension, seed, first);
+  std::vector<Point> points;
+  for (int run = 0; run < runs; ++run) {
+    Point point{material, {}};
+    int column = 0;
+    for (const data::Parameter& p : study.parameters) {
+      const auto fixed = rows.fixed.find(p.name);
+      point.inputs.push_back(fixed != rows.fixed.end() ? fixed->second
+                                                       : rounded(scaled(p, cube(run, column++)), p.unit));
+    }
+    for (const data::Control& c : study.controls)
+      point.inputs.push_back(rounded(c.low + (c.high - c.low) * cube(run, column++), c.unit));
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int extra) {
+  std::set<std::string> done;
+  for (const data::RunRow& row : table.rows) done.insert(data::row_key(row));
+  Campaign campaign;
+  std::set<std::string> planned;
+  const auto add_missing = [&](const std::vector<Point>& points) {
+    for (const Point& point : points)
+      if (const std::string key = point_key(workspace, point); !done.contains(key) && planned.insert(key).second)
+        campaign.points.push_back(point);
+  };
+  std::map<std::string, int> wanted;
+  for (const data::Material& material : workspace.study.materials) {
+    wanted[material.name] = material.runs.value_or(workspace.study.training.runs);
+    add_missing(training_design(workspace, material.name, 0, wanted[material.name]));
+  }
+  add_missing(read_design(workspace));
+  campaign.continues = !campaign.points.empty();
+
+  // Further points go to the materials in turn, each continuing its own sequence past what has a row already.
+  for (std::size_t turn = 0; !campaign.continues && static_cast<int>(campaign.points.size()) < extra; ++turn) {
+    const std::string& material = workspace.study.materials[turn % workspace.study.materials.size()].name;
+    for (std::size_t before = campaign.points.size(); campaign.points.size() == before;)
+      add_missing(training_design(workspace, material, wanted[material]++, 1));
+  }
+  if (extra > 0 && static_cast<int>(campaign.points.size()) > extra)
+    campaign.points.resize(static_cast<std::size_t>(extra));
+  return campaign;
+}
+
+std::vector<Point> read_design(const Workspace& workspace) {
+  const std::string path = design_path(workspace);
+  if (!std::filesystem::exists(path)) return {};
+  const data::Study& study = workspace.study;
+  const data::Csv csv = data::read_csv(path);
+  const std::size_t material = csv.column("material");
+  std::vector<Point> points;
+  for (const data::CsvRow& row : csv.rows) {
+    Point point{choose_material(study, row.fields[material]), {}};
+    for (const data::Parameter& p : study.parameters)
+      point.inputs.push_back(p.unit.to_si(csv.number(row, csv.column(p.name))));
+    for (const data::Control& c : study.controls)
+      point.inputs.push_back(c.unit.to_si(csv.number(row, csv.column(c.name))));
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+void write_design(const Workspace& workspace, const std::vector<Point>& points) {
+  const data::Study& study = workspace.study;
+  std::string text = "material";
+  for (const data::Parameter& p : study.parameters) text += "," + p.name;
+  for (const data::Control& c : study.controls) text += "," + c.name;
+  text += "\n";
+  for (const Point& point : points) {
+    text += data::csv_field(point.material);
+    std::size_t column = 0;
+    for (const data::Parameter& p : study.parameters)
+      text += fmt::format(",{:.5g}", p.unit.from_si(point.inputs[column++]));
+    for (const data::Control& c : study.controls)
+      text += fmt::format(",{:.5g}", c.unit.from_si(point.inputs[column++]));
+    text += "\n";
+  }
+  data::write_atomically(design_path(workspace), text);
+}
+
+std::string run_name(const Workspace& workspace, const Point& point) {
+  return (point.material.empty() ? "run" : point.material) + "-" +
+         data::hash_text(point_key(workspace, point)).substr(0, 12);
+}
+
+}  // namespace cli

@@ -1,0 +1,30 @@
+#pragma once
+// The training campaign: which points are to be simulated, and which of them are still missing.
+#include <string>
+#include <vector>
+
+#include "cli/point.hpp"
+
+namespace cli {
+
+/// Points first .. first + runs - 1 of the material's training design: scrambled Sobol' over what its runs vary
+/// (parameters on their scale, controls linearly), each value rounded to five digits in its unit, so that a point that
+/// is typed in is the same point.
+std::vector<Point> training_design(const Workspace& workspace, const std::string& material, int first, int runs);
+
+/// What to simulate now: the points of the study's design and of OUT/design.csv that have no row in `table`; when there
+/// are none, or the study's own are not asked for, `extra` further points shared among the materials.
+struct Campaign {
+  std::vector<Point> points;
+  bool continues = false;  ///< it finishes an earlier, unfinished one, and nothing was added
+};
+Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int extra);
+
+/// Reads and writes OUT/design.csv: material, parameters and controls in the study's units.
+std::vector<Point> read_design(const Workspace& workspace);
+void write_design(const Workspace& workspace, const std::vector<Point>& points);
+
+/// "zirconia-100-1f3a..": names the run's file; equal for equal point, seed and settings.
+std::string run_name(const Workspace& workspace, const Point& point);
+
+}  // namespace cli

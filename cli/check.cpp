@@ -1,0 +1,31 @@
+// demcal check: reads everything, reports every problem at once, simulates nothing.
+#include <fmt/core.h>
+
+#include "cli/command.hpp"
+
+namespace cli {
+
+Action add_check(CLI::App& program) {
+  const auto common = std::make_shared<Common>();
+  add_study_command(program, "check", "read everything and report every problem, without simulating",
+                    "demcal check data/developer", *common);
+  return [common] {
+    const Workspace workspace = open_workspace(*common);
+    const data::Study& study = workspace.study;
+    const TrainingRows rows = training_rows(workspace);
+    std::vector<std::string> warnings = rows.notes;
+    for (const data::Problem& problem : data::outside_training_range(study))
+      warnings.push_back(data::describe({problem}));
+    if (study.cases.empty())
+      warnings.push_back("there is no [[calibrate]] case yet: the study can train, not calibrate");
+    for (const std::string& warning : warnings) say(*common, "warning: " + warning);
+    say(*common, fmt::format("{}: {} parameters, {} controls, {} materials, {} observation sets, {} cases, {} training "
+                             "runs: no problems",
+                             study.name, study.parameters.size(), study.controls.size(), study.materials.size(),
+                             study.observations.size(), study.cases.size(), rows.table.rows.size()));
+    print_json(*common, {{"study", study.name}, {"rows", rows.table.rows.size()}, {"warnings", warnings}});
+    return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
+  };
+}
+
+}  // namespace cli

@@ -1,0 +1,75 @@
+#pragma once
+// What the commands share: common options, the opened study, and how a command is declared.
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data/error.hpp"
+#include "data/run_table.hpp"
+#include "data/study.hpp"
+#include "data/study_file.hpp"
+#include "dem/case.hpp"
+
+namespace cli {
+
+/// What a parsed command line does.
+using Action = std::function<data::ExitStatus()>;
+
+/// Options of every command on a study.
+struct Common {
+  std::string study;                  ///< file, or folder that holds study.toml
+  std::string out;                    ///< results; by default ./STUDY-NAME
+  std::optional<std::uint64_t> seed;  ///< instead of the study's
+  bool quiet = false;
+  bool json = false;
+  std::vector<std::string> set;  ///< "study.key=VALUE"
+};
+
+/// A sub-command with the common options and an example in its help.
+CLI::App* add_study_command(CLI::App& program, const std::string& name, const std::string& purpose,
+                            const std::string& example, Common& common);
+
+/// A study that was read without problems.
+struct Workspace {
+  data::Study study;
+  std::map<std::string, dem::Case> cases;  ///< by material; empty when the study has no [rig]
+  std::string out;                         ///< results folder, absolute; made by the first write
+};
+
+/// Reads the study and, where it has a rig, the DEM case of each material. Throws InputError with every problem.
+Workspace open_workspace(const Common& common);
+
+/// Throws InputError (78) when the study has no [rig] to simulate.
+void require_rig(const Workspace& workspace);
+
+/// Makes the results folder. Throws InputError (73), also when it is the study's own folder.
+void make_out(const Workspace& workspace, const std::string& subfolder = "");
+
+/// The rows shipped with the study and those in OUT/training.h5, merged; rows of other settings are left out.
+struct TrainingRows {
+  data::RunTable table;
+  std::vector<std::string> notes;  ///< rows left out and why
+};
+TrainingRows training_rows(const Workspace& workspace);
+
+/// A line for the user on stderr, unless --quiet.
+void say(const Common& common, const std::string& text);
+/// The machine-readable result on stdout, when --json.
+void print_json(const Common& common, const nlohmann::json& result);
+
+Action add_new(CLI::App& program);
+Action add_check(CLI::App& program);
+Action add_simulate(CLI::App& program);
+Action add_design(CLI::App& program);
+Action add_train(CLI::App& program);
+Action add_fit(CLI::App& program);
+Action add_sample(CLI::App& program);
+Action add_calibrate(CLI::App& program);
+Action add_report(CLI::App& program);
+
+}  // namespace cli

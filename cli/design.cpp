@@ -1,0 +1,38 @@
+// demcal design: the points that demcal train would simulate next.
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "cli/campaign.hpp"
+
+namespace cli {
+
+Action add_design(CLI::App& program) {
+  struct Options {
+    Common common;
+    int runs = 0;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = add_study_command(program, "design", "the training design, extended from what exists",
+                                        "demcal design data/developer --runs 12", options->common);
+  command
+      ->add_option("--runs", options->runs,
+                   "so many points: those still missing, or, when there are none, further ones")
+      ->check(CLI::Range(1, 100000));
+  return [options] {
+    const Common& common = options->common;
+    const Workspace workspace = open_workspace(common);
+    make_out(workspace);
+    const TrainingRows rows = training_rows(workspace);
+    for (const std::string& note : rows.notes) say(common, "note: " + note);
+    const Campaign campaign = plan_campaign(workspace, rows.table, options->runs);
+    write_design(workspace, campaign.points);
+    const std::string path = (std::filesystem::path(workspace.out) / "design.csv").string();
+    say(common,
+        fmt::format("{} points to simulate, {} rows exist: {}", campaign.points.size(), rows.table.rows.size(), path));
+    print_json(common, {{"points", campaign.points.size()}, {"rows", rows.table.rows.size()}, {"design", path}});
+    return data::ExitStatus::done;
+  };
+}
+
+}  // namespace cli

@@ -1,0 +1,108 @@
+// demcal new: a commented study for the user's own rig and powder.
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "cli/command.hpp"
+#include "data/atomic_file.hpp"
+
+namespace cli {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* study_template =
+    R"(# A study for demcal. Values carry units as text; a bare number is dimensionless or in the section's unit.
+# demcal check {0}       reads it and names every mistake
+# demcal simulate {0}    one run, to see that the rig does what you expect
+# demcal train {0}       makes the training runs
+# demcal calibrate {0}   gives the report
+
+[study]
+name = "{1}"
+seed = 1
+description = "Which of friction and Hamaker constant does the measured torque determine?"
+notes = []                     # choices your source does not give; the report shows them beside the verdicts
+
+[rig]                          # one pitch of an auger in an open trough, periodic along its axis
+kind = "slice"
+shaft_radius = "2.5 mm"
+blade_radius = "6 mm"
+blade_thickness = "1 mm"
+trough_radius = "7.1 mm"
+pitch = "12 mm"
+fill = 2400                    # spheres in the box, or their mass: "4 g"
+
+[materials.powder]
+density = "6090 kg/m3"
+diameter = "0.8 mm"            # of the simulated spheres
+coarse_graining = 1            # their diameter over that of the real grains
+
+[contact]
+stiffness = "100 N/m"
+restitution = 0.7
+minimum_separation = "1.5 nm"  # only hamaker / minimum_separation^2 matters
+# wall_friction = 0.3          # follows friction unless given
+
+[parameters.friction]          # what is to be calibrated
+target = "contact.friction"
+low = 0.1
+high = 0.8
+prior = {{ kind = "uniform" }}   # also normal, truncated_normal, log_normal, beta
+
+[parameters.hamaker]
+target = "contact.hamaker"
+unit = "J"
+low = 0
+high = 1.5e-17
+
+[controls.rpm]                 # what the experiment sets
+target = "rig.rpm"
+unit = "rpm"
+low = 50
+high = 300
+
+[outputs.torque]
+unit = "uN m"
+
+[training]
+runs = 48
+standard_error = 0.03          # wanted of each run's mean torque, relative
+
+[[observe]]                    # your measurement: a CSV with the columns rpm, torque, torque_se
+name = "bench"
+material = "powder"
+file = "bench.csv"
+
+[[calibrate]]
+name = "powder"
+observe = ["bench"]
+free = ["friction", "hamaker"]
+)";
+
+constexpr const char* observed_template =
+    "# replace these lines by your measurement: torque of the powder alone (idle torque taken off) and its standard "
+    "error\n"
+    "rpm,torque,torque_se\n50,100,3\n150,98,3\n300,95,3\n";
+
+}  // namespace
+
+Action add_new(CLI::App& program) {
+  const auto folder = std::make_shared<std::string>();
+  CLI::App* command = program.add_subcommand("new", "a commented study for your own rig and powder");
+  command->add_option("FOLDER", *folder, "made by this command")->required();
+  command->footer("Example: demcal new my-mixer");
+  return [folder] {
+    const fs::path path = fs::absolute(*folder).lexically_normal();
+    const fs::path study = path / "study.toml";
+    if (fs::exists(study))
+      throw data::InputError(data::ExitStatus::cannot_write,
+                             {study.string(), "is there already", "choose another folder, or remove it first"});
+    const std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();
+    data::write_atomically((path / "bench.csv").string(), std::string_view(observed_template));
+    data::write_atomically(study.string(), std::string_view(fmt::format(fmt::runtime(study_template), *folder, name)));
+    fmt::print(stderr, "{}: edit it, put your torque into bench.csv, then: demcal check {}\n", study.string(), *folder);
+    return data::ExitStatus::done;
+  };
+}
+
+}  // namespace cli

@@ -1,0 +1,109 @@
+// demcal simulate: one DEM run at one point.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "cli/run_point.hpp"
+#include "data/interrupt.hpp"
+#include "data/progress.hpp"
+#include "data/provenance.hpp"
+
+namespace cli {
+namespace {
+
+struct Options {
+  Common common;
+  std::string material;
+  std::vector<std::string> at;
+  int threads = 1;
+};
+
+nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
+  nlohmann::json json{{"material", point.material},
+                      {"seed", workspace.study.seed},
+                      {"isa", data::built_isa()},
+                      {"settings", settings_hash(workspace, point.material)},
+                      {"bond_number", dem::derive(case_at(workspace, point)).bond},
+                      {"warnings", result.warnings}};
+  std::size_t column = 0;
+  const auto input = [&](const auto& named) { json["point"][named.name] = named.unit.from_si(point.inputs[column++]); };
+  for (const data::Parameter& p : workspace.study.parameters) input(p);
+  for (const data::Control& c : workspace.study.controls) input(c);
+  const data::RunRow row = to_row(workspace, point, result);
+  for (std::size_t i = 0; i < row.outputs.size(); ++i) {
+    const data::Output& output = workspace.study.outputs[i];
+    json["outputs"][output.name] = {{"unit", output.unit.symbol},
+                                    {"mean", output.unit.from_si(row.outputs[i])},
+                                    {"standard_error", row.standard_errors[i] / output.unit.factor}};
+  }
+  return json;
+}
+
+std::string summary(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
+  const dem::Derived derived = dem::derive(case_at(workspace, point));
+  std::string text =
+      fmt::format("{} spheres, pull-off {:.3g} N, Bond number {:.3g}, time step {:.3g} s, {:.3g} s of turning\n",
+                  derived.spheres, derived.pull_off, derived.bond, derived.time_step, result.diagnostics.simulated);
+  const data::RunRow row = to_row(workspace, point, result);
+  for (std::size_t i = 0; i < row.outputs.size(); ++i) {
+    const data::Output& output = workspace.study.outputs[i];
+    text += fmt::format("  {:<20} {:>10.4g} +- {:.2g} {}\n", output.name, output.unit.from_si(row.outputs[i]),
+                        row.standard_errors[i] / output.unit.factor, output.unit.symbol);
+  }
+  for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
+  return text;
+}
+
+}  // namespace
+
+Action add_simulate(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = add_study_command(
+      program, "simulate", "run the DEM at one point and say its torque",
+      "demcal simulate data/developer --material carrier --at friction=0.4,hamaker=9e-18,rpm=150", options->common);
+  command->add_option("--material", options->material, "which of the study's materials (default: the first)");
+  command
+      ->add_option("--at", options->at,
+                   "NAME=VALUE of parameters and controls, separated by commas; the others take the material's fixed "
+                   "value or the middle of their range")
+      ->delimiter(',');
+  command->add_option("--threads", options->threads, "threads of this run; the result does not depend on it")
+      ->check(CLI::Range(1, 256));
+  return [options] {
+    const Common& common = options->common;
+    const Workspace workspace = open_workspace(common);
+    require_rig(workspace);
+    const Point point = parse_point(workspace, choose_material(workspace.study, options->material), options->at);
+    make_out(workspace);
+    const std::string path = (std::filesystem::path(workspace.out) / "run.h5").string();
+    say(common,
+        fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point)));
+
+    const data::InterruptGuard interrupt;
+    dem::RunResult result;
+    {
+      data::Progress progress("simulating (at most)", 1000,
+                              {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
+      result = run_point(workspace, point,
+                         {.path = path,
+                          .threads = options->threads,
+                          .stop = interrupt.token(),
+                          .progress = [&](const dem::RunProgress& now) {
+                            progress.set(static_cast<std::uint64_t>(std::lround(1000.0 * now.fraction)));
+                          }});
+    }
+    if (result.status == dem::RunStatus::interrupted) {
+      say(common, "interrupted; the same command goes on from here (" + path + ")");
+      return data::ExitStatus::interrupted;
+    }
+    if (result.status == dem::RunStatus::failed)
+      throw data::InputError(data::ExitStatus::bad_study,
+                             {describe(workspace.study, point), result.reason, "its last good state is in " + path});
+    say(common, summary(workspace, point, result) + path);
+    print_json(common, to_json(workspace, point, result));
+    return result.warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
+  };
+}
+
+}  // namespace cli

@@ -1,0 +1,132 @@
+// demcal train: the missing training runs, one thread each, several at once. Every finished run is kept at once: its
+// file in OUT/runs, its row in OUT/training.h5 and training.csv. An interrupted run goes on from its checkpoint.
+#include <fmt/core.h>
+
+#include <atomic>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+
+#include "cli/campaign.hpp"
+#include "cli/run_point.hpp"
+#include "data/interrupt.hpp"
+#include "data/progress.hpp"
+
+namespace cli {
+namespace fs = std::filesystem;
+namespace {
+
+struct Options {
+  Common common;
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int runs = 0;
+};
+
+void write_tables(const Workspace& workspace, const data::RunTable& table) {
+  const fs::path out = workspace.out;
+  data::write_table_hdf5((out / "training.h5").string(), table, workspace.study);
+  data::write_table_csv((out / "training.csv").string(), table, workspace.study);
+}
+
+/// What the workers share; the mutex guards all but the counter.
+struct Ledger {
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  data::RunTable table;
+  std::size_t finished = 0;
+  std::vector<std::string> failures, warnings;
+  std::exception_ptr error;
+};
+
+/// One worker: takes points until there are none, or the campaign is to stop.
+void work(const Workspace& workspace, const Campaign& campaign, Ledger& ledger, data::Progress& progress,
+          std::stop_source& stop) {
+  try {
+    for (std::size_t i = ledger.next++; i < campaign.points.size() && !stop.stop_requested(); i = ledger.next++) {
+      const Point& point = campaign.points[i];
+      const std::string path = (fs::path(workspace.out) / "runs" / (run_name(workspace, point) + ".h5")).string();
+      const dem::RunResult result =
+          run_point(workspace, point, {.path = path, .keep_state = false, .stop = stop.get_token()});
+      if (result.status == dem::RunStatus::interrupted) return;
+      const std::string what = fmt::format("{} {}", point.material, describe(workspace.study, point));
+      const std::lock_guard lock(ledger.mutex);
+      for (const std::string& warning : result.warnings) ledger.warnings.push_back(what + ": " + warning);
+      if (result.status == dem::RunStatus::failed) {
+        ledger.failures.push_back(what + ": " + result.reason);
+        progress.note("failed: " + ledger.failures.back());
+      } else {
+        ledger.table.rows.push_back(to_row(workspace, point, result));
+        write_tables(workspace, ledger.table);
+        ++ledger.finished;
+      }
+      progress.advance();
+    }
+  } catch (...) {
+    const std::lock_guard lock(ledger.mutex);
+    if (!ledger.error) ledger.error = std::current_exception();
+    stop.request_stop();
+  }
+}
+
+}  // namespace
+
+Action add_train(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = add_study_command(program, "train", "make the training runs that are missing",
+                                        "demcal train data/developer --runs 6", options->common);
+  command->add_option("--jobs", options->jobs, "runs at the same time, one thread each (default: one a core)")
+      ->check(CLI::Range(1, 4096));
+  command
+      ->add_option("--runs", options->runs,
+                   "so many runs: those still missing from the design, or, when there are none, further ones")
+      ->check(CLI::Range(1, 100000));
+  return [options] {
+    const Common& common = options->common;
+    const Workspace workspace = open_workspace(common);
+    require_rig(workspace);
+    make_out(workspace, "runs");
+    TrainingRows rows = training_rows(workspace);
+    for (const std::string& note : rows.notes) say(common, "note: " + note);
+    const std::size_t before = rows.table.rows.size();
+    const Campaign campaign = plan_campaign(workspace, rows.table, options->runs);
+    write_design(workspace, campaign.points);
+    if (campaign.points.empty())
+      say(common, fmt::format("nothing is missing: the table has {} runs. For more of them: --runs N", before));
+    else
+      say(common, fmt::format("{} runs{}; the table has {}", campaign.points.size(),
+                              campaign.continues ? " are missing" : " beyond the design", before));
+
+    Ledger ledger;
+    ledger.table = std::move(rows.table);
+    write_tables(workspace, ledger.table);
+    const data::InterruptGuard interrupt;
+    std::stop_source stop;
+    const std::stop_callback forward(interrupt.token(), [&] { stop.request_stop(); });
+    {
+      data::Progress progress("training runs", campaign.points.size(),
+                              {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
+      std::vector<std::jthread> workers;
+      const std::size_t jobs = std::min<std::size_t>(static_cast<std::size_t>(options->jobs), campaign.points.size());
+      for (std::size_t j = 0; j < jobs; ++j)
+        workers.emplace_back([&] { work(workspace, campaign, ledger, progress, stop); });
+    }
+    if (ledger.error) std::rethrow_exception(ledger.error);
+    const std::string table = (fs::path(workspace.out) / "training.csv").string();
+    for (const std::string& warning : ledger.warnings) say(common, "warning: " + warning);
+    for (const std::string& failure : ledger.failures) say(common, "failed: " + failure);
+    print_json(common, {{"finished", ledger.finished},
+                        {"failed", ledger.failures},
+                        {"warnings", ledger.warnings},
+                        {"rows", ledger.table.rows.size()},
+                        {"table", table}});
+    if (interrupt.interrupted()) {
+      say(common, fmt::format("interrupted after {} of {} runs; the same command does the rest", ledger.finished,
+                              campaign.points.size()));
+      return data::ExitStatus::interrupted;
+    }
+    say(common, fmt::format("{} new runs, {} in all: {}", ledger.finished, ledger.table.rows.size(), table));
+    return ledger.failures.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
+  };
+}
+
+}  // namespace cli

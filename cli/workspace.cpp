@@ -1,0 +1,137 @@
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "cli/point.hpp"
+#include "dem/read_case.hpp"
+#include "dem/target.hpp"
+
+namespace cli {
+namespace fs = std::filesystem;
+namespace {
+
+/// Each parameter and control must name something the DEM has, in a range and unit that it can take.
+void check_target(const data::Section& section, const std::string& target_name, const data::Unit& unit, double low,
+                  double high) {
+  const dem::Target* target = dem::find_target(target_name);
+  if (target == nullptr) {
+    std::string known;
+    for (const dem::Target& t : dem::targets()) known += (known.empty() ? "" : ", ") + t.name;
+    section.problem("target", fmt::format("the simulation has no quantity '{}'", target_name),
+                    "choose one of: " + known);
+    return;
+  }
+  if (!data::convertible(unit.symbol, target->unit)) {
+    section.problem("unit", fmt::format("'{}' does not measure {} ({})", unit.symbol, target->name, target->unit),
+                    "use a unit of that dimension");
+    return;
+  }
+  const auto outside = [&](const char* key, double value) {
+    if (value >= target->low && value <= target->high) return;
+    section.problem(key,
+                    fmt::format("{:g} {} is outside the possible range [{:g}, {:g}] of {}", unit.from_si(value),
+                                unit.symbol, unit.from_si(target->low), unit.from_si(target->high), target->name),
+                    "choose a bound inside it");
+  };
+  outside("low", low);
+  outside("high", high);
+}
+
+}  // namespace
+
+CLI::App* add_study_command(CLI::App& program, const std::string& name, const std::string& purpose,
+                            const std::string& example, Common& common) {
+  CLI::App* command = program.add_subcommand(name, purpose);
+  command->add_option("STUDY", common.study, "study file, or folder that holds study.toml")->required();
+  command->add_option("--out", common.out, "results folder (default: ./STUDY-NAME)");
+  command->add_option("--seed", common.seed, "seed of all random streams, instead of the study's");
+  command->add_flag("--quiet", common.quiet, "no progress, no summary");
+  command->add_flag("--json", common.json, "the result as JSON on stdout, and nothing else there");
+  command->add_option("--set", common.set, "set a key of the study: contact.restitution=0.8")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  command->footer("Example: " + example);
+  return command;
+}
+
+Workspace open_workspace(const Common& common) {
+  const data::StudyFile file = data::StudyFile::open(common.study, common.set);
+  Workspace workspace{.study = data::read_study(file), .cases = {}, .out = {}};
+  data::Study& study = workspace.study;
+  if (common.seed) study.seed = *common.seed;
+  if (file.root().child("rig").exists()) {
+    for (const data::Material& material : study.materials)
+      workspace.cases[material.name] = dem::read_case(file, material.name);
+    for (const data::Parameter& p : study.parameters)
+      check_target(file.root().child("parameters").child(p.name), p.target, p.unit, p.low, p.high);
+    for (const data::Control& c : study.controls)
+      check_target(file.root().child("controls").child(c.name), c.target, c.unit, c.low, c.high);
+    for (const data::Output& output : study.outputs)
+      if (!dem::has_output(output.name))
+        file.root().child("outputs").problem(output.name, fmt::format("the simulation has no output '{}'", output.name),
+                                             "choose one of: " + dem::output_names());
+  }
+  file.finish();
+  workspace.out = fs::absolute(common.out.empty() ? study.name : common.out).lexically_normal().string();
+  return workspace;
+}
+
+void require_rig(const Workspace& workspace) {
+  if (!workspace.cases.empty()) return;
+  throw data::InputError(data::ExitStatus::bad_study,
+                         {workspace.study.file, "has no [rig], so there is nothing to simulate",
+                          "add a [rig] section (demcal new shows one)"});
+}
+
+void make_out(const Workspace& workspace, const std::string& subfolder) {
+  const fs::path out = workspace.out;
+  std::error_code failure;
+  if (fs::weakly_canonical(out, failure) == fs::weakly_canonical(workspace.study.folder, failure))
+    throw data::InputError(data::ExitStatus::cannot_write,
+                           {workspace.out, "is the study's own folder, and nothing is ever written there",
+                            "start demcal elsewhere, or give --out DIR"});
+  fs::create_directories(out / subfolder, failure);
+  if (failure)
+    throw data::InputError(
+        data::ExitStatus::cannot_write,
+        {(out / subfolder).string(), "cannot be made: " + failure.message(), "give another folder with --out DIR"});
+}
+
+TrainingRows training_rows(const Workspace& workspace) {
+  const data::Study& study = workspace.study;
+  TrainingRows result{data::empty_table(study), {}};
+  std::map<std::string, std::string> settings;
+  for (const auto& [material, unused] : workspace.cases) settings[material] = settings_hash(workspace, material);
+  const auto add = [&](const std::string& path) {
+    const data::TableRead read = data::read_table(path, study);
+    for (const std::string& left_out : read.left_out) result.notes.push_back(left_out);
+    data::RunTable usable = read.table;
+    std::size_t stale = std::erase_if(usable.rows, [&](const data::RunRow& row) {
+      const auto known = settings.find(row.material);
+      return known != settings.end() && !row.settings.empty() && row.settings != known->second;
+    });
+    if (stale > 0)
+      result.notes.push_back(
+          fmt::format("{}: {} of {} rows were simulated under other settings than the study's and are left out (demcal "
+                      "train makes them again)",
+                      path, stale, read.table.rows.size()));
+    result.table = data::merge(result.table, usable);
+  };
+  if (!study.training.table.empty()) add(study.training.table);
+  const std::string own = (fs::path(workspace.out) / "training.h5").string();
+  if (fs::exists(own)) add(own);
+  return result;
+}
+
+void say(const Common& common, const std::string& text) {
+  if (!common.quiet) fmt::print(stderr, "{}\n", text);
+}
+
+void print_json(const Common& common, const nlohmann::json& result) {
+  if (common.json) fmt::print("{}\n", result.dump(1));
+}
+
+}  // namespace cli

@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Remakes the synthetic torque series of a shipped study: python3 data/make_observed.py FOLDER [DEMCAL]
+
+FOLDER/observed/truth.toml says the truth of each material and how it is observed. Each point is one `demcal simulate` of
+the study with a seed that no training run uses; then measurement noise of a stated share of torque is added, from a
+seeded generator and with the same standard normal draws at every share. The standard error that is written is that of
+the measurement and of the simulated mean together. Runs are kept in ./observed-runs, so that a second start is quick.
+"""
+import csv
+import io
+import json
+import math
+import pathlib
+import random
+import subprocess
+import sys
+import tomllib
+
+FOLDER = pathlib.Path(sys.argv[1])
+DEMCAL = sys.argv[2] if len(sys.argv) > 2 else str(pathlib.Path(__file__).resolve().parent.parent / "demcal")
+
+
+def simulate(truth, name, point, rpm):
+    at = ",".join(f"{key}={value}" for key, value in (point["at"] | {"rpm": rpm}).items())
+    out = pathlib.Path("observed-runs") / f"{FOLDER.name}-{name}-{rpm}"
+    command = [DEMCAL, "simulate", str(FOLDER), "--at", at, "--seed", str(truth["simulation_seed"]), "--json", "--quiet",
+               "--out", str(out), "--material", point["material"], "--set", f"training.standard_error={truth['standard_error']}",
+               "--set", f"run.longest=\"{truth['longest']}\""]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode not in (0, 2):  # 2: done, with a warning
+        sys.exit(f"{' '.join(command)}\n{done.stderr}")
+    torque = json.loads(done.stdout)["outputs"]["torque"]
+    return torque["mean"], torque["standard_error"]
+
+
+def main():
+    truth = tomllib.loads((FOLDER / "observed" / "truth.toml").read_text())
+    noise = random.Random(truth["noise_seed"])
+    for name, point in truth["series"].items():
+        rows = []
+        for rpm in truth["rpm"]:
+            mean, error = simulate(truth, name, point, rpm)
+            rows.append((rpm, mean, error, noise.gauss(0.0, 1.0)))
+            print(f"{name} {rpm} rpm: {mean:.2f} +- {error:.2f}", flush=True)
+        for level in truth["noise"]:
+            out = io.StringIO()
+            values = ", ".join(f"{key} {value}" for key, value in point["at"].items())
+            out.write(f"# synthetic, not a measurement: torque of demcal's own DEM on the slice rig of this study\n"
+                      f"# truth: {values} ({point['source']})\n"
+                      f"# simulated with seed {truth['simulation_seed']}, which no training run uses; "
+                      f"measurement noise {level:.0%} of torque, seed {truth['noise_seed']}\n"
+                      f"# made by data/make_observed.py; torque_se: noise and error of the simulated mean together\n")
+            table = csv.writer(out, lineterminator="\n")
+            table.writerow(["rpm", "torque", "torque_se"])
+            for rpm, mean, error, draw in rows:
+                table.writerow([rpm, f"{mean + level * mean * draw:.4f}", f"{math.hypot(level * mean, error):.4f}"])
+            folder = FOLDER / "observed" / f"noise-{100 * level:.0f}"
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / f"{name}.csv").write_text(out.getvalue())
+
+
+main()

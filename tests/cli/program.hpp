@@ -1,0 +1,34 @@
+#pragma once
+// Runs the program as a user would, in a folder of the test's own.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace test {
+
+struct Outcome {
+  int status = 0;
+  std::string out, err;
+};
+
+/// An empty folder that goes with the object.
+class Folder {
+ public:
+  Folder();
+  ~Folder();
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  std::filesystem::path path;
+  /// Copies a shipped study (data/NAME) here and returns its place.
+  std::filesystem::path study(const std::string& name) const;
+  void write(const std::string& file, const std::string& text) const;
+  std::string read(const std::string& file) const;
+  /// Replaces a text that must be in the file.
+  void replace(const std::string& file, const std::string& old_text, const std::string& new_text) const;
+
+  /// The program, started in this folder. `stop_when` (a file) ends it by SIGINT as soon as the file exists.
+  Outcome demcal(const std::vector<std::string>& arguments, const std::string& stop_when = "") const;
+};
+
+}  // namespace test

@@ -1,0 +1,142 @@
+// The commands as a user starts them.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/cli/program.hpp"
+
+using Catch::Contains;
+using test::Folder;
+namespace fs = std::filesystem;
+
+namespace {
+
+nlohmann::json simulate(const Folder& folder, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"simulate", DEMCAL_SOURCE_DIR "/data/developer", "--json", "--quiet", "--out",
+                                     "run"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const auto outcome = folder.demcal(arguments);
+  REQUIRE((outcome.status == 0 || outcome.status == 2));
+  fs::remove_all(folder.path / "run");
+  return nlohmann::json::parse(outcome.out);
+}
+
+struct Row {
+  std::map<std::string, std::string> field;
+  double number(const std::string& name) const { return std::stod(field.at(name)); }
+};
+
+std::vector<Row> read_rows(const fs::path& path) {
+  std::vector<Row> rows;
+  std::vector<std::string> head;
+  std::istringstream text([&] {
+    std::ifstream file(path);
+    std::ostringstream all;
+    all << file.rdbuf();
+    return all.str();
+  }());
+  for (std::string line; std::getline(text, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::vector<std::string> fields;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(cell);
+    if (head.empty()) {
+      head = fields;
+      continue;
+    }
+    Row row;
+    for (std::size_t i = 0; i < head.size(); ++i) row.field[head[i]] = i < fields.size() ? fields[i] : "";
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("another code's runs give a whole calibration: report, results and posterior", "[slow]") {
+  const Folder folder;
+  const auto outcome = folder.demcal({"calibrate", DEMCAL_SOURCE_DIR "/data/other-code", "--json"});
+  INFO(outcome.err);
+  CHECK(outcome.status == 0);
+  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  CHECK(report["format"] == 1);
+  CHECK(report["cases"].size() == 1);
+  for (const char* file : {"report.html", "report.json", "results.json", "surrogate.h5", "posterior-powder.nc"})
+    CHECK(fs::exists(folder.path / "other-code" / file));
+  CHECK(nlohmann::json::parse(folder.read("other-code/report.json"))["cases"] == report["cases"]);
+
+  // The data trade friction for cohesion: the truth (its file's header) lies inside, and neither is called identified.
+  const nlohmann::json& friction = report["cases"][0]["parameters"][0];
+  CHECK(friction["name"] == "friction");
+  CHECK(std::abs(friction["mean"].get<double>() - 0.4) < 3.0 * friction["sd"].get<double>());
+  CHECK(friction["verdict"] != "identified");
+
+  SECTION("the report is written again without sampling, and is the same page") {
+    const std::string page = folder.read("other-code/report.html");
+    fs::remove(folder.path / "other-code" / "report.html");
+    CHECK(folder.demcal({"report", DEMCAL_SOURCE_DIR "/data/other-code"}).status == 0);
+    CHECK(folder.read("other-code/report.html") == page);
+  }
+}
+
+TEST_CASE("a new study passes its own check") {
+  const Folder folder;
+  CHECK(folder.demcal({"new", "my-mixer"}).status == 0);
+  const auto outcome = folder.demcal({"check", "my-mixer"});
+  INFO(outcome.err);
+  CHECK(outcome.status == 0);
+  CHECK(folder.demcal({"new", "my-mixer"}).status == 73);
+}
+
+TEST_CASE("training runs are interrupted, go on where they were, and give the table of an uninterrupted campaign",
+          "[slow]") {
+  const std::string study = DEMCAL_SOURCE_DIR "/data/quick";
+  const Folder whole, halted;
+  const std::vector<std::string> arguments{"train", study,         "--runs", "3",
+                                           "--set", "rig.fill=60", "--set",  "run.longest=\"0.3 s\""};
+  CHECK(whole.demcal(arguments).status == 0);
+  CHECK(halted.demcal(arguments, "quick/runs").status == 75);
+  const auto rest = halted.demcal(arguments);
+  INFO(rest.err);
+  CHECK(rest.status == 0);
+  const auto by_point = [](const Folder& folder) {
+    std::map<std::string, std::string> torque;
+    for (const Row& row : read_rows(folder.path / "quick" / "training.csv"))
+      torque[row.field.at("friction") + " " + row.field.at("hamaker") + " " + row.field.at("rpm")] =
+          row.field.at("torque");
+    return torque;
+  };
+  CHECK(by_point(whole).size() == 3);
+  CHECK(by_point(halted) == by_point(whole));
+}
+
+TEST_CASE("shipped rows and an observed point come out again", "[slow]") {
+  const Folder folder;
+  const fs::path study = fs::path(DEMCAL_SOURCE_DIR) / "data" / "developer";
+  const std::vector<Row> rows = read_rows(study / "training.csv");
+  REQUIRE(rows.size() >= 60);
+  for (const std::size_t which : {std::size_t{1}, rows.size() - 1}) {
+    const Row& row = rows[which];
+    const nlohmann::json run =
+        simulate(folder, {"--material", row.field.at("material"), "--at",
+                          "friction=" + row.field.at("friction") + ",hamaker=" + row.field.at("hamaker") +
+                              ",rpm=" + row.field.at("rpm")});
+    CHECK(run["settings"] == row.field.at("settings"));
+    const double torque = run["outputs"]["torque"]["mean"], error = run["outputs"]["torque"]["standard_error"];
+    if (run["isa"] == row.field.at("isa"))
+      CHECK(torque == row.number("torque"));
+    else
+      CHECK(std::abs(torque - row.number("torque")) < 3.0 * std::hypot(error, row.number("torque_se")));
+  }
+  // An observed point is the same DEM plus noise of 1 % in the least noisy series: within three of its standard errors.
+  const std::vector<Row> observed = read_rows(study / "observed" / "noise-1" / "zirconia-800.csv");
+  const Row& point = observed.back();
+  const nlohmann::json run =
+      simulate(folder, {"--material", "zirconia-800", "--at", "friction=0.4,rpm=" + point.field.at("rpm"), "--seed",
+                        "40911", "--set", "training.standard_error=0.015", "--set", "run.longest=\"1.2 s\""});
+  CHECK(std::abs(run["outputs"]["torque"]["mean"].get<double>() - point.number("torque")) <
+        3.0 * point.number("torque_se"));
+}
