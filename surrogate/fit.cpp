@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "data/error.hpp"
+#include "data/random.hpp"
 #include "surrogate/design.hpp"
+#include "surrogate/marginal.hpp"
 #include "surrogate/maximise.hpp"
 
 namespace surrogate {
@@ -29,7 +33,7 @@ std::vector<Eigen::VectorXd> make_starts(int d, const FitOptions& options) {
   first.length_scales = Eigen::VectorXd::Constant(d, 0.5 * std::sqrt(static_cast<double>(std::max(d, 1))));
   first.signal_variance = 1.0;
   first.nugget_variance = 1e-3;
-  starts.push_back(to_logs(first, options.nugget));
+  starts.push_back(options.first_start.size() == count ? options.first_start : to_logs(first, options.nugget));
   if (options.starts <= 1) return starts;
   const Eigen::MatrixXd cube = scrambled_sobol(options.starts - 1, std::min(count, sobol_max_dimension), options.seed);
   for (Index i = 0; i < cube.rows(); ++i) {
@@ -42,6 +46,88 @@ std::vector<Eigen::VectorXd> make_starts(int d, const FitOptions& options) {
     starts.push_back(u);
   }
   return starts;
+}
+
+/// The runs of every point whose index is in `rows`.
+Standardised subset(const Standardised& data, const std::vector<int>& rows) {
+  Standardised result = data;
+  result.points = data.points(rows, Eigen::all);
+  std::vector<int> place(static_cast<std::size_t>(data.points.rows()), -1);
+  for (std::size_t j = 0; j < rows.size(); ++j) place[rows[j]] = static_cast<int>(j);
+  std::vector<int> runs;
+  result.point_of_run.clear();
+  result.runs_of_point.assign(rows.size(), 0);
+  for (std::size_t i = 0; i < data.point_of_run.size(); ++i)
+    if (const int j = place[data.point_of_run[i]]; j >= 0) {
+      runs.push_back(static_cast<int>(i));
+      result.point_of_run.push_back(j);
+      ++result.runs_of_point[j];
+    }
+  result.z = data.z(runs);
+  result.noise = data.noise(runs);
+  return result;
+}
+
+std::vector<int> random_rows(int count, int total, std::uint64_t seed) {
+  std::vector<int> rows(static_cast<std::size_t>(total));
+  std::iota(rows.begin(), rows.end(), 0);
+  data::RandomStream random(seed, data::Purpose::optimiser_starts);
+  for (int i = 0; i < count; ++i) std::swap(rows[i], rows[i + static_cast<int>(random.uniform() * (total - i))]);
+  rows.resize(static_cast<std::size_t>(count));
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+bool better(const StartOutcome& a, const StartOutcome& b) {
+  return std::pair(a.points, a.objective) < std::pair(b.points, b.objective);
+}
+
+void mark_agreeing(std::vector<StartOutcome>& outcomes) {
+  const StartOutcome& best = *std::max_element(outcomes.begin(), outcomes.end(), better);
+  const double objective = best.objective;
+  for (StartOutcome& outcome : outcomes) outcome.agrees = outcome.objective > objective - 0.1;
+}
+
+/// Every start is followed to its end; where points are many, on a quarter of them (and so on), and the best two
+/// distinct ends are followed on all points.
+std::vector<StartOutcome> search(const Standardised& data, const std::vector<Eigen::VectorXd>& starts,
+                                 const FitOptions& options) {
+  constexpr int few = 256;       // up to this many points every start sees all of them
+  constexpr double apart = 0.5;  // in logarithms: ends closer than this are the same
+  const auto points = static_cast<int>(data.points.rows());
+  std::vector<StartOutcome> outcomes;
+  std::vector<std::size_t> followed;
+  if (points > few) {
+    outcomes = search(subset(data, random_rows(points / 4, points, options.seed)), starts, options);
+    std::vector<std::size_t> order(outcomes.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return better(outcomes[b], outcomes[a]); });
+    followed.push_back(order[0]);
+    for (const std::size_t i : order)
+      if (followed.size() < 2 && outcomes[i].points == outcomes[order[0]].points &&
+          outcomes[i].objective > outcomes[order[0]].objective - 3.0 &&
+          (outcomes[i].end - outcomes[order[0]].end).cwiseAbs().maxCoeff() > apart)
+        followed.push_back(i);
+  } else {
+    outcomes.resize(starts.size());
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      outcomes[i].start = outcomes[i].end = starts[i];
+      followed.push_back(i);
+    }
+  }
+  Likelihood likelihood(data, options.kernel, options.mean, options.nugget);
+  const Objective objective = make_objective(likelihood, options);
+  for (const std::size_t i : followed) {
+    StartOutcome outcome = maximise(objective, outcomes[i].end, options);
+    outcome.start = outcomes[i].start;
+    outcome.points = points;
+    outcome.evaluations += outcomes[i].evaluations;
+    outcome.agrees = outcomes[i].agrees;
+    outcomes[i] = outcome;
+  }
+  if (points <= few) mark_agreeing(outcomes);
+  return outcomes;
 }
 
 std::vector<BoundHit> find_bound_hits(const Objective& objective, const Eigen::VectorXd& u, const Standardised& data) {
@@ -76,26 +162,30 @@ GaussianProcess fit(const TrainingSet& training, const FitOptions& options) {
   const Objective objective = make_objective(likelihood, options);
 
   FitDiagnostics diagnostics;
-  for (const Eigen::VectorXd& start : make_starts(d, options))
-    diagnostics.starts.push_back(maximise(objective, start, options));
-  const StartOutcome& best = *std::max_element(diagnostics.starts.begin(), diagnostics.starts.end(),
-                                               [](const auto& a, const auto& b) { return a.objective < b.objective; });
+  diagnostics.starts = search(data, make_starts(d, options), options);
+  const StartOutcome& best = *std::max_element(diagnostics.starts.begin(), diagnostics.starts.end(), better);
   diagnostics.converged = best.converged;
   diagnostics.agreeing_starts = static_cast<int>(
-      std::count_if(diagnostics.starts.begin(), diagnostics.starts.end(),
-                    [&](const StartOutcome& outcome) { return outcome.objective > best.objective - 0.1; }));
+      std::count_if(diagnostics.starts.begin(), diagnostics.starts.end(), [](const auto& s) { return s.agrees; }));
   diagnostics.bound_hits = find_bound_hits(objective, best.end, data);
 
-  Conditioned part;
-  part.parameters = from_logs(best.end, options.nugget);
-  part.factorised = likelihood.factorise(part.parameters);
-  if (!part.factorised.ok)
-    throw data::InputError(data::ExitStatus::bad_data,
-                           {"surrogate", "the covariance of the training runs cannot be factorised even with jitter",
-                            "give the runs their standard errors, or use a process with a nugget"});
-  part.scaled_points = data.points * part.parameters.length_scales.cwiseInverse().asDiagonal();
-  diagnostics.jitter = part.factorised.jitter;
-  return {options.kernel, options.mean, options.nugget, std::move(data), {std::move(part)}, std::move(diagnostics)};
+  std::vector<HyperNode> nodes{{best.end, 1.0}};
+  if (options.hyper_uncertainty == HyperUncertainty::integrated) nodes = integration_nodes(objective, best.end);
+  std::vector<Conditioned> parts;
+  for (const HyperNode& node : nodes) {
+    Conditioned part;
+    part.weight = node.weight;
+    part.parameters = from_logs(node.u, options.nugget);
+    part.factorised = likelihood.factorise(part.parameters);
+    if (!part.factorised.ok)
+      throw data::InputError(data::ExitStatus::bad_data,
+                             {"surrogate", "the covariance of the training runs cannot be factorised even with jitter",
+                              "give the runs their standard errors, or use a process with a nugget"});
+    part.scaled_points = data.points * part.parameters.length_scales.cwiseInverse().asDiagonal();
+    diagnostics.jitter = std::max(diagnostics.jitter, part.factorised.jitter);
+    parts.push_back(std::move(part));
+  }
+  return {options.kernel, options.mean, options.nugget, std::move(data), std::move(parts), std::move(diagnostics)};
 }
 
 }  // namespace surrogate

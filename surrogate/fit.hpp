@@ -17,6 +17,10 @@ namespace surrogate {
 
 enum class Estimate { maximum_likelihood, maximum_a_posteriori };
 
+/// Plugged in at the best setting, or integrated over (marginal.hpp; predictions cost 2 m + 1 times as much for m
+/// hyper-parameters).
+enum class HyperUncertainty { plug_in, integrated };
+
 /// Normal density of the logarithm of a hyper-parameter.
 struct LogNormalPrior {
   double median = 1.0;
@@ -50,7 +54,9 @@ struct FitOptions {
   HyperPriors priors;
   HyperBounds bounds;
   int iterations = 60;      ///< of Newton's method, per start
-  double tolerance = 1e-6;  ///< stop when the next step would raise the log likelihood by less
+  double tolerance = 1e-5;  ///< stop when the next step would raise the log likelihood by less
+  HyperUncertainty hyper_uncertainty = HyperUncertainty::plug_in;
+  Eigen::VectorXd first_start;  ///< instead of the heuristic start, logs as in StartOutcome; empty: heuristic
 };
 
 /// Throws data::InputError (65) for data that cannot train a process; a fit that does not converge is in diagnostics().

@@ -65,6 +65,9 @@ struct StartOutcome {
   double gradient_norm = 0.0;  ///< of the objective at the end, over the parameters that are not on a bound
   int evaluations = 0;
   bool converged = false;
+  int points = 0;       ///< distinct points of the likelihood that was maximised: all, or a subset where the start was
+                        ///< dropped before (fit.hpp); objectives compare for equal points only
+  bool agrees = false;  ///< ended within 0.1 of the best objective of its points
 };
 
 struct BoundHit {
@@ -80,7 +83,7 @@ struct FitDiagnostics {
   double jitter = 0.0;  ///< largest relative to the output's variance; 0: none was needed
   std::vector<BoundHit> bound_hits;
   std::vector<StartOutcome> starts;
-  int agreeing_starts = 0;  ///< that ended within 0.1 of the best objective
+  int agreeing_starts = 0;  ///< how many starts' `agrees` is true
 };
 
 /// A point asked for outside the box of the training runs.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <nlopt.hpp>
+#include <utility>
+#include <vector>
 
 namespace surrogate {
 namespace {
@@ -23,24 +25,24 @@ Eigen::VectorXd projected_gradient(const Objective& objective, const Eigen::Vect
 
 /// Maximiser of the quadratic model g's - 1/2 s'(I + damping D)s over the box and |s_j| <= reach: Newton step, then the
 /// components that left the box are put on its faces and the rest solved again.
-Eigen::VectorXd model_step(const Objective& objective, const Eigen::VectorXd& u, const LikelihoodGradient& at,
-                           double damping) {
+Eigen::VectorXd model_step(const Objective& objective, const Eigen::VectorXd& u, const Eigen::VectorXd& gradient,
+                           const Eigen::MatrixXd& information, double damping) {
   constexpr double reach = 2.0;  // in logarithms: a factor of 7 in one step
   const Index count = u.size();
   const Eigen::VectorXd low = (objective.low - u).cwiseMax(-reach), high = (objective.high - u).cwiseMin(reach);
-  Eigen::MatrixXd curvature = at.information;
-  curvature.diagonal() += damping * (at.information.diagonal().array() + 1e-3).matrix();
-  curvature.diagonal().array() += 1e-12 * (1.0 + at.information.diagonal().maxCoeff());
+  Eigen::MatrixXd curvature = information;
+  curvature.diagonal() += damping * (information.diagonal().array() + 1e-3).matrix();
+  curvature.diagonal().array() += 1e-12 * (1.0 + information.diagonal().maxCoeff());
   Eigen::VectorXd step = Eigen::VectorXd::Zero(count);
   std::vector<bool> fixed(static_cast<std::size_t>(count), false);
   for (Index j = 0; j < count; ++j)
-    fixed[j] = (low[j] >= 0.0 && at.gradient[j] < 0.0) || (high[j] <= 0.0 && at.gradient[j] > 0.0);
+    fixed[j] = (low[j] >= 0.0 && gradient[j] < 0.0) || (high[j] <= 0.0 && gradient[j] > 0.0);
   for (Index round = 0; round <= count; ++round) {
     std::vector<Index> free;
     for (Index j = 0; j < count; ++j)
       if (!fixed[j]) free.push_back(j);
     if (free.empty()) break;
-    const Eigen::VectorXd right = (at.gradient - curvature * step)(free) + curvature(free, free) * step(free);
+    const Eigen::VectorXd right = (gradient - curvature * step)(free) + curvature(free, free) * step(free);
     const Eigen::VectorXd solution = Eigen::MatrixXd(curvature(free, free)).ldlt().solve(right);
     bool left_box = false;
     for (std::size_t i = 0; i < free.size(); ++i) {
@@ -52,6 +54,34 @@ Eigen::VectorXd model_step(const Objective& objective, const Eigen::VectorXd& u,
   }
   return step;
 }
+
+/// The last pairs of step and gradient change: they turn the average information, which lacks the likelihood's second
+/// derivatives that vanish in expectation only, into a curvature that has the secant property (BFGS updates of a matrix
+/// that is new at every iterate: Nocedal & Wright, "Numerical Optimization", 2006, section 7.2).
+class SecantPairs {
+ public:
+  explicit SecantPairs(Index most) : most_(static_cast<std::size_t>(most)) {}
+
+  void add(const Eigen::VectorXd& step, const Eigen::VectorXd& change) {
+    if (!(step.dot(change) > 1e-10 * step.norm() * change.norm())) return;  // not concave along the step
+    if (pairs_.size() == most_) pairs_.erase(pairs_.begin());
+    pairs_.emplace_back(step, change);
+  }
+
+  Eigen::MatrixXd correct(const Eigen::MatrixXd& information) const {
+    Eigen::MatrixXd curvature = information;
+    curvature.diagonal().array() += 1e-10 * (1.0 + information.diagonal().maxCoeff());
+    for (const auto& [step, change] : pairs_) {
+      const Eigen::VectorXd image = curvature * step;
+      curvature += change * change.transpose() / step.dot(change) - image * image.transpose() / step.dot(image);
+    }
+    return curvature;
+  }
+
+ private:
+  std::size_t most_;
+  std::vector<std::pair<Eigen::VectorXd, Eigen::VectorXd>> pairs_;
+};
 
 }  // namespace
 
@@ -88,7 +118,9 @@ LikelihoodGradient evaluate(const Objective& objective, const Eigen::VectorXd& u
 }
 
 StartOutcome maximise_lbfgs(const Objective& objective, const Eigen::VectorXd& start, const FitOptions& options) {
-  StartOutcome outcome{start, start, -std::numeric_limits<double>::infinity(), 0.0, 0, false};
+  StartOutcome outcome;
+  outcome.start = outcome.end = start;
+  outcome.objective = -std::numeric_limits<double>::infinity();
   struct Call {
     const Objective& objective;
     StartOutcome& outcome;
@@ -130,13 +162,18 @@ StartOutcome maximise_lbfgs(const Objective& objective, const Eigen::VectorXd& s
 
 StartOutcome maximise(const Objective& objective, const Eigen::VectorXd& start, const FitOptions& options) {
   Eigen::VectorXd u = start.cwiseMax(objective.low).cwiseMin(objective.high);
-  StartOutcome outcome{u, u, -std::numeric_limits<double>::infinity(), 0.0, 1, false};
+  StartOutcome outcome;
+  outcome.start = outcome.end = u;
+  outcome.objective = -std::numeric_limits<double>::infinity();
+  outcome.evaluations = 1;
   LikelihoodGradient at = evaluate(objective, u);
   if (!at.ok) return outcome;
   double damping = 1e-2, growth = 2.0;
-  for (int iteration = 0; iteration < options.iterations && !outcome.converged; ++iteration) {
-    const Eigen::VectorXd step = model_step(objective, u, at, damping);
-    const double expected = at.gradient.dot(step) - 0.5 * step.dot(at.information * step);
+  SecantPairs pairs(u.size());
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    const Eigen::MatrixXd curvature = pairs.correct(at.information);
+    const Eigen::VectorXd step = model_step(objective, u, at.gradient, curvature, damping);
+    const double expected = at.gradient.dot(step) - 0.5 * step.dot(curvature * step);
     if (expected < options.tolerance && damping <= 1.0) {
       outcome.converged = true;
       break;
@@ -146,6 +183,7 @@ StartOutcome maximise(const Objective& objective, const Eigen::VectorXd& start, 
     ++outcome.evaluations;
     const double gain = next.ok ? next.value - at.value : -std::numeric_limits<double>::infinity();
     const double ratio = gain / expected;
+    if (next.ok) pairs.add(next_u - u, at.gradient - next.gradient);
     if (next.ok && ratio > 1e-3) {
       // Nielsen's damping: H. B. Nielsen, "Damping parameter in Marquardt's method" (1999).
       damping = std::max(1e-8, damping * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3)));

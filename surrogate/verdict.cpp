@@ -1,0 +1,171 @@
+#include "surrogate/verdict.hpp"
+
+#include <fmt/core.h>
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace surrogate {
+namespace {
+
+using Eigen::Index;
+
+/// Two-sided tail probability of `inside` of `count` under the nominal 95 %.
+double coverage_probability(double inside, int count) {
+  const double expected = 0.95 * count;
+  const auto k = static_cast<unsigned>(std::lround(inside));
+  const auto n = static_cast<unsigned>(count);
+  const double tail =
+      inside < expected ? gsl_cdf_binomial_P(k, 0.95, n) : (k == 0 ? 1.0 : gsl_cdf_binomial_Q(k - 1, 0.95, n));
+  return std::min(1.0, 2.0 * tail);
+}
+
+bool noise_dominated(const Validation& v, const ValidationThresholds& t) {
+  return v.q2_attainable < 1.0 - t.noise_dominated;
+}
+
+/// Mean squared held-out error when only about half of the runs train, for the learning curve; negative: not possible.
+double error_with_half(const TrainingSet& training, const FitOptions& options) {
+  std::vector<int> even, odd;
+  for (int i = 0; i < training.y.size(); ++i) (i % 2 ? odd : even).push_back(i);
+  double sum = 0.0;
+  for (const auto& [kept, left] : {std::pair{even, odd}, std::pair{odd, even}}) {
+    if (static_cast<int>(kept.size()) < 2 + basis_size(options.mean, static_cast<int>(training.x.cols()))) return -1.0;
+    const GaussianProcess process =
+        fit({training.x(kept, Eigen::all), training.y(kept), training.noise_variance(kept)}, options);
+    sum += (training.y(left) - process.predict_marginal(training.x(left, Eigen::all)).mean).squaredNorm();
+  }
+  return sum / static_cast<double>(training.y.size());
+}
+
+/// Runs that would bring Q2 of the function to its threshold if the error went on falling as it did from half of the
+/// runs to all: error ~ n^-slope, slope between 0.5 and 4.
+int runs_wanted(const Validation& v, const TrainingSet& training, const FitOptions& options, double q2_good) {
+  const double n = static_cast<double>(training.y.size());
+  const double variance = (training.y.array() - training.y.mean()).square().mean();
+  const double noise = (1.0 - v.q2_attainable) * variance, signal = variance - noise;
+  if (!(signal > 0.0)) return static_cast<int>(n);
+  const double now = std::max((1.0 - v.q2_function) * signal, 1e-12 * signal);
+  const double half = error_with_half(training, options) - noise;
+  const double folds = std::max<double>(2.0, static_cast<double>(v.folds.size()));
+  const double trained = n * (1.0 - 1.0 / folds);
+  const double slope = half > now ? std::clamp(std::log(half / now) / std::log(trained / (0.5 * n)), 0.5, 4.0) : 0.5;
+  const double wanted = trained * std::pow(now / ((1.0 - q2_good) * signal), 1.0 / slope) - n;
+  return static_cast<int>(std::ceil(std::clamp(wanted, 0.25 * n, 4.0 * n)));
+}
+
+}  // namespace
+
+const char* to_text(SurrogateVerdict verdict) {
+  switch (verdict) {
+    case SurrogateVerdict::good:
+      return "good";
+    case SurrogateVerdict::caution:
+      return "caution";
+    case SurrogateVerdict::unusable:
+      return "unusable";
+  }
+  return "";
+}
+
+std::vector<std::string> fit_notes(const GaussianProcess& process) {
+  const FitDiagnostics& d = process.diagnostics();
+  std::vector<std::string> notes;
+  if (!d.converged) notes.push_back("the maximisation of the likelihood did not converge");
+  if (d.jitter > 0.0)
+    notes.push_back(
+        fmt::format("a jitter of {:.1e} of the output's variance was added to factorise the covariance", d.jitter));
+  for (const BoundHit& hit : d.bound_hits) {
+    const char* meaning = "";
+    if (hit.harmless)
+      meaning = hit.parameter == "nugget" ? ": no run-to-run scatter beyond the stated errors"
+                                          : ": the output hardly depends on it";
+    notes.push_back(fmt::format("{} is on its {} bound, {:.3g}{}", hit.parameter, hit.upper ? "upper" : "lower",
+                                hit.value, meaning));
+  }
+  if (!d.starts.empty())
+    notes.push_back(fmt::format("{} of {} starts reached the best likelihood", d.agreeing_starts, d.starts.size()));
+  return notes;
+}
+
+SurrogateVerdict judge(const Validation& v, int predicted, const GaussianProcess& process,
+                       const ValidationThresholds& t) {
+  if (predicted < v.runs) return SurrogateVerdict::unusable;  // too few runs to hold any out
+  const double coverage95 = v.coverage_held_out.observed[2];
+  if (coverage95 < t.coverage95_unusable) return SurrogateVerdict::unusable;
+  if (noise_dominated(v, t)) return SurrogateVerdict::caution;
+  if (v.q2_function < t.q2_unusable) return SurrogateVerdict::unusable;
+  const bool bad_bound = std::any_of(process.diagnostics().bound_hits.begin(), process.diagnostics().bound_hits.end(),
+                                     [](const BoundHit& hit) { return !hit.harmless; });
+  if (v.q2_function < t.q2_good || !process.diagnostics().converged || bad_bound ||
+      coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability ||
+      v.mahalanobis_probability < t.mahalanobis_probability)
+    return SurrogateVerdict::caution;
+  return SurrogateVerdict::good;
+}
+
+void explain(Validation& v, const TrainingSet& training, const FitOptions& options,
+             const ValidationOptions& validation_options) {
+  const ValidationThresholds& t = validation_options.thresholds;
+  const double coverage95 = v.coverage_held_out.observed[2];
+  if (v.folds.empty()) {
+    v.finding = fmt::format("{} runs are too few to hold any out", v.runs);
+    v.consequence = "Nothing is known about the surrogate's error.";
+    v.more_runs = std::max(10, v.runs);
+    v.remedy = fmt::format("Add at least {} runs.", v.more_runs);
+    return;
+  }
+  const double level = (1.0 - v.q2_attainable) * 100.0;
+  v.finding = fmt::format(
+      "Held-out runs are predicted with Q2 {:.4f} (the noise allows {:.4f}; without the noise {:.4f}); {:.0f} % of "
+      "them lie in "
+      "the 95 % interval",
+      v.q2_held_out, v.q2_attainable, v.q2_function, 100.0 * coverage95);
+  const bool coverage_low = coverage95 < 0.95,
+             coverage_wrong = coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability;
+  const bool distance_wrong = v.mahalanobis_probability < t.mahalanobis_probability;
+  if (noise_dominated(v, t)) v.finding += fmt::format("; {:.0f} % of the runs' variance is their own noise", level);
+  if (distance_wrong)
+    v.finding += fmt::format("; the errors' Mahalanobis distance has probability {:.1e}", v.mahalanobis_probability);
+  v.finding += ".";
+
+  if (v.verdict == SurrogateVerdict::good) {
+    v.consequence = "The surrogate's own uncertainty describes its error and enters the likelihood.";
+    v.remedy = "None needed.";
+    return;
+  }
+  if (v.verdict == SurrogateVerdict::unusable) {
+    v.consequence = "It does not stand for the model: no verdict that rests on it means anything.";
+  } else if (noise_dominated(v, t) && coverage95 >= t.coverage95_unusable) {
+    v.consequence = "The runs hardly tell the inputs apart: this output will identify little.";
+  } else if ((coverage_wrong && coverage_low) || distance_wrong) {
+    v.consequence = "Its intervals may be too narrow or too wide: posteriors that rest on it may be, too.";
+  } else if (coverage_wrong) {
+    v.consequence = "Its intervals are wider than its errors: posteriors that rest on it are wider than need be.";
+  } else if (v.q2_function < t.q2_good) {
+    v.consequence = "Its error is a large part of the response; it enters the likelihood and widens the posterior.";
+  } else {
+    v.consequence = "Its hyper-parameters are not at a clean maximum (see the notes): its intervals may be off.";
+  }
+  if (noise_dominated(v, t)) {
+    v.remedy = "Make the runs longer or replicate them, or use an output that responds more.";
+    return;
+  }
+  if (v.q2_function < t.q2_good) {
+    v.more_runs = runs_wanted(v, training, options, t.q2_good);
+    v.remedy = fmt::format("Add about {} runs, the first of them where the surrogate knows least.", v.more_runs);
+  } else if (coverage_wrong || distance_wrong) {
+    v.more_runs = std::max(8, v.runs / 4);
+    v.remedy = fmt::format(
+        "Look at the standardised errors above 2 (runs with a wrong standard error?); else add about {} runs, or try "
+        "the log "
+        "scale or another kernel.",
+        v.more_runs);
+  } else {
+    v.more_runs = std::max(8, v.runs / 4);
+    v.remedy = fmt::format("Use more starts, or add about {} runs.", v.more_runs);
+  }
+}
+
+}  // namespace surrogate
