@@ -1,0 +1,226 @@
+#include "surrogate/storage.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+
+#include "data/atomic_file.hpp"
+#include "data/error.hpp"
+#include "data/hdf5.hpp"
+
+namespace surrogate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr std::int64_t format = 1;
+
+void write(const data::Hdf5Group& group, const std::string& name, const MatrixXd& matrix) {
+  const RowMatrix rows = matrix;
+  group.write<double>(name, std::span<const double>(rows.data(), static_cast<std::size_t>(rows.size())),
+                      {static_cast<std::size_t>(rows.rows()), static_cast<std::size_t>(rows.cols())});
+}
+
+MatrixXd read_matrix(const data::Hdf5Group& group, const std::string& name) {
+  const data::Array<double> array = group.read<double>(name);
+  if (array.shape.size() != 2)
+    throw data::InputError(data::ExitStatus::bad_data,
+                           {group.place(name), "is not a matrix", "delete the file, it is made again"});
+  return Eigen::Map<const RowMatrix>(array.values.data(), static_cast<Index>(array.shape[0]),
+                                     static_cast<Index>(array.shape[1]));
+}
+
+VectorXd read_vector(const data::Hdf5Group& group, const std::string& name) {
+  const data::Array<double> array = group.read<double>(name);
+  return Eigen::Map<const VectorXd>(array.values.data(), static_cast<Index>(array.values.size()));
+}
+
+std::vector<int> read_integers(const data::Hdf5Group& group, const std::string& name) {
+  return group.read<std::int32_t>(name).values;
+}
+
+std::span<const double> numbers(const VectorXd& vector) {
+  return {vector.data(), static_cast<std::size_t>(vector.size())};
+}
+
+void save(const data::Hdf5Group& group, const GaussianProcess& process) {
+  const Standardised& data = process.data();
+  group.set("kernel", to_text(process.kernel()));
+  group.set("mean", to_text(process.mean()));
+  group.set("scale", to_text(data.scale));
+  group.set("nugget", std::int64_t{process.nugget()});
+  group.set("shift", data.shift);
+  group.set("unit", data.unit);
+  group.set("log_jacobian", data.log_jacobian);
+  write(group, "points", data.points);
+  group.write<double>("z", numbers(data.z));
+  group.write<double>("noise", numbers(data.noise));
+  group.write<double>("low", numbers(data.low));
+  group.write<double>("high", numbers(data.high));
+  group.write<std::int32_t>("point_of_run", data.point_of_run);
+  group.write<std::int32_t>("active", data.active);
+
+  const std::vector<Conditioned>& parts = process.parts();
+  MatrixXd lengths(static_cast<Index>(parts.size()), data.points.cols());
+  std::vector<double> signal, nugget, weight;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    lengths.row(static_cast<Index>(i)) = parts[i].parameters.length_scales;
+    signal.push_back(parts[i].parameters.signal_variance);
+    nugget.push_back(parts[i].parameters.nugget_variance);
+    weight.push_back(parts[i].weight);
+  }
+  write(group, "length_scales", lengths);
+  group.write("signal_variance", signal);
+  group.write("nugget_variance", nugget);
+  group.write("weight", weight);
+
+  const FitDiagnostics& diagnostics = process.diagnostics();
+  group.set("converged", std::int64_t{diagnostics.converged});
+  group.set("jitter", diagnostics.jitter);
+  group.set("agreeing_starts", std::int64_t{diagnostics.agreeing_starts});
+  const auto starts = static_cast<Index>(diagnostics.starts.size());
+  const Index count = starts ? diagnostics.starts.front().start.size() : 0;
+  MatrixXd outcomes(starts, 6), from(starts, count), to(starts, count);
+  for (Index i = 0; i < starts; ++i) {
+    const StartOutcome& s = diagnostics.starts[i];
+    outcomes.row(i) << s.objective, s.gradient_norm, s.evaluations, s.converged ? 1.0 : 0.0, s.points,
+        s.agrees ? 1.0 : 0.0;
+    from.row(i) = s.start;
+    to.row(i) = s.end;
+  }
+  write(group, "starts", outcomes);
+  write(group, "start_from", from);
+  write(group, "start_to", to);
+  std::vector<std::string> names;
+  MatrixXd hits(static_cast<Index>(diagnostics.bound_hits.size()), 3);
+  for (Index i = 0; i < hits.rows(); ++i) {
+    const BoundHit& hit = diagnostics.bound_hits[i];
+    names.push_back(hit.parameter);
+    hits.row(i) << (hit.upper ? 1.0 : 0.0), hit.value, (hit.harmless ? 1.0 : 0.0);
+  }
+  group.write_texts("bound_names", names);
+  write(group, "bound_hits", hits);
+}
+
+template <class Enum>
+Enum read_enum(const data::Hdf5Group& group, const std::string& attribute, std::initializer_list<Enum> values) {
+  const std::string text = group.text(attribute);
+  for (const Enum value : values)
+    if (text == to_text(value)) return value;
+  throw data::InputError(
+      data::ExitStatus::bad_data,
+      {group.place(), attribute + " is \"" + text + "\", which is unknown", "delete the file, it is made again"});
+}
+
+void require(bool condition, const data::Hdf5Group& group, const std::string& what) {
+  if (!condition)
+    throw data::InputError(data::ExitStatus::bad_data, {group.place(), what, "delete the file, it is made again"});
+}
+
+GaussianProcess load(const data::Hdf5Group& group) {
+  const auto kernel = read_enum(group, "kernel", {Kernel::matern32, Kernel::matern52, Kernel::squared_exponential});
+  const auto mean =
+      read_enum(group, "mean", {MeanBasis::zero, MeanBasis::constant, MeanBasis::linear, MeanBasis::quadratic});
+  const bool nugget = group.integer("nugget") != 0;
+  Standardised data;
+  data.scale = read_enum(group, "scale", {OutputScale::linear, OutputScale::log});
+  data.shift = group.number("shift");
+  data.unit = group.number("unit");
+  data.log_jacobian = group.number("log_jacobian");
+  data.points = read_matrix(group, "points");
+  data.z = read_vector(group, "z");
+  data.noise = read_vector(group, "noise");
+  data.low = read_vector(group, "low");
+  data.high = read_vector(group, "high");
+  data.point_of_run = read_integers(group, "point_of_run");
+  data.active = read_integers(group, "active");
+  const Index n = data.z.size(), points = data.points.rows(), d = data.low.size();
+  require(data.noise.size() == n && static_cast<Index>(data.point_of_run.size()) == n && data.high.size() == d &&
+              static_cast<Index>(data.active.size()) == data.points.cols(),
+          group, "its arrays do not fit together");
+  data.runs_of_point.assign(static_cast<std::size_t>(points), 0);
+  for (const int point : data.point_of_run) {
+    require(point >= 0 && point < points, group, "a run belongs to a point that is not there");
+    ++data.runs_of_point[point];
+  }
+  for (const int k : data.active) require(k >= 0 && k < d, group, "an input is not there");
+
+  const MatrixXd lengths = read_matrix(group, "length_scales");
+  const VectorXd signal = read_vector(group, "signal_variance"), nuggets = read_vector(group, "nugget_variance"),
+                 weight = read_vector(group, "weight");
+  require(lengths.rows() >= 1 && lengths.cols() == data.points.cols() && signal.size() == lengths.rows() &&
+              nuggets.size() == lengths.rows() && weight.size() == lengths.rows(),
+          group, "its hyper-parameters do not fit its points");
+  Likelihood likelihood(data, kernel, mean, nugget);
+  std::vector<Conditioned> parts;
+  for (Index i = 0; i < lengths.rows(); ++i) {
+    Conditioned part;
+    part.weight = weight[i];
+    part.parameters = {lengths.row(i), signal[i], nuggets[i]};
+    part.scaled_points = data.points * part.parameters.length_scales.cwiseInverse().asDiagonal();
+    part.factorised = likelihood.factorise(part.parameters);
+    require(part.factorised.ok, group, "its covariance cannot be factorised");
+    parts.push_back(std::move(part));
+  }
+
+  FitDiagnostics diagnostics;
+  diagnostics.converged = group.integer("converged") != 0;
+  diagnostics.jitter = group.number("jitter");
+  diagnostics.agreeing_starts = static_cast<int>(group.integer("agreeing_starts"));
+  const MatrixXd outcomes = read_matrix(group, "starts"), from = read_matrix(group, "start_from"),
+                 to = read_matrix(group, "start_to");
+  require(outcomes.cols() == 6 && from.rows() == outcomes.rows() && to.rows() == outcomes.rows(), group,
+          "its starts do not fit together");
+  for (Index i = 0; i < outcomes.rows(); ++i)
+    diagnostics.starts.push_back({from.row(i), to.row(i), outcomes(i, 0), outcomes(i, 1),
+                                  static_cast<int>(outcomes(i, 2)), outcomes(i, 3) != 0.0,
+                                  static_cast<int>(outcomes(i, 4)), outcomes(i, 5) != 0.0});
+  const std::vector<std::string> names = group.read_texts("bound_names");
+  const MatrixXd hits = read_matrix(group, "bound_hits");
+  require(hits.cols() == 3 && hits.rows() == static_cast<Index>(names.size()), group, "its bounds do not fit together");
+  for (Index i = 0; i < hits.rows(); ++i)
+    diagnostics.bound_hits.push_back({names[i], hits(i, 0) != 0.0, hits(i, 1), hits(i, 2) != 0.0});
+  return {kernel, mean, nugget, std::move(data), std::move(parts), std::move(diagnostics)};
+}
+
+}  // namespace
+
+void save_processes(const std::string& path, const ProcessSet& processes, const SurrogateKey& key) {
+  data::write_atomically(path, [&](const std::string& temporary) {
+    const data::Hdf5Group root = data::create_hdf5(temporary);
+    root.set("format", format);
+    root.set("kind", "demcal surrogate");
+    root.set("study_hash", key.study_hash);
+    root.set("table_hash", key.table_hash);
+    std::vector<std::string> names;
+    int index = 0;
+    for (const auto& [name, process] : processes) {  // names may hold a slash: groups are numbered
+      names.push_back(name);
+      save(root.create_group("process" + std::to_string(index++)), process);
+    }
+    root.write_texts("names", names);
+    root.flush();
+  });
+}
+
+LoadedProcesses load_processes(const std::string& path, const SurrogateKey& key) {
+  if (!std::filesystem::exists(path)) return {std::nullopt, "there is no saved surrogate"};
+  const data::Hdf5Group root = data::open_hdf5(path);
+  require(root.has_attribute("kind") && root.text("kind") == "demcal surrogate", root, "is not a saved surrogate");
+  if (root.integer("format") != format) return {std::nullopt, "the saved surrogate is of another format"};
+  if (root.text("study_hash") != key.study_hash)
+    return {std::nullopt, "the study has changed since the surrogate was saved"};
+  if (root.text("table_hash") != key.table_hash)
+    return {std::nullopt, "the run table has changed since the surrogate was saved"};
+  LoadedProcesses result;
+  result.processes.emplace();
+  int index = 0;
+  for (const std::string& name : root.read_texts("names"))
+    result.processes->emplace(name, load(root.group("process" + std::to_string(index++))));
+  return result;
+}
+
+}  // namespace surrogate

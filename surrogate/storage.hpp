@@ -1,0 +1,38 @@
+#pragma once
+// Fitted processes in HDF5 (surrogate.h5), one group per process:
+//   /                      format, kind, study_hash, table_hash; names: one per group process0, process1, ...
+//   /processN                  kernel, mean, scale, nugget, shift, unit, log_jacobian, converged, jitter,
+//   agreeing_starts /processN/points, z, noise, point_of_run, active, low, high     the standardised training set
+//   (training.hpp) /processN/length_scales, signal_variance, nugget_variance, weight   one row per hyper-parameter
+//   setting /processN/starts           one row per start: objective, gradient norm, evaluations, converged
+//   /processN/bound_*          hyper-parameters that are on a bound
+// Covariances are factorised again when read: a file is small, and the same bits come back.
+// A file whose study or table hash is not the one asked for is stale: it is refused and named, never used silently.
+#include <map>
+#include <optional>
+#include <string>
+
+#include "surrogate/gaussian_process.hpp"
+
+namespace surrogate {
+
+/// What a saved surrogate was made from.
+struct SurrogateKey {
+  std::string study_hash;  ///< of what in the study decides the surrogate
+  std::string table_hash;  ///< of the run table
+};
+
+using ProcessSet = std::map<std::string, GaussianProcess>;  ///< by name, such as "carrier torque"
+
+/// Atomic. Throws data::InputError (73).
+void save_processes(const std::string& path, const ProcessSet& processes, const SurrogateKey& key);
+
+struct LoadedProcesses {
+  std::optional<ProcessSet> processes;  ///< none: missing, or stale
+  std::string reason;                   ///< why none: "no saved surrogate", "the run table has changed since"
+};
+
+/// Throws data::InputError (65) for a file that is not a surrogate, or is damaged.
+LoadedProcesses load_processes(const std::string& path, const SurrogateKey& key);
+
+}  // namespace surrogate
