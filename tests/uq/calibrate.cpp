@@ -1,0 +1,190 @@
+// The whole way from a study and its table to verdicts and files: the study on another code's runs that comes with
+// demcal.
+#include "uq/calibrate.hpp"
+
+#include <netcdf.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+
+#include "data/error.hpp"
+#include "uq/posterior_nc.hpp"
+
+using namespace uq;
+
+namespace {
+
+struct Input {
+  data::Study study;
+  data::RunTable table;
+};
+
+Input other_code(const std::vector<std::string>& overrides = {}) {
+  const data::StudyFile file = data::StudyFile::open(DEMCAL_SOURCE_DIR "/data/other-code", overrides);
+  Input input{.study = data::read_study(file), .table = {}};
+  input.table = data::read_table(input.study.training.table, input.study).table;
+  return input;
+}
+
+std::string message_of(const Input& input) {
+  try {
+    calibrate(input.study, input.table, {.error_scan = {}, .quadrature = false});
+  } catch (const data::InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("the study on another code's runs is calibrated: both parameters cover the truth and are traded", "[uq]") {
+  const Input input = other_code();
+  const Calibration found = calibrate_all(input.study, input.table, {.error_scan = {}});
+  const CalibrationReport& report = found.report;
+  CHECK_FALSE(report.warning);
+  REQUIRE(report.cases.size() == 1);
+  const CaseReport& powder = report.cases[0];
+  CHECK(powder.converged);
+  CHECK(powder.fits);
+  REQUIRE(powder.grid_difference);
+  CHECK(*powder.grid_difference < 0.1);
+  REQUIRE(powder.parameters.size() == 2);
+  for (const auto& parameter : powder.parameters) {
+    INFO(parameter.sentence);
+    const double truth = parameter.name == "friction" ? 0.4 : 4.0;
+    CHECK(std::abs(parameter.mean - truth) < 3.0 * parameter.sd);
+    CHECK(parameter.rhat < 1.01);
+    CHECK(parameter.ess_bulk >= 1000.0);
+    CHECK(parameter.verdict != Verdict::identified);
+  }
+  REQUIRE(powder.traded.size() == 1);
+  CHECK(powder.traded[0].correlation < -0.9);
+  CHECK(powder.predictive.size() == 6);
+  REQUIRE(powder.curves.size() == 1);
+  CHECK(powder.curves[0].x.front() >= 50.0);
+
+  // The draws as netCDF: dimensions, values and what ArviZ looks for.
+  const std::string path = (std::filesystem::temp_directory_path() / "demcal-test-posterior.nc").string();
+  write_posterior(path, input.study, found.cases[0], 7);
+  int file = -1, group = -1, variable = -1, dimensions[3] = {};
+  REQUIRE(nc_open(path.c_str(), NC_NOWRITE, &file) == NC_NOERR);
+  for (const char* name :
+       {"posterior", "sample_stats", "posterior_predictive", "observed_data", "log_likelihood", "constant_data"})
+    CHECK(nc_inq_ncid(file, name, &group) == NC_NOERR);
+  REQUIRE(nc_inq_ncid(file, "posterior", &group) == NC_NOERR);
+  REQUIRE(nc_inq_varid(group, "friction", &variable) == NC_NOERR);
+  REQUIRE(nc_inq_vardimid(group, variable, dimensions) == NC_NOERR);
+  char name[NC_MAX_NAME + 1] = {};
+  std::size_t chains = 0, draws = 0;
+  nc_inq_dim(group, dimensions[0], name, &chains);
+  CHECK(std::string(name) == "chain");
+  nc_inq_dim(group, dimensions[1], name, &draws);
+  CHECK(std::string(name) == "draw");
+  std::vector<double> values(chains * draws);
+  REQUIRE(nc_get_var_double(group, variable, values.data()) == NC_NOERR);
+  CHECK(Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())).mean() ==
+        Approx(powder.parameters[0].mean).epsilon(1e-9));
+  REQUIRE(nc_inq_ncid(file, "log_likelihood", &group) == NC_NOERR);
+  CHECK(nc_inq_varid(group, "bench_torque", &variable) == NC_NOERR);
+  nc_close(file);
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("a calibration is the same for any number of threads", "[uq][slow]") {
+  const Input input = other_code();
+  const auto once = [&](int threads) {
+    return calibrate(input.study, input.table, {.error_scan = {}, .quadrature = false, .threads = threads})
+        .cases[0]
+        .draws_for_plot;
+  };
+  CHECK(once(1) == once(3));
+}
+
+TEST_CASE("a study without cases, a case without data and a table without enough runs are named", "[uq]") {
+  Input input = other_code();
+  input.table.rows.resize(4);
+  CHECK(message_of(input).find("4 runs of torque, fewer than") != std::string::npos);
+  input.table.rows.clear();
+  CHECK(message_of(input).find("there are no training runs") != std::string::npos);
+  input = other_code();
+  input.study.cases.clear();
+  CHECK(message_of(input).find("no [[calibrate]] case") != std::string::npos);
+  input = other_code();
+  input.study.cases[0].observe.clear();
+  CHECK(message_of(input).find("case 'powder' observes nothing") != std::string::npos);
+}
+
+TEST_CASE("a parameter that no run varies, and one that is neither free nor fixed, are named", "[uq]") {
+  Input input = other_code();
+  for (auto& row : input.table.rows) row.inputs[1] = 2e-3;
+  CHECK(message_of(input).find("frees cohesion, but no run of its materials varies it") != std::string::npos);
+  input = other_code();
+  input.study.cases[0].free = {"friction"};
+  CHECK(message_of(input).find("neither frees nor fixes cohesion") != std::string::npos);
+}
+
+TEST_CASE("an observation outside the runs is named with its line", "[uq]") {
+  Input input = other_code();
+  input.study.observations[0].points[5].controls[0] *= 2.0;
+  const std::string message = message_of(input);
+  INFO(message);
+  CHECK(message.find("speed is 600 rpm, but the runs of this material reach from") != std::string::npos);
+  CHECK(message.find("bench.csv:") != std::string::npos);
+}
+
+TEST_CASE("a prior that excludes the data is named before sampling", "[uq]") {
+  Input input = other_code();
+  data::Prior narrow;
+  narrow.kind = data::PriorKind::truncated_normal;
+  narrow.low = 0.1;
+  narrow.high = 0.8;
+  narrow.mean = 0.12;
+  narrow.sd = 0.002;
+  input.study.cases[0].priors["friction"] = narrow;
+  data::Prior low = narrow;
+  low.low = 0.0;
+  low.high = 10e-3;
+  low.mean = 0.5e-3;
+  low.sd = 0.1e-3;
+  input.study.cases[0].priors["cohesion"] = low;
+  const std::string message = message_of(input);
+  INFO(message);
+  CHECK(message.find("case 'powder': the priors of friction, cohesion only allow") != std::string::npos);
+}
+
+TEST_CASE("a case that takes another's posterior is sampled jointly with it, and a circle of them is named",
+          "[uq][slow]") {
+  Input input = other_code();
+  // Half of the points to a case of its own that shares friction.
+  data::ObservationSet second = input.study.observations[0];
+  second.name = "bench2";
+  second.points.erase(second.points.begin(), second.points.begin() + 3);
+  input.study.observations[0].points.resize(3);
+  input.study.observations.push_back(second);
+  data::CalibrationCase other = input.study.cases[0];
+  other.name = "other";
+  other.observe = {"bench2"};
+  data::Prior linked;
+  linked.kind = data::PriorKind::posterior;
+  linked.posterior_of = "powder";
+  other.priors["friction"] = linked;
+  input.study.cases.push_back(other);
+  const Calibration found = calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false});
+  CHECK(found.report.cases[1].linked == std::vector<std::string>{"powder"});
+  CHECK(found.cases[1].model->dimension() == 3);
+  CHECK(found.cases[1].model->row_count() == 6);
+  CHECK(found.cases[1].model->groups.size() == 1);  // one surrogate: its errors in both cases are counted together
+  CHECK(found.report.cases[1].parameters.size() == 2);
+  CHECK(found.report.cases[1].converged);
+
+  data::Prior back = linked;
+  back.posterior_of = "other";
+  input.study.cases[0].priors["friction"] = back;
+  const std::string message = message_of(input);
+  INFO(message);
+  CHECK(message.find("run in a circle: powder -> other -> powder") != std::string::npos);
+  input.study.cases[0].priors.clear();
+  input.study.cases[1].observe = {"bench"};
+  CHECK(message_of(input).find("the data of 'bench' would count twice") != std::string::npos);
+}
