@@ -204,7 +204,7 @@ TEST_CASE("what cannot be simulated is named before it is tried") {
 TEST_CASE("in steady state the torques of mixer and trough and the weight's moment balance", "[slow]") {
   // T_mixer + T_trough + sum m g y = rate of change of the angular momentum, which averages out.
   dem::Case c;
-  dem::Simulation s(dem::make_slice(c, 2, 2));
+  dem::Simulation s(dem::make_slice(c, 2, 1));
   while (s.time() < 0.06) s.step();
   s.turn(dem::mixer, c.rig.angular_velocity);
   const double start = s.time() + 0.15;
