@@ -27,6 +27,44 @@ MatrixXd curvature_by_differences(const Objective& objective, const VectorXd& mo
   return 0.5 * (curvature + curvature.transpose());
 }
 
+/// The node on one half of an axis, where the density's own width there (not the normal approximation's) puts it.
+struct HalfAxis {
+  bool ok = false;
+  VectorXd u;
+  double value = 0.0;   ///< objective at u
+  double width = 1.0;   ///< of the density on this half, in units of the normal approximation's sd
+  double radius = 0.0;  ///< of u in units of that width; less than r where the box cut it
+};
+
+/// Stretches the half-axis until the objective has fallen by r^2 / 2 at distance r width.
+HalfAxis stretch(const Objective& objective, const VectorXd& mode, const VectorXd& axis, double top, double r) {
+  constexpr double widest = 4.0;
+  // How far the box lets the half-axis go.
+  double reach = widest * r;
+  for (Index j = 0; j < mode.size(); ++j) {
+    if (axis[j] > 0.0) reach = std::min(reach, (objective.high[j] - mode[j]) / axis[j]);
+    if (axis[j] < 0.0) reach = std::min(reach, (objective.low[j] - mode[j]) / axis[j]);
+  }
+  HalfAxis half;
+  if (!(reach > 1e-6)) return half;  // the mode is on this face: no mass beyond it
+  for (int iteration = 0; iteration < 4; ++iteration) {
+    const double distance = std::min(r * half.width, reach);
+    const VectorXd u = mode + distance * axis;
+    const LikelihoodGradient there = evaluate(objective, u);
+    if (!there.ok) return half;
+    half.ok = true;
+    half.u = u;
+    half.value = there.value;
+    half.radius = distance / half.width;
+    // The width whose normal density would have fallen as much at this distance.
+    const double width =
+        std::clamp(distance / std::sqrt(std::max(2.0 * (top - there.value), 1e-3)), 1.0 / widest, widest);
+    if (std::abs(width / half.width - 1.0) < 0.05) break;
+    if (iteration < 3) half.width = width;
+  }
+  return half;
+}
+
 }  // namespace
 
 std::vector<HyperNode> integration_nodes(const Objective& objective, const VectorXd& mode) {
@@ -45,17 +83,18 @@ std::vector<HyperNode> integration_nodes(const Objective& objective, const Vecto
   const double r = f * std::sqrt(static_cast<double>(m));
   nodes[0].weight = 1.0 - 1.0 / (f * f);
   std::vector<double> log_weights{std::log(nodes[0].weight)};
-  for (Index i = 0; i < m; ++i)
-    for (const double sign : {1.0, -1.0}) {
-      const VectorXd u =
-          (mode + sign * r * sd[i] * axes.eigenvectors().col(i)).cwiseMax(objective.low).cwiseMin(objective.high);
-      const LikelihoodGradient there = evaluate(objective, u);
-      if (!there.ok) continue;
-      const VectorXd whitened = (axes.eigenvectors().transpose() * (u - mode)).cwiseQuotient(sd);
-      nodes.push_back({u, 0.0});
-      log_weights.push_back(-std::log(2.0 * static_cast<double>(m) * f * f) + there.value - at.value +
-                            0.5 * whitened.squaredNorm());
+  for (Index i = 0; i < m; ++i) {
+    const VectorXd axis = sd[i] * axes.eigenvectors().col(i);
+    const HalfAxis up = stretch(objective, mode, axis, at.value, r),
+                   down = stretch(objective, mode, -axis, at.value, r);
+    for (const HalfAxis& half : {up, down}) {
+      if (!half.ok) continue;
+      nodes.push_back({half.u, 0.0});
+      // Each half-axis carries mass in proportion to its width; then density over normal density at the node.
+      log_weights.push_back(std::log(half.width / (up.width + down.width)) - std::log(static_cast<double>(m) * f * f) +
+                            half.value - at.value + 0.5 * half.radius * half.radius);
     }
+  }
   const double top = *std::max_element(log_weights.begin(), log_weights.end());
   double sum = 0.0;
   for (const double w : log_weights) sum += std::exp(w - top);
