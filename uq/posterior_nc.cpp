@@ -76,6 +76,9 @@ class Group {
               const std::string& unit) {
     const int variable = define(name, NC_DOUBLE, dimensions);
     if (!unit.empty()) attribute(variable, "units", unit);
+    for (const auto& dimension : dimensions)
+      if (const auto found = coordinates_.find(dimension); found != coordinates_.end())
+        attribute(variable, "coordinates", found->second);
     check(nc_put_var_double(id_, variable, values.data()), name);
     return variable;
   }
@@ -92,6 +95,9 @@ class Group {
     check(nc_put_var_schar(id_, variable, values.data()), name);
   }
 
+  /// Variables made from now on over `dimension` name these as its coordinates.
+  void set_coordinates(const std::string& dimension, const std::string& names) { coordinates_[dimension] = names; }
+
  private:
   int define(const std::string& name, nc_type type, const std::vector<std::string>& dimensions) {
     std::vector<int> ids;
@@ -103,6 +109,7 @@ class Group {
   }
 
   int id_ = -1;
+  std::map<std::string, std::string> coordinates_;  // names of the variables that go with a dimension (CF conventions)
   std::map<std::string, int> dimensions_;
 };
 
@@ -142,11 +149,16 @@ void point_dimensions(Group& group, const data::Study& study, const std::vector<
     done.push_back(block.dimension);
     const data::ObservationSet& set = study.observations[block.set];
     group.index_dimension(block.dimension, set.points.size());
+    std::string names;
     for (std::size_t c = 0; c < study.controls.size(); ++c) {
+      const data::Control& control = study.controls[c];
+      const std::string name = set.name + "_" + control.name;
       std::vector<double> values;
-      for (const auto& point : set.points) values.push_back(study.controls[c].unit.from_si(point.controls[c]));
-      group.doubles(set.name + "_" + study.controls[c].name, {block.dimension}, values, study.controls[c].unit.symbol);
+      for (const auto& point : set.points) values.push_back(control.unit.from_si(point.controls[c]));
+      group.doubles(name, {block.dimension}, values, control.unit.symbol);
+      names += (names.empty() ? "" : " ") + name;
     }
+    if (!names.empty()) group.set_coordinates(block.dimension, names);
   }
 }
 
