@@ -57,6 +57,9 @@ struct TrainingRows {
 };
 TrainingRows training_rows(const Workspace& workspace);
 
+/// "150 rpm", or the number alone when there is no unit; five digits.
+std::string with_unit(double si, const data::Unit& unit);
+
 /// A line for the user on stderr, unless --quiet.
 void say(const Common& common, const std::string& text);
 /// The machine-readable result on stdout, when --json.

@@ -89,9 +89,8 @@ Point parse_point(const Workspace& workspace, const std::string& material, const
     const dem::Target& target = dem::target(found->target);
     if (!(value >= target.low && value <= target.high))
       throw usage(place,
-                  fmt::format("{:g} {} is outside the possible range [{:g}, {:g}] of {}", found->unit.from_si(value),
-                              found->unit.symbol, found->unit.from_si(target.low), found->unit.from_si(target.high),
-                              target.name),
+                  fmt::format("{} is outside the possible range [{:g}, {:g}] of {}", with_unit(value, found->unit),
+                              found->unit.from_si(target.low), found->unit.from_si(target.high), target.name),
                   "choose a value inside it");
     point.inputs[static_cast<std::size_t>(found - inputs.begin())] = value;
   }
@@ -102,8 +101,7 @@ std::string describe(const data::Study& study, const Point& point) {
   std::string text;
   const std::vector<Input> inputs = inputs_of(study);
   for (std::size_t i = 0; i < inputs.size(); ++i)
-    text += fmt::format("{}{} {:.5g}{}{}", i == 0 ? "" : ", ", inputs[i].name, inputs[i].unit.from_si(point.inputs[i]),
-                        inputs[i].unit.symbol.empty() ? "" : " ", inputs[i].unit.symbol);
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", inputs[i].name, with_unit(point.inputs[i], inputs[i].unit));
   return text;
 }
 

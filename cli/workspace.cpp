@@ -31,8 +31,8 @@ void check_target(const data::Section& section, const std::string& target_name, 
   const auto outside = [&](const char* key, double value) {
     if (value >= target->low && value <= target->high) return;
     section.problem(key,
-                    fmt::format("{:g} {} is outside the possible range [{:g}, {:g}] of {}", unit.from_si(value),
-                                unit.symbol, unit.from_si(target->low), unit.from_si(target->high), target->name),
+                    fmt::format("{} is outside the possible range [{:g}, {:g}] of {}", with_unit(value, unit),
+                                unit.from_si(target->low), unit.from_si(target->high), target->name),
                     "choose a bound inside it");
   };
   outside("low", low);
@@ -124,6 +124,10 @@ TrainingRows training_rows(const Workspace& workspace) {
   const std::string own = (fs::path(workspace.out) / "training.h5").string();
   if (fs::exists(own)) add(own);
   return result;
+}
+
+std::string with_unit(double si, const data::Unit& unit) {
+  return fmt::format("{:.5g}{}{}", unit.from_si(si), unit.symbol.empty() ? "" : " ", unit.symbol);
 }
 
 void say(const Common& common, const std::string& text) {

@@ -24,13 +24,13 @@ double to_si(const std::string& field, const Unit& unit) {
   return static_cast<double>(static_cast<long double>(unit.factor) * value + static_cast<long double>(unit.offset));
 }
 
+/// The shortest decimal in the unit that reads back as the same SI double: 200.46, not 200.45999999999998.
 std::string from_si(double si, const Unit& unit) {
-  const std::string plain = shortest(unit.from_si(si));
-  if (!std::isfinite(si) || to_si(plain, unit) == si) return plain;
+  if (!std::isfinite(si)) return shortest(si);
   const long double value =
       (static_cast<long double>(si) - static_cast<long double>(unit.offset)) / static_cast<long double>(unit.factor);
   std::string text;
-  for (int digits = 15; digits <= 21; ++digits) {
+  for (int digits = 1; digits <= 21; ++digits) {
     text = fmt::format("{:.{}g}", value, digits);
     if (to_si(text, unit) == si) break;
   }
