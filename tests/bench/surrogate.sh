@@ -1,0 +1,20 @@
+#!/bin/bash
+# Installs the peers (the product needs none of them), builds the benchmark and runs it: tests/bench/surrogate.sh BUILD_FOLDER
+# [options of surrogate.py]. BUILD_FOLDER is a configured build of this tree.
+set -eu
+root=$(cd "$(dirname "$0")/../.." && pwd)
+build=${1:?usage: surrogate.sh BUILD_FOLDER [options]}
+shift
+missing=()
+for package in python3-sklearn python3-openturns python3-scipy; do
+  dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+done
+if ((${#missing[@]})); then
+  if ((EUID == 0)); then apt-get install -y --no-install-recommends "${missing[@]}"; else sudo apt-get install -y --no-install-recommends "${missing[@]}"; fi
+fi
+cmake --build "$build" --target demcal_surrogate
+isa=$(sed -n 's/^DEMCAL_ISA_USED:[A-Z]*=//p' "$build/CMakeCache.txt")
+g++ -std=c++20 -O2 -march="${isa:-x86-64-v3}" -I "$root" $(pkg-config --cflags eigen3) "$root/tests/bench/surrogate.cpp" \
+  "$build/surrogate/libdemcal_surrogate.a" "$build/data/libdemcal_data.a" \
+  $(pkg-config --libs gsl nlopt hdf5 libxxhash fmt) -o "$build/bench_surrogate"
+exec /usr/bin/python3 "$root/tests/bench/surrogate.py" "$build/bench_surrogate" "$@"
