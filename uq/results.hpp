@@ -16,18 +16,18 @@ const char* to_text(Verdict verdict);  ///< "identified", "weakly identified", "
 struct SurrogateReport {
   std::string output, material;
   int runs = 0;
-  double q2 = 0.0;          ///< leave-one-out
-  double q2_held_out = 0.0; ///< held-out folds, hyper-parameters refitted
-  double coverage95 = 0.0;  ///< of leave-one-out intervals
-  double nugget_sd = 0.0;   ///< unit of the output
+  double q2 = 0.0;           ///< leave-one-out
+  double q2_held_out = 0.0;  ///< held-out folds, hyper-parameters refitted
+  double coverage95 = 0.0;   ///< of leave-one-out intervals
+  double nugget_sd = 0.0;    ///< unit of the output
   std::string unit;
-  std::string verdict;      ///< "good", "caution", "unusable"
+  std::string verdict;  ///< "good", "caution", "unusable"
   std::string finding, consequence, remedy;
-  std::vector<std::string> inputs;       ///< names of the active inputs
-  std::vector<double> length_scales;     ///< in units of the input's range
+  std::vector<std::string> inputs;                        ///< names of the active inputs
+  std::vector<double> length_scales;                      ///< in units of the input's range
   std::vector<double> observed, predicted, standardised;  ///< leave-one-out, per run
   std::vector<double> observed_se;
-  std::vector<std::string> notes;        ///< hyper-parameter on its bound, jitter, multi-start outcomes
+  std::vector<std::string> notes;  ///< hyper-parameter on its bound, jitter, multi-start outcomes
 };
 
 struct ParameterReport {
@@ -36,10 +36,10 @@ struct ParameterReport {
   double mean = 0.0, sd = 0.0, mcse = 0.0, q05 = 0.0, q50 = 0.0, q95 = 0.0;
   double map = 0.0;
   double rhat = 0.0, ess_bulk = 0.0, ess_tail = 0.0;
-  double contraction = 0.0;  ///< 1 - posterior variance / prior variance
-  std::optional<double> profile_low, profile_high;  ///< 95 % profile-likelihood interval; none: open on that side
-  bool low_is_bound = false, high_is_bound = false; ///< the range ended before the likelihood fell
-  std::vector<double> profile_x, profile_deviance;  ///< the profile itself: 2 (log L_max - log L)
+  double contraction = 0.0;                          ///< 1 - posterior variance / prior variance
+  std::optional<double> profile_low, profile_high;   ///< 95 % profile-likelihood interval; none: open on that side
+  bool low_is_bound = false, high_is_bound = false;  ///< the range ended before the likelihood fell
+  std::vector<double> profile_x, profile_deviance;   ///< the profile itself: 2 (log L_max - log L)
   Verdict verdict = Verdict::not_identified;
   std::optional<std::string> reason;  ///< "structural", "practical", "one-sided", "bound"
   bool borderline = false;
@@ -49,7 +49,7 @@ struct ParameterReport {
 /// A pair whose values are traded against each other.
 struct TradedPair {
   std::string first, second;
-  std::string combination;   ///< "friction^0.9 * hamaker^1" or a direction, in the reader's symbols
+  std::string combination;  ///< "friction^0.9 * hamaker^1" or a direction, in the reader's symbols
   double correlation = 0.0;
   std::vector<std::map<std::string, double>> equivalent;  ///< points along the ridge, each with every free parameter
 };
@@ -70,7 +70,7 @@ struct PredictiveCurve {
 
 struct CaseReport {
   std::string name;
-  std::vector<std::string> observed_sets;    ///< names, with what the file's header says of each in observed_notes
+  std::vector<std::string> observed_sets;  ///< names, with what the file's header says of each in observed_notes
   std::vector<std::string> observed_notes;
   double chi2 = 0.0;
   int dof = 0;
@@ -81,16 +81,17 @@ struct CaseReport {
   std::vector<std::vector<double>> correlation;
   double log_evidence = 0.0, log_evidence_error = 0.0;
   int divergences = 0;
-  int chains = 0, draws = 0;                 ///< per chain
-  std::optional<double> grid_difference;     ///< largest |mean or sd: sampler - quadrature| in posterior sd; two dimensions
+  int chains = 0, draws = 0;  ///< per chain
+  std::optional<double>
+      grid_difference;  ///< largest |mean or sd: sampler - quadrature| in posterior sd; two dimensions
   double fisher_condition = 0.0, collinearity = 0.0;
   std::vector<TradedPair> traded;
   std::vector<PredictivePoint> predictive;
   std::vector<PredictiveCurve> curves;
   std::vector<std::vector<double>> draws_for_plot;  ///< some hundred to few thousand rows, one column per parameter
-  std::vector<std::string> linked;           ///< other cases sampled jointly (their data inform a shared parameter)
+  std::vector<std::string> linked;  ///< other cases sampled jointly (their data inform a shared parameter)
   std::string finding, consequence, remedy;
-  std::vector<std::string> warnings;         ///< first lines of the report
+  std::vector<std::string> warnings;  ///< first lines of the report
 };
 
 /// How the verdict changes when the measurement error is another one.
@@ -110,7 +111,8 @@ struct CalibrationReport {
   std::vector<CaseReport> cases;
   std::vector<ErrorScan> error_scan;
   std::vector<std::pair<std::string, std::string>> thresholds;  ///< "contraction for identified" -> "0.9"
-  std::vector<std::pair<std::string, std::string>> provenance;  ///< version, hashes, instruction set, seeds, table, times
+  std::vector<std::pair<std::string, std::string>>
+      provenance;                  ///< version, hashes, instruction set, seeds, table, times
   std::vector<std::string> notes;  ///< choices the source does not give, shown beside the verdicts
 };
 

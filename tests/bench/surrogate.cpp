@@ -1,7 +1,9 @@
-// One fit and one prediction of a table of runs, timed in CPU seconds of this process (driver: tests/bench/surrogate.py).
+// One fit and one prediction of a table of runs, timed in CPU seconds of this process (driver:
+// tests/bench/surrogate.py).
 //   bench_surrogate TRAIN.csv TEST.csv [--lengths l1,l2,... --signal SD --nugget SD]
-// The process is what the peers fit: ARD Matern 5/2 and nugget, zero mean of the centred output, maximum likelihood, one
-// start. With hyper-parameters given, only their log evidence is printed, so that every program is judged by one likelihood.
+// The process is what the peers fit: ARD Matern 5/2 and nugget, zero mean of the centred output, maximum likelihood,
+// one start. With hyper-parameters given, only their log evidence is printed, so that every program is judged by one
+// likelihood.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -76,10 +78,11 @@ int main(int count, char** arguments) {
     prediction = process.predict_marginal(points);
     predict_seconds = std::min(predict_seconds, cpu_seconds() - start);
   }
-  fmt::print("{{\"fit_s\": {:.6g}, \"predict_s\": {:.6g}, \"evidence\": {:.10g}, \"evaluations\": {}, \"nugget_factor\": {:.17g}, \"mean\": [", fit_seconds,
-             predict_seconds, process.log_marginal_likelihood(), process.diagnostics().starts.front().evaluations,
-             std::pow(process.hyper_parameters().nugget_sd / process.hyper_parameters().signal_sd, 2));
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    fmt::print("{}{:.17g}", i ? ", " : "", prediction.mean[i] + centre);
+  fmt::print(
+      "{{\"fit_s\": {:.6g}, \"predict_s\": {:.6g}, \"evidence\": {:.10g}, \"evaluations\": {}, \"nugget_factor\": "
+      "{:.17g}, \"mean\": [",
+      fit_seconds, predict_seconds, process.log_marginal_likelihood(), process.diagnostics().starts.front().evaluations,
+      std::pow(process.hyper_parameters().nugget_sd / process.hyper_parameters().signal_sd, 2));
+  for (Eigen::Index i = 0; i < points.rows(); ++i) fmt::print("{}{:.17g}", i ? ", " : "", prediction.mean[i] + centre);
   fmt::print("]}}\n");
 }

@@ -29,7 +29,7 @@ double correlation(double distance, double length) {
 
 }  // namespace
 
-TEST_CASE("integrated predictions are those of quadrature over the hyper-parameters") {
+TEST_CASE("integrated predictions come near those of quadrature over the hyper-parameters, to a stated limit") {
   // Without a nugget u has two components: length scale and signal variance, summed on a fine grid of the posterior.
   const TrainingSet training = few_runs(7, 1);
   const FitOptions options{.nugget = false, .hyper_uncertainty = HyperUncertainty::integrated};

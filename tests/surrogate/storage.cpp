@@ -1,0 +1,84 @@
+#include "surrogate/storage.hpp"
+
+#include <unistd.h>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+
+#include "data/error.hpp"
+#include "data/random.hpp"
+#include "surrogate/design.hpp"
+#include "surrogate/fit.hpp"
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using namespace surrogate;
+
+namespace {
+
+TrainingSet small_set() {
+  data::RandomStream random(1, data::Purpose::test);
+  TrainingSet training{scrambled_sobol(25, 3, 1), VectorXd(25), VectorXd::Constant(25, 1e-4)};
+  training.x.col(1).setConstant(0.5);
+  training.x.row(7) = training.x.row(2);
+  for (int i = 0; i < 25; ++i)
+    training.y[i] = 1.0 + std::sin(3.0 * training.x(i, 0)) * training.x(i, 2) * 0.5 + 0.01 * random.normal();
+  return training;
+}
+
+struct Folder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("demcal-storage-" + std::to_string(::getpid()));
+  Folder() { std::filesystem::create_directories(path); }
+  ~Folder() { std::filesystem::remove_all(path); }
+  std::string file(const char* name) const { return (path / name).string(); }
+};
+
+}  // namespace
+
+TEST_CASE("a saved process predicts the same bits when it is read again") {
+  const Folder folder;
+  const MatrixXd points = scrambled_sobol(8, 3, 5);
+  ProcessSet processes;
+  processes.emplace("plain", fit(small_set(), {.starts = 2}));
+  processes.emplace("integrated, log / second", fit(small_set(), {.kernel = Kernel::matern32,
+                                                                  .mean = MeanBasis::linear,
+                                                                  .scale = OutputScale::log,
+                                                                  .starts = 2,
+                                                                  .hyper_uncertainty = HyperUncertainty::integrated}));
+  const SurrogateKey key{"study", "table"};
+  save_processes(folder.file("surrogate.h5"), processes, key);
+  const LoadedProcesses loaded = load_processes(folder.file("surrogate.h5"), key);
+  REQUIRE(loaded.processes);
+  REQUIRE(loaded.processes->size() == 2);
+  for (const auto& [name, process] : processes) {
+    const GaussianProcess& again = loaded.processes->at(name);
+    CHECK(process.predict(points).mean == again.predict(points).mean);
+    CHECK(process.predict(points).covariance == again.predict(points).covariance);
+    CHECK(process.log_marginal_likelihood() == again.log_marginal_likelihood());
+    CHECK(process.leave_one_out().standardised == again.leave_one_out().standardised);
+    CHECK(process.diagnostics().starts.size() == again.diagnostics().starts.size());
+    CHECK(process.diagnostics().bound_hits.size() == again.diagnostics().bound_hits.size());
+  }
+}
+
+TEST_CASE("a surrogate of another study or table is stale, and says so") {
+  const Folder folder;
+  ProcessSet processes;
+  processes.emplace("torque", fit(small_set(), {.starts = 1}));
+  save_processes(folder.file("surrogate.h5"), processes, {"study", "table"});
+  CHECK_FALSE(load_processes(folder.file("surrogate.h5"), {"study", "other"}).processes);
+  CHECK(load_processes(folder.file("surrogate.h5"), {"study", "other"}).reason.find("table") != std::string::npos);
+  CHECK(load_processes(folder.file("surrogate.h5"), {"other", "table"}).reason.find("study") != std::string::npos);
+  CHECK_FALSE(load_processes(folder.file("none.h5"), {"study", "table"}).processes);
+}
+
+TEST_CASE("a truncated surrogate file is bad data, not a crash") {
+  const Folder folder;
+  ProcessSet processes;
+  processes.emplace("torque", fit(small_set(), {.starts = 1}));
+  const std::string path = folder.file("surrogate.h5");
+  save_processes(path, processes, {"study", "table"});
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+  CHECK_THROWS_AS(load_processes(path, {"study", "table"}), data::InputError);
+}
