@@ -1,5 +1,4 @@
 // demcal calibrate: the main job. Surrogates, posteriors, verdicts, report.
-#include <chrono>
 #include <filesystem>
 
 #include "cli/calibration.hpp"
@@ -13,7 +12,6 @@ Action add_calibrate(CLI::App& program) {
   add_study_command(program, "calibrate", "fit, sample, identify, report: what the torque determines and what not",
                     "demcal calibrate data/developer", *common);
   return [common] {
-    const auto start = std::chrono::steady_clock::now();
     const Workspace workspace = open_workspace(*common);
     const TrainingRows rows = rows_to_learn_from(*common, workspace);
     make_out(workspace);
@@ -29,8 +27,6 @@ Action add_calibrate(CLI::App& program) {
         uq::write_posterior(posterior_path(workspace, sampled.model->name), workspace.study, sampled,
                             workspace.study.seed);
     add_provenance(result.report, workspace, rows);
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    result.report.provenance.emplace_back("time taken", data::duration_text(taken.count()));
     uq::save_results(result.report, (std::filesystem::path(workspace.out) / "results.json").string());
     return write_report(*common, workspace, result.report);
   };

@@ -80,11 +80,11 @@ void save_surrogates(const Workspace& workspace, const data::RunTable& table,
 
 void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const TrainingRows& rows) {
   const data::Study& study = workspace.study;
-  report.provenance = data::provenance();
+  std::vector<std::pair<std::string, std::string>> program = data::provenance();
+  report.provenance.insert(report.provenance.begin(), program.begin(), program.end());
   const auto add = [&](const std::string& name, const std::string& value) {
     report.provenance.emplace_back(name, value);
   };
-  add("seed", fmt::format("{}", study.seed));
   add("study", fmt::format("{} (xxh3 {})", fs::path(study.file).filename().string(), data::hash_file(study.file)));
   add("training table", fmt::format("{} rows (xxh3 {})", rows.table.rows.size(), table_hash(rows.table)));
   for (const data::ObservationSet& set : study.observations)

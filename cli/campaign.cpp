@@ -58,32 +58,29 @@ std::vector<Point> training_design(const Workspace& workspace, const std::string
   return points;
 }
 
-Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int extra) {
-  std::set<std::string> done;
-  for (const data::RunRow& row : table.rows) done.insert(data::row_key(row));
+Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int runs) {
+  std::set<std::string> known;
+  for (const data::RunRow& row : table.rows) known.insert(data::row_key(row));
   Campaign campaign;
-  std::set<std::string> planned;
   const auto add_missing = [&](const std::vector<Point>& points) {
     for (const Point& point : points)
-      if (const std::string key = point_key(workspace, point); !done.contains(key) && planned.insert(key).second)
-        campaign.points.push_back(point);
+      if (known.insert(point_key(workspace, point)).second) campaign.points.push_back(point);
   };
-  std::map<std::string, int> wanted;
-  for (const data::Material& material : workspace.study.materials) {
-    wanted[material.name] = material.runs.value_or(workspace.study.training.runs);
-    add_missing(training_design(workspace, material.name, 0, wanted[material.name]));
-  }
   add_missing(read_design(workspace));
   campaign.continues = !campaign.points.empty();
-
-  // Further points go to the materials in turn, each continuing its own sequence past what has a row already.
-  for (std::size_t turn = 0; !campaign.continues && static_cast<int>(campaign.points.size()) < extra; ++turn) {
+  std::map<std::string, int> next;
+  for (const data::Material& material : workspace.study.materials) {
+    next[material.name] = material.runs.value_or(workspace.study.training.runs);
+    add_missing(training_design(workspace, material.name, 0, next[material.name]));
+  }
+  // Further points go to the materials in turn, each continuing its own sequence past what is known already.
+  for (std::size_t turn = 0; !campaign.continues && static_cast<int>(campaign.points.size()) < runs; ++turn) {
     const std::string& material = workspace.study.materials[turn % workspace.study.materials.size()].name;
     for (std::size_t before = campaign.points.size(); campaign.points.size() == before;)
-      add_missing(training_design(workspace, material, wanted[material]++, 1));
+      add_missing(training_design(workspace, material, next[material]++, 1));
   }
-  if (extra > 0 && static_cast<int>(campaign.points.size()) > extra)
-    campaign.points.resize(static_cast<std::size_t>(extra));
+  if (runs > 0 && static_cast<int>(campaign.points.size()) > runs)
+    campaign.points.resize(static_cast<std::size_t>(runs));
   return campaign;
 }
 

@@ -12,13 +12,14 @@ namespace cli {
 /// is typed in is the same point.
 std::vector<Point> training_design(const Workspace& workspace, const std::string& material, int first, int runs);
 
-/// What to simulate now: the points of the study's design and of OUT/design.csv that have no row in `table`; when there
-/// are none, or the study's own are not asked for, `extra` further points shared among the materials.
+/// What to simulate now: points without a row in `table`. First those that an unfinished campaign left in
+/// OUT/design.csv, then the study's own design; when nothing was left unfinished, further points are added up to
+/// `runs`, shared among the materials. `runs` above 0 is also the most.
 struct Campaign {
   std::vector<Point> points;
-  bool continues = false;  ///< it finishes an earlier, unfinished one, and nothing was added
+  bool continues = false;  ///< an earlier campaign was unfinished, and nothing is added to it
 };
-Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int extra);
+Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int runs);
 
 /// Reads and writes OUT/design.csv: material, parameters and controls in the study's units.
 std::vector<Point> read_design(const Workspace& workspace);

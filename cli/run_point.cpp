@@ -27,7 +27,8 @@ dem::RunResult run_point(const Workspace& workspace, const Point& point, const P
   const dem::Case c = case_at(workspace, point);
   const std::uint64_t seed = run_seed(workspace, point);
   const std::optional<dem::RunResult> before = earlier(options.path, c, seed);
-  if (before && before->status == dem::RunStatus::done) return *before;
+  // A run that failed fails again: it depends on its point, seed and settings alone.
+  if (before && before->status != dem::RunStatus::interrupted) return *before;
 
   dem::RunOptions run{.threads = options.threads, .stop = options.stop, .progress = options.progress};
   run.checkpoint = [&](const dem::Checkpoint& checkpoint) {
@@ -35,7 +36,7 @@ dem::RunResult run_point(const Workspace& workspace, const Point& point, const P
         .status = dem::RunStatus::interrupted, .seed = seed, .series = checkpoint.series, .checkpoint = checkpoint};
     dem::write_run(options.path, c, so_far);
   };
-  if (before && before->status == dem::RunStatus::interrupted) run.resume = &before->checkpoint;
+  if (before) run.resume = &before->checkpoint;
   dem::RunResult result = dem::run(c, seed, run);
   if (result.status == dem::RunStatus::done && !options.keep_state) result.checkpoint = {};
   dem::write_run(options.path, c, result);

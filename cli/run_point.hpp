@@ -1,5 +1,6 @@
 #pragma once
-// One DEM run of a point, kept in a file: finished runs are read back, interrupted ones go on from their checkpoint.
+// One DEM run of a point, kept in a file: finished and failed runs are read back, interrupted ones go on from their
+// checkpoint.
 #include <functional>
 #include <stop_token>
 #include <string>

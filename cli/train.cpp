@@ -34,6 +34,7 @@ struct Ledger {
   std::mutex mutex;
   data::RunTable table;
   std::size_t finished = 0;
+  std::vector<bool> ended;  ///< per point of the campaign: finished or failed
   std::vector<std::string> failures, warnings;
   std::exception_ptr error;
 };
@@ -59,6 +60,7 @@ void work(const Workspace& workspace, const Campaign& campaign, Ledger& ledger, 
         write_tables(workspace, ledger.table);
         ++ledger.finished;
       }
+      ledger.ended[i] = true;
       progress.advance();
     }
   } catch (...) {
@@ -93,11 +95,12 @@ Action add_train(CLI::App& program) {
     if (campaign.points.empty())
       say(common, fmt::format("nothing is missing: the table has {} runs. For more of them: --runs N", before));
     else
-      say(common, fmt::format("{} runs{}; the table has {}", campaign.points.size(),
-                              campaign.continues ? " are missing" : " beyond the design", before));
+      say(common, fmt::format("{} runs to make{}; the table has {}", campaign.points.size(),
+                              campaign.continues ? ", left by an unfinished campaign" : "", before));
 
     Ledger ledger;
     ledger.table = std::move(rows.table);
+    ledger.ended.assign(campaign.points.size(), false);
     write_tables(workspace, ledger.table);
     const data::InterruptGuard interrupt;
     std::stop_source stop;
@@ -110,6 +113,10 @@ Action add_train(CLI::App& program) {
       for (std::size_t j = 0; j < jobs; ++j)
         workers.emplace_back([&] { work(workspace, campaign, ledger, progress, stop); });
     }
+    std::vector<Point> left;
+    for (std::size_t i = 0; i < campaign.points.size(); ++i)
+      if (!ledger.ended[i]) left.push_back(campaign.points[i]);
+    write_design(workspace, left);
     if (ledger.error) std::rethrow_exception(ledger.error);
     const std::string table = (fs::path(workspace.out) / "training.csv").string();
     for (const std::string& warning : ledger.warnings) say(common, "warning: " + warning);

@@ -226,6 +226,7 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   tell("surrogates");
   SurrogateOptions surrogates = options.surrogates;
   surrogates.fit.seed = seed_of(study, options);
+  surrogates.observed_only = true;
   result.surrogates = fit_surrogates(study, table, surrogates);
   const std::vector<Emulator> emulators = emulators_of(result.surrogates);
   for (const auto& fitted : result.surrogates) {

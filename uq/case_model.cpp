@@ -189,8 +189,9 @@ class Builder {
     const auto range = emulator.control_range.find(index);
     const auto [low, high] =
         range == emulator.control_range.end() ? std::pair{control.low, control.high} : range->second;
-    // A design need not reach the last few percent of its range; further out a surrogate extrapolates.
-    const double slack = 0.05 * (control.high - control.low);
+    // A scrambled design of a few dozen runs stops several percent short of its range's ends, and the surrogate's
+    // variance covers that; further out it extrapolates.
+    const double slack = 0.1 * (control.high - control.low);
     for (std::size_t i = 0; i < set.points.size(); ++i) {
       const double value = set.points[i].controls[index];
       if (value < low - slack || value > high + slack)

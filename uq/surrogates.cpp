@@ -73,6 +73,18 @@ TrainingRows rows_of(const data::Study& study, const std::vector<const data::Run
   return found;
 }
 
+/// Whether some case uses measurements of this material and output.
+bool is_observed(const data::Study& study, const TrainingRows& rows) {
+  for (const auto& one : study.cases)
+    for (const auto& name : one.observe) {
+      const data::ObservationSet& set = study.observations[study.observation_index(name).value()];
+      if (set.material == rows.material &&
+          std::find(set.outputs.begin(), set.outputs.end(), rows.output) != set.outputs.end())
+        return true;
+    }
+  return false;
+}
+
 std::vector<double> in_unit(const Eigen::VectorXd& values, const data::Unit& unit) {
   std::vector<double> shown;
   for (const double value : values) shown.push_back(unit.from_si(value));
@@ -180,6 +192,7 @@ std::vector<FittedSurrogate> fit_surrogates(const data::Study& study, const data
   std::vector<TrainingRows> rows = training_rows(study, table);
   std::vector<FittedSurrogate> fitted;
   for (auto& part : rows) {
+    if (options.observed_only && !is_observed(study, part)) continue;
     auto process = std::make_shared<const surrogate::GaussianProcess>(surrogate::fit(part.set, options.fit));
     SurrogateReport report = report_of(study, part, *process, options);
     fitted.push_back({.rows = std::move(part), .process = std::move(process), .report = std::move(report)});

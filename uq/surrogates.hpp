@@ -18,6 +18,7 @@ namespace uq {
 struct SurrogateOptions {
   surrogate::FitOptions fit = {};
   surrogate::ValidationOptions validation = {};  ///< its seed is that of the fit
+  bool observed_only = false;                    ///< leave out the outputs that no case observes
 };
 
 /// A material's rows of one output, as the surrogate sees them.

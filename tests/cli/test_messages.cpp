@@ -41,7 +41,7 @@ TEST_CASE("a friction of -1 is refused wherever it stands, with its bound") {
 TEST_CASE("an observation file without its standard errors is refused with file and column") {
   const Folder folder;
   folder.study("other-code");
-  folder.replace("study/bench.csv", "torque_se", "torque_error");
+  folder.replace("study/bench.csv", "speed,torque,torque_se", "speed,torque,torque_error");
   const auto outcome = folder.demcal({"calibrate", "study"});
   CHECK(outcome.status == 65);
   CHECK_THAT(outcome.err, Contains("bench.csv") && Contains("torque_se"));

@@ -93,7 +93,7 @@ TEST_CASE("Branin, Hartmann-3, the borehole and Ishigami's function are learnt")
   CHECK(learnt_q2(branin, 2, 40, smooth) > 0.999);
   CHECK(learnt_q2(hartmann3, 3, 100, {.starts = 3}) > 0.97);
   CHECK(learnt_q2(borehole, 8, 80, smooth) > 0.999);
-  CHECK(learnt_q2(ishigami, 3, 150, {.starts = 3}) > 0.97);
+  CHECK(learnt_q2(ishigami, 3, 256, {.starts = 3}) > 0.97);
 }
 
 TEST_CASE("on the torque-like function the median Q2 over 20 seeds reaches its targets at 64, 256 and 1024 runs",
