@@ -71,6 +71,7 @@ Action add_simulate(CLI::App& program) {
   command->add_option("--threads", options->threads, "threads of this run; the result does not depend on it")
       ->check(CLI::Range(1, 256));
   return [options] {
+    const data::InterruptGuard interrupt;
     const Common& common = options->common;
     const Workspace workspace = open_workspace(common);
     require_rig(workspace);
@@ -80,7 +81,6 @@ Action add_simulate(CLI::App& program) {
     say(common,
         fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point)));
 
-    const data::InterruptGuard interrupt;
     dem::RunResult result;
     {
       data::Progress progress("simulating (at most)", 1000,

@@ -83,6 +83,7 @@ Action add_train(CLI::App& program) {
                    "so many runs: those still missing from the design, or, when there are none, further ones")
       ->check(CLI::Range(1, 100000));
   return [options] {
+    const data::InterruptGuard interrupt;
     const Common& common = options->common;
     const Workspace workspace = open_workspace(common);
     require_rig(workspace);
@@ -102,7 +103,6 @@ Action add_train(CLI::App& program) {
     ledger.table = std::move(rows.table);
     ledger.ended.assign(campaign.points.size(), false);
     write_tables(workspace, ledger.table);
-    const data::InterruptGuard interrupt;
     std::stop_source stop;
     const std::stop_callback forward(interrupt.token(), [&] { stop.request_stop(); });
     {
