@@ -33,16 +33,18 @@ install_packages() {
   rm -f "$log"
 }
 
-# build PRESET [TARGET]: configures where needed and builds; one at a time per preset.
+# build PRESET [TARGET...]: configures where needed and builds; one at a time per preset.
 build() {
+  local preset=$1
+  shift
   mkdir -p "$root/build"
-  exec 9>"$root/build/.$1.lock"
-  flock -n 9 || { say "another build of '$1' is running; waiting for it"; flock 9; }
-  local log="$root/build/.$1.log"
-  if [ ! -f "$root/build/$1/build.ninja" ]; then
-    say "configuring ($1)"
-    (cd "$root" && cmake --preset "$1") >"$log" 2>&1 || { tail -n 30 "$log" >&2; say "configuring failed (whole log: $log)"; exit 70; }
+  exec 9>"$root/build/.$preset.lock"
+  flock -n 9 || { say "another build of '$preset' is running; waiting for it"; flock 9; }
+  local log="$root/build/.$preset.log"
+  if [ ! -f "$root/build/$preset/build.ninja" ]; then
+    say "configuring ($preset)"
+    (cd "$root" && cmake --preset "$preset") >"$log" 2>&1 || { tail -n 30 "$log" >&2; say "configuring failed (whole log: $log)"; exit 70; }
   fi
-  (cd "$root" && cmake --build --preset "$1" ${2:+--target "$2"}) >&2 9>&- || { say "the build failed"; exit 70; }
+  (cd "$root" && cmake --build --preset "$preset" ${1:+--target "$@"}) >&2 9>&- || { say "the build failed"; exit 70; }
   exec 9>&-
 }
