@@ -8,6 +8,7 @@
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
 #include "data/provenance.hpp"
+#include "dem/slice.hpp"
 
 namespace cli {
 namespace {
@@ -17,6 +18,7 @@ struct Options {
   std::string material;
   std::vector<std::string> at;
   int threads = 1;
+  bool stl = false;
 };
 
 nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
@@ -70,6 +72,7 @@ Action add_simulate(CLI::App& program) {
       ->delimiter(',');
   command->add_option("--threads", options->threads, "threads of this run; the result does not depend on it")
       ->check(CLI::Range(1, 256));
+  command->add_flag("--stl", options->stl, "write the rig's surfaces too (mixer.stl, trough.stl)");
   return [options] {
     const data::InterruptGuard interrupt;
     const Common& common = options->common;
@@ -77,7 +80,13 @@ Action add_simulate(CLI::App& program) {
     require_rig(workspace);
     const Point point = parse_point(workspace, choose_material(workspace.study, options->material), options->at);
     make_out(workspace);
-    const std::string path = (std::filesystem::path(workspace.out) / "run.h5").string();
+    const std::filesystem::path out = workspace.out;
+    const std::string path = (out / "run.h5").string();
+    if (options->stl) {
+      const dem::Rig rig = case_at(workspace, point).rig;
+      dem::write_stl(dem::auger_mesh(rig), (out / "mixer.stl").string());
+      dem::write_stl(dem::trough_mesh(rig, 2.0 * rig.blade_radius), (out / "trough.stl").string());
+    }
     say(common,
         fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point)));
 
