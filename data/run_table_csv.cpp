@@ -24,7 +24,7 @@ double to_si(const std::string& field, const Unit& unit) {
   return static_cast<double>(static_cast<long double>(unit.factor) * value + static_cast<long double>(unit.offset));
 }
 
-/// The shortest decimal in the unit that reads back as the same SI double: 200.46, not 200.45999999999998.
+/// The decimal with the fewest digits that this file reads back as the same SI double.
 std::string from_si(double si, const Unit& unit) {
   if (!std::isfinite(si)) return shortest(si);
   const long double value =
