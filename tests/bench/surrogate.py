@@ -11,6 +11,7 @@ that it found.
 import os
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ[variable] = "1"
+os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})  # one core for every program, its threads included
 import argparse, json, subprocess, tempfile, time, warnings
 import numpy as np
 from scipy.stats import qmc
@@ -51,6 +52,9 @@ def sklearn_peer(x, y, points, repeats, _):
 def openturns_peer(x, y, points, repeats, nugget_factor):
     """OpenTURNS 1.20 cannot fit a nugget: it is given demcal's, and so has one parameter less to find."""
     import openturns as ot
+    ot.TBB.Disable()
+    ot.Log.Show(ot.Log.NONE)
+    ot.ResourceMap.SetAsScalar("GeneralLinearModelAlgorithm-DefaultOptimizationScaleFactor", 50.0)  # length scales up to 50, not 2
     ot.ResourceMap.SetAsBool("GeneralLinearModelAlgorithm-UnbiasedVariance", False)
     sx, sy = ot.Sample(x), ot.Sample((y - y.mean())[:, None])
 

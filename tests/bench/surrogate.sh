@@ -6,15 +6,15 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${1:?usage: surrogate.sh BUILD_FOLDER [options]}
 shift
 missing=()
-for package in python3-sklearn python3-openturns python3-scipy; do
+for package in python3-sklearn python3-openturns python3-scipy libopenblas0-pthread; do  # OpenBLAS: the peers at their best
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
 done
 if ((${#missing[@]})); then
   if ((EUID == 0)); then apt-get install -y --no-install-recommends "${missing[@]}"; else sudo apt-get install -y --no-install-recommends "${missing[@]}"; fi
 fi
 cmake --build "$build" --target demcal_surrogate
-isa=$(sed -n 's/^DEMCAL_ISA_USED:[A-Z]*=//p' "$build/CMakeCache.txt")
-g++ -std=c++20 -O2 -march="${isa:-x86-64-v3}" -I "$root" $(pkg-config --cflags eigen3) "$root/tests/bench/surrogate.cpp" \
+march=$(grep -o -m 1 -- '-march=[^ "]*' "$build/compile_commands.json")  # as the library was compiled
+g++ -std=c++20 -O2 "$march" -I "$root" $(pkg-config --cflags eigen3) "$root/tests/bench/surrogate.cpp" \
   "$build/surrogate/libdemcal_surrogate.a" "$build/data/libdemcal_data.a" \
   $(pkg-config --libs gsl nlopt hdf5 libxxhash fmt) -o "$build/bench_surrogate"
 exec /usr/bin/python3 "$root/tests/bench/surrogate.py" "$build/bench_surrogate" "$@"
