@@ -1,0 +1,172 @@
+#include "surrogate/prediction.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "surrogate/mixture.hpp"
+
+namespace surrogate {
+
+using Eigen::Index;
+
+void cross(const Conditioned& part, const GaussianProcess& process, const Eigen::MatrixXd& points, Slopes slopes,
+           PredictionWorkspace& workspace) {
+  const bool with_slopes = slopes == Slopes::yes;
+  const std::vector<int>& active = process.data().active;
+  const Index n = part.scaled_points.rows(), d = part.scaled_points.cols(), m = points.rows();
+  workspace.points.resize(m, d);
+  for (Index k = 0; k < d; ++k) workspace.points.col(k) = points.col(active[k]);
+  const Index p = part.factorised.whitened_basis.cols();
+  if (p > 0) workspace.basis = basis_matrix(process.mean(), workspace.points);
+  for (Index k = 0; k < d; ++k) workspace.points.col(k) /= part.parameters.length_scales[k];
+
+  workspace.squares.setZero(n, m);
+  for (Index j = 0; j < m; ++j)
+    for (Index k = 0; k < d; ++k)
+      workspace.squares.col(j).array() += (part.scaled_points.col(k).array() - workspace.points(j, k)).square();
+  workspace.correlations.resize(n, m);
+  if (with_slopes) workspace.slopes.resize(n, m);
+  correlate(process.kernel(), {{workspace.squares.data(), n * m},
+                               {workspace.correlations.data(), n * m},
+                               {with_slopes ? workspace.slopes.data() : nullptr, with_slopes ? n * m : 0}});
+  workspace.correlations *= part.parameters.signal_variance;
+  if (with_slopes) workspace.slopes *= part.parameters.signal_variance;
+
+  workspace.whitened.resize(n, m);
+  workspace.whitened.noalias() = part.factorised.inverse_factor.triangularView<Eigen::Lower>() * workspace.correlations;
+  if (p > 0) {
+    workspace.projected = workspace.basis.transpose();
+    workspace.projected.noalias() -= part.factorised.whitened_basis.transpose() * workspace.whitened;
+    workspace.projected = part.factorised.basis_factor * workspace.projected;
+  } else {
+    workspace.projected.resize(0, m);
+  }
+}
+
+void latent(const Conditioned& part, const GaussianProcess& process, PointRange range, PredictionWorkspace& workspace,
+            Prediction& result) {
+  const Index first = range.first, m = range.count;
+  const Index p = workspace.projected.rows();
+  result.mean.noalias() = workspace.correlations.middleCols(first, m).transpose() * part.factorised.residual_weights;
+  if (p > 0) result.mean.noalias() += workspace.basis.middleRows(first, m) * part.factorised.mean_coefficients;
+
+  result.covariance.resize(m, m);
+  workspace.squares.resize(m, m);  // free by now
+  workspace.squares.setZero();
+  for (Index k = 0; k < workspace.points.cols(); ++k)
+    for (Index j = 0; j < m; ++j)
+      workspace.squares.col(j).array() +=
+          (workspace.points.col(k).segment(first, m).array() - workspace.points(first + j, k)).square();
+  correlate(process.kernel(), {{workspace.squares.data(), m * m}, {result.covariance.data(), m * m}, {nullptr, 0}});
+  result.covariance *= part.parameters.signal_variance;
+  result.covariance.noalias() -=
+      workspace.whitened.middleCols(first, m).transpose() * workspace.whitened.middleCols(first, m);
+  if (p > 0)
+    result.covariance.noalias() +=
+        workspace.projected.middleCols(first, m).transpose() * workspace.projected.middleCols(first, m);
+  // Rounding may leave a variance at a training point of an exact code just below zero.
+  result.covariance.diagonal() = result.covariance.diagonal().cwiseMax(0.0);
+}
+
+void rescale(const Standardised& data, Prediction& result) {
+  result.mean = (data.shift + data.unit * result.mean.array()).matrix();
+  result.covariance *= data.unit * data.unit;
+  if (data.scale == OutputScale::linear) return;
+  result.mean = (result.mean + 0.5 * result.covariance.diagonal()).array().exp();
+  result.covariance = (result.mean * result.mean.transpose()).cwiseProduct(result.covariance.array().expm1().matrix());
+}
+
+void check_points(const Eigen::MatrixXd& points, int dimension) {
+  if (points.cols() != dimension)
+    throw std::invalid_argument(
+        fmt::format("points have {} coordinates, the process has {} inputs", points.cols(), dimension));
+}
+
+Prediction GaussianProcess::predict(const Eigen::MatrixXd& points) const {
+  PredictionWorkspace workspace;
+  Prediction result;
+  predict(points, workspace, result);
+  return result;
+}
+
+void GaussianProcess::predict(const Eigen::MatrixXd& points, PredictionWorkspace& workspace, Prediction& result) const {
+  check_points(points, dimension());
+  if (parts_->size() == 1) {
+    cross(parts_->front(), *this, points, Slopes::no, workspace);
+    latent(parts_->front(), *this, {0, points.rows()}, workspace, result);
+    rescale(*data_, result);
+    return;
+  }
+  Mixture mixture;
+  for (const Conditioned& part : *parts_) {
+    cross(part, *this, points, Slopes::no, workspace);
+    latent(part, *this, {0, points.rows()}, workspace, workspace.part);
+    rescale(*data_, workspace.part);
+    mixture.add(part.weight, workspace.part);
+  }
+  result = mixture.result();
+}
+
+std::vector<Prediction> GaussianProcess::predict_batch(const Eigen::MatrixXd& points, int group) const {
+  check_points(points, dimension());
+  if (group < 1 || points.rows() % group != 0)
+    throw std::invalid_argument(fmt::format("{} points are not whole groups of {}", points.rows(), group));
+  const Index groups = points.rows() / group;
+  const Index block = std::max<Index>(1, 192 / group);  // groups per matrix product
+  std::vector<Prediction> results(static_cast<std::size_t>(groups));
+  PredictionWorkspace workspace;
+  for (Index first = 0; first < groups; first += block) {
+    const Index count = std::min(block, groups - first);
+    const Eigen::MatrixXd rows = points.middleRows(first * group, count * group);
+    std::vector<Mixture> mixtures(parts_->size() > 1 ? static_cast<std::size_t>(count) : 0);
+    for (const Conditioned& part : *parts_) {
+      cross(part, *this, rows, Slopes::no, workspace);
+      for (Index g = 0; g < count; ++g) {
+        Prediction& result = mixtures.empty() ? results[first + g] : workspace.part;
+        latent(part, *this, {g * group, group}, workspace, result);
+        rescale(*data_, result);
+        if (!mixtures.empty()) mixtures[g].add(part.weight, result);
+      }
+    }
+    for (std::size_t g = 0; g < mixtures.size(); ++g) results[first + g] = mixtures[g].result();
+  }
+  return results;
+}
+
+MarginalPrediction GaussianProcess::predict_marginal(const Eigen::MatrixXd& points) const {
+  check_points(points, dimension());
+  constexpr Index block = 256;
+  MarginalPrediction result{Eigen::VectorXd(points.rows()), Eigen::VectorXd(points.rows())};
+  PredictionWorkspace workspace;
+  for (Index first = 0; first < points.rows(); first += block) {
+    const Index count = std::min(block, points.rows() - first);
+    const Eigen::MatrixXd rows = points.middleRows(first, count);
+    Eigen::VectorXd origin, shift = Eigen::VectorXd::Zero(count), spread = Eigen::VectorXd::Zero(count);
+    for (const Conditioned& part : *parts_) {
+      cross(part, *this, rows, Slopes::no, workspace);
+      Eigen::VectorXd mean = workspace.correlations.transpose() * part.factorised.residual_weights;
+      if (workspace.projected.rows() > 0) mean += workspace.basis * part.factorised.mean_coefficients;
+      Eigen::VectorXd variance = (part.parameters.signal_variance - workspace.whitened.colwise().squaredNorm().array() +
+                                  workspace.projected.colwise().squaredNorm().array())
+                                     .max(0.0)
+                                     .transpose();
+      mean = (data_->shift + data_->unit * mean.array()).matrix();
+      variance *= data_->unit * data_->unit;
+      if (data_->scale == OutputScale::log) {
+        mean = (mean + 0.5 * variance).array().exp();
+        variance = mean.array().square() * variance.array().expm1();
+      }
+      if (origin.size() == 0) origin = mean;
+      shift += part.weight * (mean - origin);
+      spread += part.weight * (variance + (mean - origin).cwiseAbs2());
+    }
+    result.mean.segment(first, count) = origin + shift;
+    result.variance.segment(first, count) = spread - shift.cwiseAbs2();
+  }
+  return result;
+}
+
+}  // namespace surrogate

@@ -1,0 +1,26 @@
+#pragma once
+// The steps of a prediction, shared by prediction.cpp and prediction_gradient.cpp only.
+#include "surrogate/gaussian_process.hpp"
+
+namespace surrogate {
+
+enum class Slopes { no, yes };
+
+/// Correlations, whitened correlations and mean-uncertainty of one part at the given points, left in the workspace:
+/// correlations = s^2 c, slopes = s^2 f (if wanted), whitened = L^-1 k*, projected = E.
+void cross(const Conditioned& part, const GaussianProcess& process, const Eigen::MatrixXd& points, Slopes slopes,
+           PredictionWorkspace& workspace);
+
+/// Mean and covariance of z of points first ... first + count - 1 of the workspace.
+struct PointRange {
+  Eigen::Index first = 0, count = 0;
+};
+void latent(const Conditioned& part, const GaussianProcess& process, PointRange points, PredictionWorkspace& workspace,
+            Prediction& result);
+
+/// From z to y.
+void rescale(const Standardised& data, Prediction& result);
+
+void check_points(const Eigen::MatrixXd& points, int dimension);
+
+}  // namespace surrogate
