@@ -170,7 +170,9 @@ GaussianProcess fit(const TrainingSet& training, const FitOptions& options) {
   diagnostics.bound_hits = find_bound_hits(objective, best.end, data);
 
   std::vector<HyperNode> nodes{{best.end, 1.0}};
-  if (options.hyper_uncertainty == HyperUncertainty::integrated) nodes = integration_nodes(objective, best.end);
+  if (options.hyper_uncertainty == HyperUncertainty::integrated)
+    nodes =
+        integration_nodes(hyper_posterior(objective, best.end), integration_options(data.points.rows(), options.seed));
   std::vector<Conditioned> parts;
   for (const HyperNode& node : nodes) {
     Conditioned part;

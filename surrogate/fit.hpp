@@ -17,8 +17,7 @@ namespace surrogate {
 
 enum class Estimate { maximum_likelihood, maximum_a_posteriori };
 
-/// Plugged in at the best setting, or integrated over (marginal.hpp; predictions cost 2 m + 1 times as much for m
-/// hyper-parameters).
+/// Plugged in at the best setting, or integrated over (marginal.hpp; predictions cost up to 33 times as much).
 enum class HyperUncertainty { plug_in, integrated };
 
 /// Normal density of the logarithm of a hyper-parameter.

@@ -61,6 +61,7 @@ class Likelihood {
   Likelihood(const Standardised& data, Kernel kernel, MeanBasis mean, bool nugget);
 
   int parameters() const { return static_cast<int>(data_.points.cols()) + (nugget_ ? 2 : 1); }
+  bool nugget() const { return nugget_; }
   Factorised factorise(const ScaledParameters& parameters);
   /// The factorisation after one more point, which is the last of the data, from the one before (add_run.cpp).
   Factorised border(const Factorised& old, const ScaledParameters& parameters);

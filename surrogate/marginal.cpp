@@ -1,8 +1,17 @@
 #include "surrogate/marginal.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_sf_gamma.h>
+
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "data/random.hpp"
+#include "surrogate/design.hpp"
 
 namespace surrogate {
 namespace {
@@ -11,104 +20,216 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Minus the Hessian of the objective at the mode, by differences of its gradient (one-sided next to a bound).
-MatrixXd curvature_by_differences(const Objective& objective, const VectorXd& mode) {
-  constexpr double step = 1e-3;
-  const Index m = mode.size();
-  MatrixXd curvature(m, m);
-  for (Index j = 0; j < m; ++j) {
-    VectorXd up = mode, down = mode;
-    up[j] = std::min(mode[j] + step, objective.high[j]);
-    down[j] = std::max(mode[j] - step, objective.low[j]);
-    const LikelihoodGradient above = evaluate(objective, up), below = evaluate(objective, down);
-    if (!above.ok || !below.ok) return {};
-    curvature.col(j) = (below.gradient - above.gradient) / (up[j] - down[j]);
-  }
-  return 0.5 * (curvature + curvature.transpose());
+constexpr double none = -std::numeric_limits<double>::infinity();
+
+/// log sum exp.
+double log_sum(const VectorXd& logs) {
+  const double top = logs.maxCoeff();
+  return top == none ? none : top + std::log((logs.array() - top).exp().sum());
 }
 
-/// The node on one half of an axis, where the density's own width there (not the normal approximation's) puts it.
-struct HalfAxis {
-  bool ok = false;
-  VectorXd u;
-  double value = 0.0;   ///< objective at u
-  double width = 1.0;   ///< of the density on this half, in units of the normal approximation's sd
-  double radius = 0.0;  ///< of u in units of that width; less than r where the box cut it
+/// Multivariate Student's t with 5 degrees of freedom.
+class StudentT {
+ public:
+  StudentT(VectorXd centre, const MatrixXd& covariance)
+      : centre_(std::move(centre)), factor_(covariance.llt().matrixL()) {
+    const double m = static_cast<double>(centre_.size());
+    constant_ = gsl_sf_lngamma(0.5 * (degrees + m)) - gsl_sf_lngamma(0.5 * degrees) -
+                0.5 * m * std::log(degrees * std::numbers::pi) - factor_.diagonal().array().log().sum();
+  }
+  /// From a point of the unit cube with one coordinate more than u.
+  VectorXd draw(const VectorXd& cube) const {
+    const Index m = centre_.size();
+    VectorXd normal(m);
+    for (Index j = 0; j < m; ++j) normal[j] = gsl_cdf_ugaussian_Pinv(cube[j]);
+    return centre_ + factor_ * normal * std::sqrt(degrees / gsl_cdf_chisq_Pinv(cube[m], degrees));
+  }
+  double log_density(const VectorXd& u) const {
+    const VectorXd deviation = factor_.triangularView<Eigen::Lower>().solve(u - centre_);
+    return constant_ - 0.5 * (degrees + static_cast<double>(u.size())) * std::log1p(deviation.squaredNorm() / degrees);
+  }
+
+ private:
+  static constexpr double degrees = 5.0;
+  VectorXd centre_;
+  MatrixXd factor_;
+  double constant_ = 0.0;
 };
 
-/// Stretches the half-axis until the objective has fallen by r^2 / 2 at distance r width.
-HalfAxis stretch(const Objective& objective, const VectorXd& mode, const VectorXd& axis, double top, double r) {
-  constexpr double widest = 4.0;
-  // How far the box lets the half-axis go.
-  double reach = widest * r;
-  for (Index j = 0; j < mode.size(); ++j) {
-    if (axis[j] > 0.0) reach = std::min(reach, (objective.high[j] - mode[j]) / axis[j]);
-    if (axis[j] < 0.0) reach = std::min(reach, (objective.low[j] - mode[j]) / axis[j]);
+/// The prior cut to the box, one independent component per hyper-parameter.
+class BoxedPrior {
+ public:
+  explicit BoxedPrior(const HyperPosterior& posterior) : posterior_(posterior) {}
+  VectorXd draw(const VectorXd& cube) const {
+    VectorXd u(posterior_.low.size());
+    for (Index j = 0; j < u.size(); ++j) {
+      const auto [below, above] = tails(j);
+      const double t = below + cube[j] * (above - below);
+      u[j] = posterior_.prior_precision[j] > 0.0
+                 ? posterior_.prior_mean[j] + gsl_cdf_ugaussian_Pinv(t) / std::sqrt(posterior_.prior_precision[j])
+                 : t;
+      u[j] = std::clamp(u[j], posterior_.low[j], posterior_.high[j]);
+    }
+    return u;
   }
-  HalfAxis half;
-  if (!(reach > 1e-6)) return half;  // the mode is on this face: no mass beyond it
-  for (int iteration = 0; iteration < 4; ++iteration) {
-    const double distance = std::min(r * half.width, reach);
-    const VectorXd u = mode + distance * axis;
-    const LikelihoodGradient there = evaluate(objective, u);
-    if (!there.ok) return half;
-    half.ok = true;
-    half.u = u;
-    half.value = there.value;
-    half.radius = distance / half.width;
-    // The width whose normal density would have fallen as much at this distance.
-    const double width =
-        std::clamp(distance / std::sqrt(std::max(2.0 * (top - there.value), 1e-3)), 1.0 / widest, widest);
-    if (std::abs(width / half.width - 1.0) < 0.05) break;
-    if (iteration < 3) half.width = width;
+  double log_density(const VectorXd& u) const {
+    double value = 0.0;
+    for (Index j = 0; j < u.size(); ++j) {
+      const auto [below, above] = tails(j);
+      value -= std::log(above - below);
+      const double precision = posterior_.prior_precision[j], deviation = u[j] - posterior_.prior_mean[j];
+      if (precision > 0.0)
+        value += 0.5 * std::log(precision / (2.0 * std::numbers::pi)) - 0.5 * precision * deviation * deviation;
+    }
+    return value;
   }
-  return half;
+
+ private:
+  /// The box's ends in the prior's probability (flat prior: themselves).
+  std::pair<double, double> tails(Index j) const {
+    const double precision = posterior_.prior_precision[j], mean = posterior_.prior_mean[j];
+    if (!(precision > 0.0)) return {posterior_.low[j], posterior_.high[j]};
+    return {gsl_cdf_ugaussian_P((posterior_.low[j] - mean) * std::sqrt(precision)),
+            gsl_cdf_ugaussian_P((posterior_.high[j] - mean) * std::sqrt(precision))};
+  }
+  const HyperPosterior& posterior_;
+};
+
+struct Draws {
+  MatrixXd u;           // one column per draw
+  VectorXd log_target;  // -infinity outside the box
+  VectorXd log_weight;
+};
+
+/// Weighted mean and covariance, the latter never narrower than a hundredth in any direction.
+StudentT adapted(const Draws& draws) {
+  const VectorXd weight = (draws.log_weight.array() - log_sum(draws.log_weight)).exp();
+  const VectorXd mean = draws.u * weight;
+  const MatrixXd deviation = draws.u.colwise() - mean;
+  MatrixXd covariance = deviation * weight.asDiagonal() * deviation.transpose();
+  covariance.diagonal().array() += 1e-4;
+  return {mean, covariance};
+}
+
+Draws sample(const HyperPosterior& posterior, const IntegrationOptions& options) {
+  const Index m = posterior.mode.size();
+  const Index total = Index{options.draws} * options.stages;
+  const BoxedPrior prior(posterior);
+  std::vector<StudentT> proposals{{posterior.mode, posterior.covariance}};
+  VectorXd share = VectorXd::Zero(options.stages + 1);  // draws from each proposal, the prior last
+  Draws draws{MatrixXd(m, 0), VectorXd(0), VectorXd(0)};
+  for (int stage = 0; stage < options.stages; ++stage) {
+    if (stage > 0) proposals.push_back(adapted(draws));
+    const MatrixXd cube = scrambled_sobol(options.draws, std::min<int>(static_cast<int>(m) + 1, sobol_max_dimension),
+                                          options.seed + 7919 * (static_cast<std::uint64_t>(stage) + 1));
+    const Index before = draws.u.cols();
+    draws.u.conservativeResize(m, before + options.draws);
+    draws.log_target.conservativeResize(before + options.draws);
+    for (Index i = 0; i < options.draws; ++i) {
+      VectorXd point(m + 1);
+      for (Index j = 0; j <= m; ++j) point[j] = cube(i, j % cube.cols());
+      const bool from_prior = stage == 0 && i % 2 == 1;
+      const VectorXd u = from_prior ? prior.draw(point) : proposals.back().draw(point);
+      share[from_prior ? options.stages : stage] += 1.0 / static_cast<double>(total);
+      const bool inside = (u.array() >= posterior.low.array()).all() && (u.array() <= posterior.high.array()).all();
+      draws.u.col(before + i) = u;
+      draws.log_target[before + i] = inside ? posterior.log_density(u) : none;
+    }
+    draws.log_weight = VectorXd::Constant(draws.u.cols(), none);
+    for (Index i = 0; i < draws.u.cols(); ++i) {
+      if (!(draws.log_target[i] > none)) continue;  // nor where the density is not a number
+      VectorXd density(stage + 2);
+      for (int k = 0; k <= stage; ++k) density[k] = std::log(share[k]) + proposals[k].log_density(draws.u.col(i));
+      density[stage + 1] = std::log(share[options.stages]) + prior.log_density(draws.u.col(i));
+      draws.log_weight[i] = draws.log_target[i] - log_sum(density);
+    }
+    if (log_sum(draws.log_weight) == none) break;  // no draw has any density: the caller keeps the mode
+  }
+  return draws;
+}
+
+/// Draws that one node will stand for.
+struct Cell {
+  std::vector<Index> members;
+  double weight = 0.0, score = 0.0, centre = 0.0;
+  Index direction = 0;
+};
+
+Cell make_cell(std::vector<Index> members, const MatrixXd& u, const VectorXd& weight) {
+  Cell cell;
+  VectorXd first = VectorXd::Zero(u.rows()), second = first;
+  for (const Index i : members) {
+    cell.weight += weight[i];
+    first += weight[i] * u.col(i);
+    second += weight[i] * u.col(i).cwiseAbs2();
+  }
+  const VectorXd mean = first / cell.weight, variance = second / cell.weight - mean.cwiseAbs2();
+  cell.score = members.size() > 1 ? cell.weight * variance.maxCoeff(&cell.direction) : 0.0;
+  cell.centre = mean[cell.direction];
+  cell.members = std::move(members);
+  return cell;
 }
 
 }  // namespace
 
-std::vector<HyperNode> integration_nodes(const Objective& objective, const VectorXd& mode) {
-  constexpr double f = 1.1;
-  const Index m = mode.size();
-  const LikelihoodGradient at = evaluate(objective, mode);
-  std::vector<HyperNode> nodes{{mode, 1.0}};
-  if (!at.ok) return nodes;
-  MatrixXd curvature = curvature_by_differences(objective, mode);
-  Eigen::SelfAdjointEigenSolver<MatrixXd> axes;
-  if (curvature.size() > 0) axes.compute(curvature);
-  if (curvature.size() == 0 || axes.eigenvalues().minCoeff() <= 1e-2) axes.compute(at.information);
-  // A direction that the data and the priors leave flatter than a factor of e^4 counts as e^4 wide.
-  const VectorXd sd = axes.eigenvalues().cwiseMax(1.0 / 16.0).cwiseSqrt().cwiseInverse();
-
-  const double r = f * std::sqrt(static_cast<double>(m));
-  nodes[0].weight = 1.0 - 1.0 / (f * f);
-  std::vector<double> log_weights{std::log(nodes[0].weight)};
-  for (Index i = 0; i < m; ++i) {
-    const VectorXd axis = sd[i] * axes.eigenvectors().col(i);
-    const HalfAxis up = stretch(objective, mode, axis, at.value, r),
-                   down = stretch(objective, mode, -axis, at.value, r);
-    for (const HalfAxis& half : {up, down}) {
-      if (!half.ok) continue;
-      nodes.push_back({half.u, 0.0});
-      // Each half-axis carries mass in proportion to its width; then density over normal density at the node.
-      log_weights.push_back(std::log(half.width / (up.width + down.width)) - std::log(static_cast<double>(m) * f * f) +
-                            half.value - at.value + 0.5 * half.radius * half.radius);
-    }
+std::vector<HyperNode> integration_nodes(const HyperPosterior& posterior, const IntegrationOptions& options) {
+  const Draws draws = sample(posterior, options);
+  const double total = log_sum(draws.log_weight);
+  if (total == none) return {{posterior.mode, 1.0}};
+  const VectorXd weight = (draws.log_weight.array() - total).exp();
+  std::vector<Index> all;
+  for (Index i = 0; i < weight.size(); ++i)
+    if (weight[i] > 1e-12) all.push_back(i);
+  std::vector<Cell> cells{make_cell(std::move(all), draws.u, weight)};
+  while (static_cast<int>(cells.size()) < options.nodes) {
+    const auto widest =
+        std::max_element(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.score < b.score; });
+    if (!(widest->score > 1e-10)) break;
+    std::vector<Index> below, above;
+    for (const Index i : widest->members) (draws.u(widest->direction, i) < widest->centre ? below : above).push_back(i);
+    if (below.empty() || above.empty()) break;  // equal to rounding
+    *widest = make_cell(std::move(below), draws.u, weight);
+    cells.push_back(make_cell(std::move(above), draws.u, weight));
   }
-  const double top = *std::max_element(log_weights.begin(), log_weights.end());
-  double sum = 0.0;
-  for (const double w : log_weights) sum += std::exp(w - top);
-  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].weight = std::exp(log_weights[i] - top) / sum;
-  // The mode stays, whatever its weight: it is the best setting that is reported.
+  data::RandomStream random(options.seed, data::Purpose::optimiser_starts, 2);
+  std::vector<HyperNode> nodes{{posterior.mode, 0.0}};
   double kept = 0.0;
-  std::vector<HyperNode> result;
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (i == 0 || nodes[i].weight > 1e-6) {
-      kept += nodes[i].weight;
-      result.push_back(nodes[i]);
-    }
-  for (HyperNode& node : result) node.weight /= kept;
-  return result;
+  for (const Cell& cell : cells) {
+    double left = random.uniform() * cell.weight;
+    Index chosen = cell.members.back();
+    for (const Index i : cell.members)
+      if ((left -= weight[i]) < 0.0) {
+        chosen = i;
+        break;
+      }
+    nodes.push_back({draws.u.col(chosen), cell.weight});
+    kept += cell.weight;
+  }
+  for (HyperNode& node : nodes) node.weight /= kept;
+  return nodes;
+}
+
+HyperPosterior hyper_posterior(const Objective& objective, const VectorXd& mode) {
+  const Index m = mode.size();
+  HyperPosterior posterior;
+  posterior.log_density = [&objective](const VectorXd& u) { return evaluate_value(objective, u); };
+  posterior.low = objective.low;
+  posterior.high = objective.high;
+  posterior.prior_mean = objective.prior_mean;
+  posterior.prior_precision = objective.prior_precision;
+  posterior.mode = mode;
+  // A direction that data and priors leave flatter than a factor of e^4 counts as e^4 wide.
+  MatrixXd information = evaluate(objective, mode).information;
+  information.diagonal().array() += 1.0 / 16.0;
+  posterior.covariance = information.llt().solve(MatrixXd::Identity(m, m));
+  return posterior;
+}
+
+IntegrationOptions integration_options(Index points, std::uint64_t seed) {
+  IntegrationOptions options{.seed = seed};
+  if (points > 128) options.draws = 256;
+  if (points > 512) options = {.draws = 64, .stages = 2, .nodes = 16, .seed = seed};
+  return options;
 }
 
 }  // namespace surrogate

@@ -1,28 +1,55 @@
 #pragma once
 // Hyper-parameters integrated out instead of plugged in, so that few runs do not give false certainty.
 //
-// The posterior density of u (fit.hpp) is integrated by a central composite design about its mode, as in INLA (H. Rue,
-// S. Martino & N. Chopin, J. R. Stat. Soc. B 71:319 (2009), section 6.5): with the covariance S = V diag(e) V' of the
-// Laplace approximation and m parameters,
-//   nodes     u_0 = mode,  u_{i+-} = mode +- r w_{i+-} sqrt(e_i) v_i,   r = f sqrt(m), f = 1.1,
-//   weights   1 - 1/f^2 for the mode, w_{i+-} / (w_{i+} + w_{i-}) / (m f^2) for the others,
-// each times density / normal density there, then normalised. The widths w stretch each half of each axis until the
-// density has fallen at the node as a normal density would, INLA's remedy for skewness; with w = 1 the rule is exact
-// for the mean and variance of a normal density. Deviations: INLA's fractional factorial corners are replaced by the
-// axes of S, and a node that would leave the box of u is put on its face. S is the inverse of the Hessian by
-// differences of the gradient, or of the average information where the Hessian is not positive definite.
-// Limit: mass away from the mode, such as a shoulder at short length scales, is not seen; intervals are then wider than
-// plugged-in ones but still narrower than the full posterior's (tests/surrogate/marginal.cpp compares with quadrature).
+// Their posterior density p(u) (fit.hpp: logarithms, in a box, under normal priors) is integrated by adaptive
+// importance sampling (O. Cappe et al., "Population Monte Carlo", J. Comput. Graph. Stat. 13:907 (2004)), which sees
+// mass away from the mode, such as the shoulder at short length scales that few runs leave:
+//   stage 0   half the draws from Student's t (5 degrees of freedom) about the mode with the normal approximation's
+//             covariance, half from the prior cut to the box (uniform where it is flat);
+//   stage 1+  t about the weighted mean, with the weighted covariance of all draws so far;
+//   weights   p(u) / sum_k (n_k / n) q_k(u) over all stages (A. Owen & Y. Zhou, J. Am. Stat. Assoc. 95:135 (2000)),
+// the draws of each stage being scrambled Sobol points. For prediction the weighted draws are cut down to a few nodes:
+// the box is split again and again, each time the cell with the largest weight times variance, at its weighted mean
+// along its widest direction; one draw of each cell, taken with probability proportional to its weight, stands for the
+// cell and has its whole weight. Means over the nodes are unbiased for means over the draws.
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
 #include "surrogate/maximise.hpp"
 
 namespace surrogate {
+
+/// What is integrated over.
+struct HyperPosterior {
+  std::function<double(const Eigen::VectorXd& u)>
+      log_density;                              ///< any constant left out; -infinity where there is none
+  Eigen::VectorXd low, high;                    ///< box of u
+  Eigen::VectorXd prior_mean, prior_precision;  ///< of u; precision 0: flat
+  Eigen::VectorXd mode;
+  Eigen::MatrixXd covariance;  ///< of the normal approximation at the mode
+};
+
+struct IntegrationOptions {
+  int draws = 512;  ///< per stage
+  int stages = 3;
+  int nodes = 32;  ///< at most, that predictions use
+  std::uint64_t seed = 0;
+};
 
 struct HyperNode {
   Eigen::VectorXd u;
   double weight = 0.0;
 };
 
-/// The mode first; weights add up to one. Nodes of weight below 1e-6 are left out.
-std::vector<HyperNode> integration_nodes(const Objective& objective, const Eigen::VectorXd& mode);
+/// The mode first, with weight 0 (it is the setting that is reported); weights add up to one.
+std::vector<HyperNode> integration_nodes(const HyperPosterior& posterior, const IntegrationOptions& options);
+
+/// The posterior of a fit's objective about its maximum.
+HyperPosterior hyper_posterior(const Objective& objective, const Eigen::VectorXd& mode);
+
+/// Draws and nodes for a number of distinct points: where they are many the posterior is narrow, and each draw dear.
+IntegrationOptions integration_options(Eigen::Index points, std::uint64_t seed);
 
 }  // namespace surrogate

@@ -117,6 +117,13 @@ LikelihoodGradient evaluate(const Objective& objective, const Eigen::VectorXd& u
   return result;
 }
 
+double evaluate_value(const Objective& objective, const Eigen::VectorXd& u) {
+  const Factorised at = objective.likelihood.factorise(from_logs(u, objective.likelihood.nugget()));
+  if (!at.ok) return -std::numeric_limits<double>::infinity();
+  const Eigen::VectorXd deviation = u - objective.prior_mean;
+  return at.log_likelihood - 0.5 * deviation.dot(objective.prior_precision.cwiseProduct(deviation));
+}
+
 StartOutcome maximise_lbfgs(const Objective& objective, const Eigen::VectorXd& start, const FitOptions& options) {
   StartOutcome outcome;
   outcome.start = outcome.end = start;

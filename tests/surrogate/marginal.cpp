@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 #include "data/random.hpp"
 #include "surrogate/design.hpp"
@@ -27,9 +28,22 @@ double correlation(double distance, double length) {
   return value;
 }
 
+/// Probability of at most y under the mixture of the process's parts.
+VectorXd probabilities(const GaussianProcess& process, const MatrixXd& points, const VectorXd& y) {
+  VectorXd total = VectorXd::Zero(y.size());
+  for (Conditioned part : process.parts()) {
+    const double weight = std::exchange(part.weight, 1.0);
+    const GaussianProcess one(process.kernel(), process.mean(), process.nugget(), process.data(), {part}, {});
+    const MarginalPrediction p = one.predict_marginal(points);
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      total[i] += weight * 0.5 * std::erfc((p.mean[i] - y[i]) / std::sqrt(2.0 * p.variance[i] + 1e-18));
+  }
+  return total;
+}
+
 }  // namespace
 
-TEST_CASE("integrated predictions come near those of quadrature over the hyper-parameters, to a stated limit") {
+TEST_CASE("integrated predictions are those of quadrature over the hyper-parameters") {
   // Without a nugget u has two components: length scale and signal variance, summed on a fine grid of the posterior.
   const TrainingSet training = few_runs(7, 1);
   const FitOptions options{.nugget = false, .hyper_uncertainty = HyperUncertainty::integrated};
@@ -65,11 +79,8 @@ TEST_CASE("integrated predictions come near those of quadrature over the hyper-p
   const VectorXd mean = first / total, sd = (second / total - mean.cwiseAbs2()).cwiseSqrt();
   for (int i = 0; i < 4; ++i) {
     CAPTURE(i, plugged.mean[i], std::sqrt(plugged.variance[i]), mean[i], sd[i]);
-    CHECK(std::abs(found.mean[i] - mean[i]) < 0.25 * sd[i]);
-    // Within a fifth, or at least a quarter of what plugging in leaves out: a shoulder of the posterior at short length
-    // scales (a thousandth of its mass, with an sd as large as the signal's) is out of reach of nodes about the mode.
-    const double error = std::abs(std::sqrt(found.variance[i]) - sd[i]);
-    CHECK(error < std::max(0.2 * sd[i], 0.75 * std::abs(std::sqrt(plugged.variance[i]) - sd[i])));
+    CHECK(std::abs(found.mean[i] - mean[i]) < 0.1 * sd[i]);
+    CHECK(std::sqrt(found.variance[i]) == Approx(sd[i]).epsilon(0.2));
   }
 }
 
@@ -101,34 +112,49 @@ TEST_CASE("gradients and batches of an integrated process agree with differences
   }
 }
 
-TEST_CASE("with few runs integrating the hyper-parameters brings coverage up towards its nominal value", "[slow]") {
-  // 100 functions drawn from the model (length scale from the prior used by the fit, on [0.1, 3]), six runs each, no
-  // noise.
-  constexpr int draws = 100, runs = 6, tests = 20;
-  double plugged = 0.0, integrated = 0.0;
+TEST_CASE("with 7 to 12 runs integrated hyper-parameters bring 90 % intervals to their nominal coverage", "[slow]") {
+  // Functions drawn from the model itself, their hyper-parameters from its prior: integrating over these is then exact
+  // Bayes (but for the signal variance, whose prior is about the data's own), and plugging in the best setting claims
+  // too much.
+  constexpr int draws = 300, tests = 20;
+  const FitOptions model{.nugget = false, .starts = 3};
+  double plugged = 0.0, integrated = 0.0, by_moments = 0.0;
   for (std::uint64_t draw = 0; draw < draws; ++draw) {
     data::RandomStream random(draw, data::Purpose::test, 4);
-    const double length = std::clamp(std::exp(1.5 * random.normal()), 0.1, 3.0);
-    MatrixXd x(runs + tests, 1);
-    x << scrambled_sobol(runs, 1, draw), scrambled_sobol(tests, 1, draw + 500);
+    const int runs = 7 + static_cast<int>(draw % 6);
+    Eigen::Vector2d length;
+    for (double& l : length)
+      l = std::clamp(model.priors.length_scale.median * std::exp(model.priors.length_scale.log_sd * random.normal()),
+                     model.bounds.length_scale.low, model.bounds.length_scale.high);
+    MatrixXd x(runs + tests, 2);
+    x << scrambled_sobol(runs, 2, draw), scrambled_sobol(tests, 2, draw + 500);
     MatrixXd prior(runs + tests, runs + tests);
     for (int i = 0; i < runs + tests; ++i)
-      for (int j = 0; j < runs + tests; ++j)
-        prior(i, j) = correlation(x(i, 0) - x(j, 0), length) + (i == j ? 1e-9 : 0.0);
+      for (int j = 0; j < runs + tests; ++j) {
+        const Eigen::Vector2d apart = x.row(i) - x.row(j);
+        prior(i, j) = correlation(apart.cwiseQuotient(length).norm(), 1.0) + (i == j ? 1e-9 : 0.0);
+      }
     VectorXd normal(runs + tests);
     for (double& value : normal) value = random.normal();
     const VectorXd y = MatrixXd(prior.llt().matrixL()) * normal;
     const TrainingSet training{x.topRows(runs), y.head(runs), {}};
     for (const HyperUncertainty how : {HyperUncertainty::plug_in, HyperUncertainty::integrated}) {
-      const FitOptions options{
-          .nugget = false, .starts = 3, .estimate = Estimate::maximum_a_posteriori, .hyper_uncertainty = how};
-      const MarginalPrediction p = fit(training, options).predict_marginal(x.bottomRows(tests));
-      const double inside = static_cast<double>(
-          ((y.tail(tests) - p.mean).array().abs() <= 1.96 * p.variance.array().sqrt() + 1e-9).count());
+      FitOptions options = model;
+      options.hyper_uncertainty = how;
+      const GaussianProcess process = fit(training, options);
+      const MarginalPrediction p = process.predict_marginal(x.bottomRows(tests));
+      const VectorXd level = probabilities(process, x.bottomRows(tests), y.tail(tests));
+      const double inside = static_cast<double>((level.array() > 0.05 && level.array() < 0.95).count());
       (how == HyperUncertainty::plug_in ? plugged : integrated) += inside / (draws * tests);
+      if (how == HyperUncertainty::integrated)
+        by_moments += static_cast<double>(
+                          ((y.tail(tests) - p.mean).array().abs() <= 1.6449 * p.variance.array().sqrt()).count()) /
+                      (draws * tests);
     }
   }
-  CAPTURE(plugged, integrated);
+  CAPTURE(plugged, integrated, by_moments);
   CHECK(integrated > plugged);
-  CHECK(integrated > 0.90);
+  CHECK(integrated > 0.88);
+  CHECK(integrated < 0.92);
+  CHECK(by_moments > 0.88);  // what the likelihood uses: one normal density with the mixture's mean and covariance
 }
