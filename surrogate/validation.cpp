@@ -7,8 +7,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "data/random.hpp"
 #include "surrogate/design.hpp"
+#include "surrogate/held_out.hpp"
 #include "surrogate/verdict.hpp"
 
 namespace surrogate {
@@ -29,53 +29,22 @@ TrainingSet on_process_scale(const TrainingSet& training, OutputScale scale) {
   return result;
 }
 
-/// Distinct points dealt into folds in a random order.
-std::vector<std::vector<int>> deal(const Standardised& data, int folds, std::uint64_t seed) {
-  const auto points = static_cast<int>(data.points.rows());
-  std::vector<int> order(static_cast<std::size_t>(points));
-  std::iota(order.begin(), order.end(), 0);
-  data::RandomStream random(seed, data::Purpose::optimiser_starts, 1);
-  for (int i = points - 1; i > 0; --i) std::swap(order[i], order[static_cast<int>(random.uniform() * (i + 1))]);
-  std::vector<int> fold_of_point(order.size());
-  for (int i = 0; i < points; ++i) fold_of_point[order[i]] = i % folds;
-  std::vector<std::vector<int>> runs(static_cast<std::size_t>(folds));
-  for (std::size_t i = 0; i < data.point_of_run.size(); ++i)
-    runs[fold_of_point[data.point_of_run[i]]].push_back(static_cast<int>(i));
-  return runs;
-}
-
-struct FoldPrediction {
-  HeldOutFold fold;
-  VectorXd mean, standardised;  // of fold.runs
-};
-
-FoldPrediction predict_fold(const TrainingSet& training, const std::vector<int>& runs, const FitOptions& options) {
-  std::vector<int> kept;
-  for (int i = 0; i < training.y.size(); ++i)
-    if (!std::binary_search(runs.begin(), runs.end(), i)) kept.push_back(i);
-  const GaussianProcess process =
-      fit({training.x(kept, Eigen::all), training.y(kept), training.noise_variance(kept)}, options);
-  Prediction prediction = process.predict(training.x(runs, Eigen::all));
-  const double nugget = process.hyper_parameters().nugget_sd;
-  prediction.covariance.diagonal() += training.noise_variance(runs);
-  prediction.covariance.diagonal().array() += nugget * nugget;
-
-  FoldPrediction result;
-  const VectorXd error = training.y(runs) - prediction.mean;
-  result.mean = prediction.mean;
-  result.standardised = error.array() / prediction.covariance.diagonal().array().sqrt();
-  HeldOutFold& fold = result.fold;
-  fold.runs = runs;
-  fold.converged = process.diagnostics().converged;
-  const PivotedErrors pivoted = pivoted_errors(error, prediction.covariance);
-  fold.pivoted_errors = pivoted.errors;
-  for (const int i : pivoted.order) fold.pivots.push_back(runs[i]);
-  fold.mahalanobis = pivoted.errors.squaredNorm();
-  fold.degrees = static_cast<int>(pivoted.errors.size());
-  fold.remaining_degrees =
-      static_cast<int>(kept.size()) - basis_size(options.mean, static_cast<int>(process.data().active.size()));
-  fold.probability = mahalanobis_probability(fold.mahalanobis, fold.degrees, std::max(fold.remaining_degrees, 1));
-  return result;
+/// A process fitted to the kept runs, from the full fit's hyper-parameters.
+HeldOutModel refitted(const TrainingSet& training, const FitOptions& options) {
+  return [&training, &options](const std::vector<int>& kept, const std::vector<int>& left) -> HeldOutPrediction {
+    const TrainingSet part{training.x(kept, Eigen::all), training.y(kept), training.noise_variance(kept)};
+    if (kept.size() < 2) return {};
+    const Standardised data = standardise(part, options.scale);
+    const int coefficients = basis_size(options.mean, static_cast<int>(data.active.size()));
+    if (data.points.rows() <= coefficients) return {};
+    const GaussianProcess process = fit(part, options);
+    HeldOutPrediction found{process.predict(training.x(left, Eigen::all)), coefficients,
+                            process.diagnostics().converged};
+    const double nugget = process.hyper_parameters().nugget_sd;
+    found.prediction.covariance.diagonal() += training.noise_variance(left);
+    found.prediction.covariance.diagonal().array() += nugget * nugget;
+    return found;
+  };
 }
 
 }  // namespace
@@ -170,7 +139,7 @@ Validation validate(const TrainingSet& given, const FitOptions& fit_options, con
   const bool log_scale = fit_options.scale == OutputScale::log;
   Validation result;
   result.runs = static_cast<int>(n);
-  result.notes = fit_notes(process);
+  result.notes = fit_notes(process.diagnostics());
 
   // Leave-one-out, closed form, hyper-parameters kept.
   result.leave_one_out = process.leave_one_out();
@@ -183,42 +152,18 @@ Validation validate(const TrainingSet& given, const FitOptions& fit_options, con
   fold_options.starts = 1;
   fold_options.first_start = to_logs(process.parts().front().parameters, fit_options.nugget);
   const int points = static_cast<int>(process.data().points.rows());
-  const int p = basis_size(fit_options.mean, static_cast<int>(process.data().active.size()));
-  const int folds = std::clamp(options.folds, 2, points);
-  result.held_out_mean = VectorXd::Constant(n, training.y.mean());
-  result.held_out_standardised = VectorXd::Zero(n);
-  double worst = 1.0;
-  int predicted = 0;
-  for (const std::vector<int>& runs : deal(process.data(), folds, options.seed)) {
-    if (points - (points + folds - 1) / folds <= p || n - static_cast<Index>(runs.size()) < 2) continue;
-    const FoldPrediction fold = predict_fold(training, runs, fold_options);
-    result.held_out_mean(runs) = fold.mean;
-    result.held_out_standardised(runs) = fold.standardised;
-    result.large_pivoted_errors += static_cast<int>((fold.fold.pivoted_errors.array().abs() > 2.0).count());
-    worst = std::min(worst, fold.fold.probability);
-    predicted += static_cast<int>(runs.size());
-    result.folds.push_back(fold.fold);
-  }
-  result.mahalanobis_probability = std::min(1.0, worst * static_cast<double>(folds));
-  result.large_errors = static_cast<int>((result.held_out_standardised.array().abs() > 2.0).count());
-  result.coverage_held_out = coverage(result.held_out_standardised);
-  result.q2_held_out = q2(training.y, result.held_out_mean);
-
-  // What the noise leaves to be explained.
   // The nugget counts as noise only where replicates show that it is scatter: without them it may as well be structure
   // that the runs are too few to resolve.
   const double nugget = static_cast<int>(n) - points >= 5 ? process.hyper_parameters().nugget_sd : 0.0;
-  const double noise = training.noise_variance.mean() + nugget * nugget;
-  const double variance = (training.y.array() - training.y.mean()).square().mean();
-  const double error = (training.y - result.held_out_mean).squaredNorm() / static_cast<double>(n);
-  result.q2_attainable = variance > 0.0 ? 1.0 - noise / variance : 0.0;
-  result.q2_function =
-      variance > noise ? std::min(1.0, 1.0 - (error - noise) / (variance - noise)) : result.q2_held_out;
+  const std::vector<std::vector<int>> folds =
+      deal(process.data().point_of_run, std::clamp(options.folds, 2, points), options.seed);
+  const HeldOutModel model = refitted(training, fold_options);
+  const int predicted = hold_out(result, {training, nugget * nugget}, folds, model);
   if (log_scale) result.held_out_mean = result.held_out_mean.array().exp();
 
-  result.verdict = judge(result, predicted, process, options.thresholds);
+  result.verdict = judge(result, predicted, process.diagnostics(), options.thresholds);
   if (options.suggestions > 0) result.next_points = least_known_points(process, options.suggestions, options.seed);
-  explain(result, training, fold_options, options);
+  explain(result, training, model, options.thresholds);
   return result;
 }
 

@@ -94,7 +94,7 @@ PivotedErrors pivoted_errors(const Eigen::VectorXd& error, const Eigen::MatrixXd
 double mahalanobis_probability(double distance, int m, int remaining);
 
 /// What a fit has to say about itself: bounds met, jitter, starts that disagree, non-convergence.
-std::vector<std::string> fit_notes(const GaussianProcess& process);
+std::vector<std::string> fit_notes(const FitDiagnostics& diagnostics);
 
 /// Points of the unit cube (inside the training box) where the function is least known, each given those before it.
 Eigen::MatrixXd least_known_points(const GaussianProcess& process, int count, std::uint64_t seed);

@@ -26,28 +26,27 @@ bool noise_dominated(const Validation& v, const ValidationThresholds& t) {
 }
 
 /// Mean squared held-out error when only about half of the runs train, for the learning curve; negative: not possible.
-double error_with_half(const TrainingSet& training, const FitOptions& options) {
+double error_with_half(const TrainingSet& training, const HeldOutModel& model) {
   std::vector<int> even, odd;
   for (int i = 0; i < training.y.size(); ++i) (i % 2 ? odd : even).push_back(i);
   double sum = 0.0;
   for (const auto& [kept, left] : {std::pair{even, odd}, std::pair{odd, even}}) {
-    if (static_cast<int>(kept.size()) < 2 + basis_size(options.mean, static_cast<int>(training.x.cols()))) return -1.0;
-    const GaussianProcess process =
-        fit({training.x(kept, Eigen::all), training.y(kept), training.noise_variance(kept)}, options);
-    sum += (training.y(left) - process.predict_marginal(training.x(left, Eigen::all)).mean).squaredNorm();
+    const HeldOutPrediction found = model(kept, left);
+    if (found.prediction.mean.size() == 0) return -1.0;
+    sum += (training.y(left) - found.prediction.mean).squaredNorm();
   }
   return sum / static_cast<double>(training.y.size());
 }
 
 /// Runs that would bring Q2 of the function to its threshold if the error went on falling as it did from half of the
 /// runs to all: error ~ n^-slope, slope between 0.5 and 4.
-int runs_wanted(const Validation& v, const TrainingSet& training, const FitOptions& options, double q2_good) {
+int runs_wanted(const Validation& v, const TrainingSet& training, const HeldOutModel& model, double q2_good) {
   const double n = static_cast<double>(training.y.size());
   const double variance = (training.y.array() - training.y.mean()).square().mean();
   const double noise = (1.0 - v.q2_attainable) * variance, signal = variance - noise;
   if (!(signal > 0.0)) return static_cast<int>(n);
   const double now = std::max((1.0 - v.q2_function) * signal, 1e-12 * signal);
-  const double half = error_with_half(training, options) - noise;
+  const double half = error_with_half(training, model) - noise;
   const double folds = std::max<double>(2.0, static_cast<double>(v.folds.size()));
   const double trained = n * (1.0 - 1.0 / folds);
   const double slope = half > now ? std::clamp(std::log(half / now) / std::log(trained / (0.5 * n)), 0.5, 4.0) : 0.5;
@@ -69,8 +68,7 @@ const char* to_text(SurrogateVerdict verdict) {
   return "";
 }
 
-std::vector<std::string> fit_notes(const GaussianProcess& process) {
-  const FitDiagnostics& d = process.diagnostics();
+std::vector<std::string> fit_notes(const FitDiagnostics& d) {
   std::vector<std::string> notes;
   if (!d.converged) notes.push_back("the maximisation of the likelihood did not converge");
   if (d.jitter > 0.0)
@@ -89,25 +87,23 @@ std::vector<std::string> fit_notes(const GaussianProcess& process) {
   return notes;
 }
 
-SurrogateVerdict judge(const Validation& v, int predicted, const GaussianProcess& process,
+SurrogateVerdict judge(const Validation& v, int predicted, const FitDiagnostics& diagnostics,
                        const ValidationThresholds& t) {
   if (predicted < v.runs) return SurrogateVerdict::unusable;  // too few runs to hold any out
   const double coverage95 = v.coverage_held_out.observed[2];
   if (coverage95 < t.coverage95_unusable) return SurrogateVerdict::unusable;
   if (noise_dominated(v, t)) return SurrogateVerdict::caution;
   if (v.q2_function < t.q2_unusable) return SurrogateVerdict::unusable;
-  const bool bad_bound = std::any_of(process.diagnostics().bound_hits.begin(), process.diagnostics().bound_hits.end(),
+  const bool bad_bound = std::any_of(diagnostics.bound_hits.begin(), diagnostics.bound_hits.end(),
                                      [](const BoundHit& hit) { return !hit.harmless; });
-  if (v.q2_function < t.q2_good || !process.diagnostics().converged || bad_bound ||
+  if (v.q2_function < t.q2_good || !diagnostics.converged || bad_bound ||
       coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability ||
       v.mahalanobis_probability < t.mahalanobis_probability)
     return SurrogateVerdict::caution;
   return SurrogateVerdict::good;
 }
 
-void explain(Validation& v, const TrainingSet& training, const FitOptions& options,
-             const ValidationOptions& validation_options) {
-  const ValidationThresholds& t = validation_options.thresholds;
+void explain(Validation& v, const TrainingSet& training, const HeldOutModel& model, const ValidationThresholds& t) {
   const double coverage95 = v.coverage_held_out.observed[2];
   if (v.folds.empty()) {
     v.finding = fmt::format("{} runs are too few to hold any out", v.runs);
@@ -153,7 +149,7 @@ void explain(Validation& v, const TrainingSet& training, const FitOptions& optio
     return;
   }
   if (v.q2_function < t.q2_good) {
-    v.more_runs = runs_wanted(v, training, options, t.q2_good);
+    v.more_runs = runs_wanted(v, training, model, t.q2_good);
     v.remedy = fmt::format("Add about {} runs, the first of them where the surrogate knows least.", v.more_runs);
   } else if (coverage_wrong || distance_wrong) {
     v.more_runs = std::max(8, v.runs / 4);
