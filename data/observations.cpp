@@ -22,14 +22,23 @@ double measured(const Csv& csv, const CsvRow& row, std::size_t column) {
 
 }  // namespace
 
-ObservationSet read_observations(const std::string& path, const Study& study) {
+ObservationSet read_observations(const std::string& path, const Study& study,
+                                 const std::map<std::string, double>& settings) {
   const Csv csv = read_csv(path);
   ObservationSet set;
   set.file = path;
   set.header = csv.comments;
 
-  std::vector<std::size_t> control_columns, value_columns, error_columns;
-  for (const Control& control : study.controls) control_columns.push_back(csv.column(control.name));
+  std::vector<std::optional<std::size_t>> control_columns;  // none: a setting of the whole set
+  std::vector<std::size_t> value_columns, error_columns;
+  for (const Control& control : study.controls) {
+    const bool set_once = settings.contains(control.name);
+    if (set_once && csv.find(control.name))
+      throw InputError(ExitStatus::bad_data,
+                       Problem{csv.file, fmt::format("has a column {}, which the study also sets", control.name),
+                               "keep one of the two"});
+    control_columns.push_back(set_once ? std::nullopt : std::optional(csv.column(control.name)));
+  }
   for (std::size_t i = 0; i < study.outputs.size(); ++i) {
     const std::string& name = study.outputs[i].name;
     if (!csv.find(name) && !csv.find(name + "_se")) continue;
@@ -46,7 +55,9 @@ ObservationSet read_observations(const std::string& path, const Study& study) {
     Observation point;
     point.line = row.line;
     for (std::size_t i = 0; i < control_columns.size(); ++i) {
-      point.controls.push_back(study.controls[i].unit.to_si(measured(csv, row, control_columns[i])));
+      const Control& control = study.controls[i];
+      point.controls.push_back(control_columns[i] ? control.unit.to_si(measured(csv, row, *control_columns[i]))
+                                                  : settings.at(control.name));
     }
     for (std::size_t i = 0; i < value_columns.size(); ++i) {
       const Unit& unit = study.outputs[set.outputs[i]].unit;

@@ -149,6 +149,14 @@ bool Section::has(std::string_view key) const {
   node_->state->known[node_->table].emplace(key);
   return node_->table->contains(key);
 }
+ValueKind Section::kind(std::string_view key) const {
+  if (!has(key)) return ValueKind::missing;
+  const toml::node& value = *node_->table->get(key);
+  if (value.is_number()) return ValueKind::number;
+  if (value.is_string()) return ValueKind::text;
+  if (value.is_boolean()) return ValueKind::flag;
+  return value.is_table() ? ValueKind::table : ValueKind::other;
+}
 std::string Section::place(std::string_view key) const { return node_->place(key); }
 std::string Section::name() const { return node_->name; }
 

@@ -91,13 +91,14 @@ FileProblems read_observation_sets(const Section& root, Study& study) {
     const std::string material = observed_material(section, study);
     const std::string file = section.text("file");
     ObservationSet set{.file = beside(study, file)};
+    const std::map<std::string, double> settings = read_settings(section.child("settings"), study);
     if (!file.empty() && !fs::is_regular_file(set.file)) {
       add(ExitStatus::missing_input,
           {{section.place("file"), fmt::format("there is no file '{}'", shown_path(set.file)),
             "paths start at the study's folder"}});
     } else if (!file.empty()) {
       try {
-        set = read_observations(set.file, study);
+        set = read_observations(set.file, study, settings);
       } catch (const InputError& error) {
         add(error.status, error.problems);
       }
@@ -105,6 +106,7 @@ FileProblems read_observation_sets(const Section& root, Study& study) {
     set.name = name;
     set.material = material;
     set.place = section.place();
+    read_measurement(root, section, study, set);
     study.observations.push_back(std::move(set));
   }
   return found;
@@ -153,6 +155,7 @@ Study read_study(const StudyFile& file) {
     root.problem("parameters", "names no parameter", "add a section like [parameters.friction]");
   read_materials(root, study);
   read_training(root, study);
+  read_rig_scale(root, study);
   const FileProblems files = read_observation_sets(root, study);
   read_cases(root, study);
   for (const Section& section : root.array("calibrate")) check_file_name(section, section.text("name"));

@@ -31,6 +31,7 @@ struct Prior {
   double alpha = 1.0;
   double beta = 1.0;
   std::string posterior_of;  ///< name of a case, kind posterior
+  bool cut = false;          ///< kind posterior: taken without feedback, the case's data do not change it
   std::string place;
 };
 
@@ -46,13 +47,30 @@ struct Parameter {
   std::string place;
 };
 
+/// A standard error: the root of the sum of the squares of its two parts.
+struct Spread {
+  double absolute = 0.0;  ///< SI
+  double relative = 0.0;  ///< share of the value
+  bool some() const { return absolute > 0.0 || relative > 0.0; }
+};
+
+/// How well a control is known. Where all points of a set have one value of it (a fill), its error is common to them;
+/// where it differs from point to point (a speed), it is set anew at each.
+struct SettingError {
+  std::size_t control = 0;  ///< index into Study::controls
+  Spread spread;
+  bool unknown = false;  ///< sampled as an unknown, instead of first order in the covariance
+  std::string place;
+};
+
 /// A quantity that the experiment sets (rpm).
 struct Control {
   std::string name;
   std::string target;
   Unit unit;
-  double low = 0.0;   ///< SI
-  double high = 1.0;  ///< SI
+  double low = 0.0;                         ///< SI
+  double high = 1.0;                        ///< SI
+  std::optional<SettingError> uncertainty;  ///< of every observation set that does not state its own
   std::string place;
 };
 
@@ -86,15 +104,45 @@ struct Observation {
   int line = 0;
 };
 
+/// An error of the measurement that all points of a set share (a calibration, a mounting).
+struct CommonError {
+  std::size_t output = 0;  ///< index into Study::outputs
+  Spread spread;
+};
+
 struct ObservationSet {
   std::string name;
   std::string material;
   std::string file;                  ///< absolute path
   std::vector<std::size_t> outputs;  ///< indices into Study::outputs, of the columns that the file has
   std::vector<Observation> points;
+  std::vector<CommonError> common_errors;
+  std::vector<SettingError> setting_errors;
+  bool of_machine = false;          ///< measured on the whole machine, of which the runs simulate a slice
   std::vector<std::string> header;  ///< the comment lines at the head of the file, without '#'
   std::string place;
 };
+
+/// What beside the parameters is unknown of a measurement, and how it acts on the prediction m of what is read:
+///   reading = scale * gain * m + offset + discrepancy + noise
+enum class NuisanceKind {
+  offset,          ///< added to every reading of an output: an idle torque
+  gain,            ///< multiplies every reading of an output
+  noise_scale,     ///< multiplies the stated standard errors
+  noise_sd,        ///< stands in their place, the same at all points
+  scale,           ///< of the machine to the slice
+  setting,         ///< a control's true value in one observation set
+  discrepancy_sd,  ///< of a Gaussian process over the controls: share of the root mean square of the measured values
+  discrepancy_length,  ///< its correlation length, in ranges of the controls
+};
+
+struct Nuisance {
+  NuisanceKind kind = NuisanceKind::offset;
+  std::optional<std::size_t> output;  ///< that it acts on, index into Study::outputs; none: all of the case
+  Parameter parameter;                ///< name, unit, range and prior
+};
+
+enum class Sampler { mixture, nuts };
 
 /// A calibration case: which parameters are free given which observations.
 struct CalibrationCase {
@@ -103,7 +151,15 @@ struct CalibrationCase {
   std::vector<std::string> free;
   std::map<std::string, double> fixed;  ///< SI
   std::map<std::string, Prior> priors;  ///< instead of the parameters' own
+  std::vector<Nuisance> nuisances;
+  Sampler sampler = Sampler::mixture;
   std::string place;
+};
+
+/// What the machine's torque is to the slice's: a number, or unknown with a prior.
+struct RigScale {
+  double value = 1.0;
+  std::optional<Nuisance> unknown;
 };
 
 struct Study {
@@ -118,6 +174,7 @@ struct Study {
   std::vector<Output> outputs;
   std::vector<Material> materials;
   Training training;
+  std::optional<RigScale> scale;  ///< [rig] scale
   std::vector<ObservationSet> observations;
   std::vector<CalibrationCase> cases;
 

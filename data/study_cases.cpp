@@ -81,6 +81,26 @@ void check_roles(const Section& section, const CalibrationCase& item, const Stud
   }
 }
 
+/// What a nuisance acts on must be measured, and its name must not be a parameter's.
+void check_nuisances(const Section& section, const CalibrationCase& item, const Study& study) {
+  for (const Nuisance& nuisance : item.nuisances) {
+    const std::string& name = nuisance.parameter.name;
+    if (study.parameter_index(name))
+      section.problem(name, "is also the name of a parameter, and the report could not tell them apart",
+                      "give the parameter another name (its target can stay)");
+    if (!nuisance.output) continue;
+    const bool measured = std::any_of(item.observe.begin(), item.observe.end(), [&](const std::string& set) {
+      const auto index = study.observation_index(set);
+      return index && std::count(study.observations[*index].outputs.begin(), study.observations[*index].outputs.end(),
+                                 *nuisance.output) > 0;
+    });
+    if (!measured)
+      section.problem(name,
+                      fmt::format("acts on {}, which the case does not observe", study.outputs[*nuisance.output].name),
+                      "name another output, or leave it out");
+  }
+}
+
 /// A prior that is another case's posterior: the case must exist, leave the parameter free, and not lead back here.
 void check_posteriors(const Section& section, const CalibrationCase& item, const Study& study) {
   const auto find = [&](const std::string& name) {
@@ -143,6 +163,9 @@ void read_cases(const Section& root, Study& study) {
                         "add it to free, or remove its prior");
       }
     }
+    item.nuisances = read_nuisances(section, study);
+    check_nuisances(section, item, study);
+    if (section.choice("sampler", {"mixture", "nuts"}, "mixture") == "nuts") item.sampler = Sampler::nuts;
     for (const CalibrationCase& other : study.cases) {
       if (other.name == item.name)
         section.problem("name", fmt::format("'{}' is taken", item.name), "give each case its own name");

@@ -26,6 +26,9 @@ inline constexpr Range any_number{};
 inline constexpr Range positive{.low = 0.0, .open_low = true};
 inline constexpr Range non_negative{.low = 0.0};
 
+/// What stands behind a key.
+enum class ValueKind { missing, number, text, flag, table, other };
+
 class StudyFile;
 
 /// One table of the study. A missing table reads as an empty one. Every getter marks its key as used; when the value
@@ -35,6 +38,7 @@ class Section {
  public:
   bool exists() const;                                 ///< the table is in the file
   bool has(std::string_view key) const;                ///< makes the key known, but not used
+  ValueKind kind(std::string_view key) const;          ///< makes the key known, but not used
   std::string place(std::string_view key = "") const;  ///< "study.toml:12: contact.friction"
   std::string name() const;                            ///< dotted: "parameters.friction"
 

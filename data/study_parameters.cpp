@@ -19,9 +19,6 @@ Unit read_unit(const Section& section, const std::string& fallback) {
   }
 }
 
-/// The unit of a bare number; none for a dimensionless quantity.
-const Unit* bare_unit(const Unit& unit) { return unit.symbol.empty() || unit.symbol == "1" ? nullptr : &unit; }
-
 /// A value in the parameter's unit as a person reads it.
 std::string shown(double si, const Unit& unit) {
   return fmt::format("{:.10g}{}{}", unit.from_si(si), bare_unit(unit) != nullptr ? " " : "", unit.symbol);
@@ -79,6 +76,8 @@ void read_mean_and_sd(const Section& section, Prior& prior, const Parameter& par
 
 }  // namespace
 
+const Unit* bare_unit(const Unit& unit) { return unit.symbol.empty() || unit.symbol == "1" ? nullptr : &unit; }
+
 const std::set<std::string>& reserved_columns() {
   static const std::set<std::string> names{"material", "seed", "settings", "isa", "origin", "cpu_seconds"};
   return names;
@@ -90,6 +89,7 @@ Prior read_prior(const Section& section, const Parameter& parameter, PriorOf own
   if (owner == PriorOf::case_ && section.has("posterior")) {
     prior.kind = PriorKind::posterior;
     prior.posterior_of = section.text("posterior");
+    prior.cut = section.flag("cut", false);
     return prior;
   }
   const std::string kind = section.choice("kind", {"uniform", "normal", "truncated_normal", "log_normal", "beta"});
@@ -144,6 +144,8 @@ void read_controls(const Section& root, Study& study) {
     control.low = read_value(section, "low", control.unit);
     control.high = read_value(section, "high", control.unit);
     check_order(section, control.low, control.high, control.unit);
+    control.uncertainty = read_uncertainty(section, "uncertainty", control, bare_unit(control.unit));
+    if (control.uncertainty) control.uncertainty->control = study.controls.size();
     study.controls.push_back(std::move(control));
   }
 }

@@ -1,7 +1,10 @@
 #pragma once
 // The parts of read_study, one per section of the file. Problems are recorded in the sections.
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "data/study.hpp"
 
@@ -9,6 +12,9 @@ namespace data {
 
 /// Names of columns that the run table has beside parameters, controls and outputs.
 const std::set<std::string>& reserved_columns();
+
+/// The unit of a bare number; none for a dimensionless quantity.
+const Unit* bare_unit(const Unit& unit);
 
 void read_parameters(const Section& root, Study& study);
 void read_controls(const Section& root, Study& study);
@@ -21,6 +27,16 @@ Prior read_prior(const Section& section, const Parameter& parameter, PriorOf own
 
 /// `{ NAME = VALUE }` for parameters, bare numbers in the parameter's unit, SI.
 std::map<std::string, double> read_fixed(const Section& section, const Study& study);
+
+/// [rig] scale, and of each [[observe]]: what is known of its meter and its settings (study_measurement.cpp).
+void read_rig_scale(const Section& root, Study& study);
+std::optional<SettingError> read_uncertainty(const Section& section, std::string_view key, const Control& control,
+                                             const Unit* section_unit);
+void read_measurement(const Section& root, const Section& section, const Study& study, ObservationSet& set);
+/// Values of controls that an observation file has no column of: settings = { fill = 2400 }.
+std::map<std::string, double> read_settings(const Section& section, const Study& study);
+/// offset, gain, noise and discrepancy of a case.
+std::vector<Nuisance> read_nuisances(const Section& section, const Study& study);
 
 void read_cases(const Section& root, Study& study);
 

@@ -40,6 +40,31 @@ void add_diagnostics(CaseReport& report, const SampledCase& sampled) {
   }
 }
 
+void add_nuisances(CaseReport& report, const SampledCase& sampled) {
+  for (int k = 0; k < sampled.model->dimension(); ++k) {
+    const Slot& slot = sampled.model->slots[static_cast<std::size_t>(k)];
+    if (slot.nuisance == Acts::none) continue;
+    const data::Unit& unit = slot.prior.parameter().unit;
+    const Eigen::MatrixXd u = sampled.draws.coordinate(k);
+    Eigen::VectorXd values = u.reshaped();
+    for (double& value : values) value = unit.from_si(slot.value(value));
+    const double mean = values.mean();
+    report.nuisances.push_back(
+        {.name = slot.label,
+         .unit = unit.symbol,
+         .prior_mean = unit.from_si(slot.prior.value_mean()),
+         .prior_sd = slot.prior.value_sd() / unit.factor,
+         .mean = mean,
+         .sd = std::sqrt((values.array() - mean).square().sum() / static_cast<double>(values.size() - 1)),
+         .q05 = quantile(values, 0.05),
+         .q50 = quantile(values, 0.50),
+         .q95 = quantile(values, 0.95),
+         .rhat = sampled.draws.rhat[k],
+         .ess_bulk = sampled.draws.ess_bulk[k],
+         .ess_tail = sampled.draws.ess_tail[k]});
+  }
+}
+
 /// Draws of the case's own parameters in the study's units, and their correlation.
 void add_draws(CaseReport& report, const CaseModel& model, const Eigen::MatrixXd& draws) {
   const Eigen::Index own = model.own_count();
@@ -101,7 +126,7 @@ void add_warnings(CaseReport& report, const SampledCase& sampled) {
     report.warnings.push_back(
         fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
   for (const auto& slot : sampled.model->slots)
-    if (slot.prior.kept_mass() < 0.99)
+    if (slot.nuisance == Acts::none && slot.prior.kept_mass() < 0.99)
       report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
                                             slot.label, 100.0 * (1.0 - slot.prior.kept_mass())));
 }
@@ -156,6 +181,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.collinearity = found.fisher.collinearity;
   report.traded = found.traded;
   add_diagnostics(report, sampled);
+  add_nuisances(report, sampled);
   add_draws(report, model, draws);
   const std::uint64_t seed = seed_of(study, options);
   report.predictive = predictive_points(study, model, draws, seed);

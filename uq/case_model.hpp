@@ -7,6 +7,12 @@
 // of theirs. It is Bayes' rule without approximation; the posterior of one case passed on as a density would forget
 // what the cases' surrogates have in common. Rows of all linked cases that the same emulator predicts are stacked, so
 // its errors, correlated between them, are counted once.
+//
+// Cut. A posterior taken with `cut` comes without its data: the unknown keeps the law that the other case gave it
+// (uq/cut.hpp).
+//
+// Nuisances of the measurement (uq/measurement.hpp) are unknowns like the parameters, with priors; the rig's scale is
+// one unknown of all cases that need it.
 #include <Eigen/Dense>
 #include <optional>
 #include <string>
@@ -14,16 +20,10 @@
 
 #include "data/study.hpp"
 #include "uq/emulator.hpp"
-#include "uq/prior.hpp"
+#include "uq/measurement.hpp"
+#include "uq/slot.hpp"
 
 namespace uq {
-
-/// One unknown of the joint posterior.
-struct Slot {
-  std::string label;  ///< the parameter's name, with the case's in front for another case's own parameter
-  ScaledPrior prior;
-  bool own = true;  ///< free in the case itself; else only in a linked one
-};
 
 /// Where one measured number comes from.
 struct RowOrigin {
@@ -37,22 +37,23 @@ struct RowGroup {
   Eigen::MatrixXd base;      ///< rows x inputs, unit cube; entries of unknowns are overwritten
   Eigen::MatrixXi slot;      ///< rows x inputs, index of the unknown or -1
   Eigen::VectorXd observed;  ///< SI
-  Eigen::VectorXd variance;  ///< SI^2, of the measurement
+  Eigen::VectorXd variance;  ///< SI^2, of the stated standard errors
   std::vector<RowOrigin> origin;
   /// Per slot, the input it sets in every row; nothing where it sets none. Meaningful when `uniform`.
   std::vector<std::optional<int>> coordinate;
   bool uniform = true;  ///< each unknown sets the same input in all rows, or none
+  Measurement measurement = {};
 };
 
 struct CaseModel {
   std::string name;
-  std::vector<Slot> slots;  ///< the case's own first, in its order
+  std::vector<Slot> slots;  ///< the case's own parameters first, in its order, then its nuisances
   std::vector<RowGroup> groups;
   std::vector<std::string> linked;         ///< names of the other cases that are sampled with it
   std::vector<std::string> observed_sets;  ///< of the case itself
 
   int dimension() const { return static_cast<int>(slots.size()); }
-  int own_count() const;
+  int own_count() const;  ///< parameters free in the case itself
   int row_count() const;
   Eigen::VectorXd lower() const;
   Eigen::VectorXd upper() const;

@@ -51,10 +51,19 @@ ParameterReport describe_draws(const Slot& slot, const Eigen::VectorXd& u, const
   return report;
 }
 
+/// Sd of the emulators over that of all else that is uncertain of the data.
 double median_surrogate_share(const CaseModel& model, const Eigen::VectorXd& u) {
-  const Eigen::VectorXd surrogate = predict(model, u).covariance.diagonal();
-  const Eigen::VectorXd ratio = (surrogate.cwiseMax(0.0).array() / observed_variance(model).array()).sqrt();
-  return quantile(ratio, 0.5);
+  CaseModel emulators = model;
+  for (auto& group : emulators.groups) {
+    group.measurement.discrepancies.clear();
+    for (auto& set : group.measurement.sets) {
+      set.common_absolute = set.common_relative = 0.0;
+      set.settings.clear();
+    }
+  }
+  const Eigen::ArrayXd own = predict(emulators, u).covariance.diagonal().array().max(0.0);
+  const Eigen::ArrayXd other = predict(model, u).total().diagonal().array() - own;
+  return quantile((own / other).sqrt(), 0.5);
 }
 
 }  // namespace

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::infinity();
 
+/// Rows at which a group's emulator is asked: the measured ones and their shifted copies.
+Eigen::Index rows_asked(const RowGroup& group) { return group.base.rows() * (1 + group.measurement.shifts()); }
+
 /// Writes the rows of a group at u into `points`, from row `first` on.
 void place_rows(const RowGroup& group, const Eigen::VectorXd& u, Eigen::MatrixXd& points, Eigen::Index first) {
   for (Eigen::Index k = 0; k < group.base.cols(); ++k)
@@ -16,68 +19,81 @@ void place_rows(const RowGroup& group, const Eigen::VectorXd& u, Eigen::MatrixXd
       const int s = group.slot(i, k);
       points(first + i, k) = s < 0 ? group.base(i, k) : u[s];
     }
+  if (group.measurement.shifts() > 0) place_shifts(group.measurement, points, first, group.base.rows());
 }
 
 Eigen::MatrixXd rows_at(const RowGroup& group, const Eigen::VectorXd& u) {
-  Eigen::MatrixXd points(group.base.rows(), group.base.cols());
+  Eigen::MatrixXd points(rows_asked(group), group.base.cols());
   place_rows(group, u, points, 0);
   return points;
 }
 
-double log_normal_density(const RowGroup& group, const surrogate::Prediction& prediction) {
-  Eigen::MatrixXd covariance = prediction.covariance;
-  covariance.diagonal() += group.variance;
+double log_normal(Eigen::VectorXd residual, const Eigen::MatrixXd& covariance) {
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success) return nowhere;
-  Eigen::VectorXd residual = group.observed - prediction.mean;
   factor.matrixL().solveInPlace(residual);
   const double log_root = factor.matrixLLT().diagonal().array().log().sum();
   const double rows = static_cast<double>(residual.size());
   return -0.5 * residual.squaredNorm() - log_root - 0.5 * rows * std::log(2.0 * std::numbers::pi);
 }
 
+double log_group_density(const CaseModel& model, const RowGroup& group, const surrogate::Prediction& prediction,
+                         const Eigen::VectorXd& u) {
+  if (group.measurement.plain()) {
+    Eigen::MatrixXd covariance = prediction.covariance;
+    covariance.diagonal() += group.variance;
+    return log_normal(group.observed - prediction.mean, covariance);
+  }
+  GroupLaw law = law_of(group.measurement, model.slots, group.variance, prediction, u);
+  law.covariance.diagonal() += law.noise;
+  return log_normal(group.observed - law.mean, law.covariance);
+}
+
 /// Adds the gradient of one group's log density to `sum`.
-void add_gradient(const RowGroup& group, const Eigen::VectorXd& u, Evaluation& sum) {
+void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u, Evaluation& sum) {
   if (!group.uniform || !group.emulator.predict_with_gradient) {
     // No derivative along a common shift: central differences.
-    sum.value += log_normal_density(group, group.emulator.predict(rows_at(group, u)));
+    const auto density = [&](const Eigen::VectorXd& at) {
+      return log_group_density(model, group, group.emulator.predict(rows_at(group, at)), at);
+    };
+    sum.value += density(u);
     constexpr double step = 1e-5;
     for (Eigen::Index s = 0; s < u.size(); ++s) {
-      if (!(group.slot.array() == static_cast<int>(s)).any()) continue;
-      Eigen::VectorXd shifted = u;
-      shifted[s] = u[s] + step;
-      const double up = log_normal_density(group, group.emulator.predict(rows_at(group, shifted)));
-      shifted[s] = u[s] - step;
-      const double down = log_normal_density(group, group.emulator.predict(rows_at(group, shifted)));
-      sum.gradient[s] += (up - down) / (2.0 * step);
+      const bool nuisance = model.slots[static_cast<std::size_t>(s)].nuisance != Acts::none;
+      if (!nuisance && !(group.slot.array() == static_cast<int>(s)).any()) continue;
+      Eigen::VectorXd up = u, down = u;
+      up[s] += step;
+      down[s] -= step;
+      sum.gradient[s] += (density(up) - density(down)) / (2.0 * step);
     }
     return;
   }
-  std::vector<int> coordinates;
-  std::vector<Eigen::Index> slots;
+  std::vector<int> coordinates, unknowns;
   for (std::size_t s = 0; s < group.coordinate.size(); ++s)
     if (group.coordinate[s]) {
       coordinates.push_back(*group.coordinate[s]);
-      slots.push_back(static_cast<Eigen::Index>(s));
+      unknowns.push_back(static_cast<int>(s));
     }
   const surrogate::PredictionGradient found = group.emulator.predict_with_gradient(rows_at(group, u), coordinates);
-  Eigen::MatrixXd covariance = found.value.covariance;
-  covariance.diagonal() += group.variance;
+  const GroupLaw law = law_of(group.measurement, model.slots, group.variance, found.value, u);
+  Eigen::MatrixXd covariance = law.covariance;
+  covariance.diagonal() += law.noise;
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success) {
     sum.value = nowhere;
     return;
   }
   const Eigen::Index rows = group.observed.size();
-  const Eigen::VectorXd residual = group.observed - found.value.mean;
+  const Eigen::VectorXd residual = group.observed - law.mean;
   const Eigen::VectorXd a = factor.solve(residual);
   const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(rows, rows));
   sum.value += -0.5 * residual.dot(a) - factor.matrixLLT().diagonal().array().log().sum() -
                0.5 * static_cast<double>(rows) * std::log(2.0 * std::numbers::pi);
-  for (std::size_t k = 0; k < slots.size(); ++k) {
-    const Eigen::MatrixXd& slope = found.covariance_gradient[k];
-    sum.gradient[slots[k]] +=
-        a.dot(found.mean_gradient[k]) + 0.5 * (a.dot(slope * a) - inverse.cwiseProduct(slope).sum());
+  const LawGradient slopes = law_gradient(group.measurement, model.slots, group.variance, found, {unknowns, u});
+  for (std::size_t k = 0; k < slopes.unknowns.size(); ++k) {
+    const Eigen::MatrixXd& slope = slopes.covariance[k];
+    sum.gradient[slopes.unknowns[k]] +=
+        a.dot(slopes.mean[k]) + 0.5 * (a.dot(slope * a) - inverse.cwiseProduct(slope).sum());
   }
 }
 
@@ -85,13 +101,16 @@ void add_gradient(const RowGroup& group, const Eigen::VectorXd& u, Evaluation& s
 
 StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u) {
   const Eigen::Index rows = model.row_count();
-  StackedPrediction stacked{.mean = Eigen::VectorXd(rows), .covariance = Eigen::MatrixXd::Zero(rows, rows)};
+  StackedPrediction stacked{
+      .mean = Eigen::VectorXd(rows), .covariance = Eigen::MatrixXd::Zero(rows, rows), .noise = Eigen::VectorXd(rows)};
   Eigen::Index first = 0;
   for (const auto& group : model.groups) {
-    const surrogate::Prediction part = group.emulator.predict(rows_at(group, u));
+    const GroupLaw part =
+        law_of(group.measurement, model.slots, group.variance, group.emulator.predict(rows_at(group, u)), u);
     const Eigen::Index count = part.mean.size();
     stacked.mean.segment(first, count) = part.mean;
     stacked.covariance.block(first, first, count, count) = part.covariance;
+    stacked.noise.segment(first, count) = part.noise;
     first += count;
   }
   return stacked;
@@ -113,23 +132,26 @@ Evaluation log_prior_gradient(const CaseModel& model, const Eigen::VectorXd& u) 
 
 double log_likelihood(const CaseModel& model, const Eigen::VectorXd& u) {
   double sum = 0.0;
-  for (const auto& group : model.groups) sum += log_normal_density(group, group.emulator.predict(rows_at(group, u)));
+  for (const auto& group : model.groups)
+    sum += log_group_density(model, group, group.emulator.predict(rows_at(group, u)), u);
   return sum;
 }
 
 Evaluation log_likelihood_gradient(const CaseModel& model, const Eigen::VectorXd& u) {
   Evaluation sum{.value = 0.0, .gradient = Eigen::VectorXd::Zero(u.size())};
-  for (const auto& group : model.groups) add_gradient(group, u, sum);
+  for (const auto& group : model.groups) add_gradient(model, group, u, sum);
   return sum;
 }
 
 Eigen::VectorXd log_likelihoods(const CaseModel& model, const Eigen::MatrixXd& points) {
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(points.rows());
   for (const auto& group : model.groups) {
-    const Eigen::Index rows = group.base.rows();
+    const Eigen::Index rows = rows_asked(group);
     if (!group.emulator.predict_batch) {
-      for (Eigen::Index i = 0; i < points.rows(); ++i)
-        sums[i] += log_normal_density(group, group.emulator.predict(rows_at(group, points.row(i).transpose())));
+      for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        const Eigen::VectorXd u = points.row(i).transpose();
+        sums[i] += log_group_density(model, group, group.emulator.predict(rows_at(group, u)), u);
+      }
       continue;
     }
     constexpr Eigen::Index block = 32;
@@ -139,7 +161,8 @@ Eigen::VectorXd log_likelihoods(const CaseModel& model, const Eigen::MatrixXd& p
       for (Eigen::Index i = 0; i < count; ++i) place_rows(group, points.row(from + i).transpose(), stacked, i * rows);
       const std::vector<surrogate::Prediction> found = group.emulator.predict_batch(stacked, static_cast<int>(rows));
       for (Eigen::Index i = 0; i < count; ++i)
-        sums[from + i] += log_normal_density(group, found[static_cast<std::size_t>(i)]);
+        sums[from + i] +=
+            log_group_density(model, group, found[static_cast<std::size_t>(i)], points.row(from + i).transpose());
     }
   }
   return sums;
@@ -147,19 +170,36 @@ Eigen::VectorXd log_likelihoods(const CaseModel& model, const Eigen::MatrixXd& p
 
 Eigen::VectorXd pointwise_log_likelihood(const CaseModel& model, const Eigen::VectorXd& u) {
   const StackedPrediction prediction = predict(model, u);
-  const Eigen::ArrayXd variance = (prediction.covariance.diagonal() + observed_variance(model)).array();
+  const Eigen::ArrayXd variance = (prediction.covariance.diagonal() + prediction.noise).array();
   const Eigen::ArrayXd residual = (observed(model) - prediction.mean).array();
   return -0.5 * (residual.square() / variance + (2.0 * std::numbers::pi * variance).log());
 }
 
-double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& variance, const Eigen::VectorXd& y) {
+double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& y, double noise_factor) {
   Eigen::MatrixXd covariance = prediction.covariance;
-  covariance.diagonal() += variance;
+  covariance.diagonal() += noise_factor * prediction.noise;
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
   Eigen::VectorXd residual = y - prediction.mean;
   factor.matrixL().solveInPlace(residual);
   return residual.squaredNorm();
+}
+
+Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u) {
+  Evaluation sum{.value = 0.0, .gradient = Eigen::VectorXd::Zero(u.size())};
+  for (std::size_t k = 0; k < model.slots.size(); ++k) {
+    const Slot& slot = model.slots[k];
+    const auto s = static_cast<Eigen::Index>(k);
+    if (slot.nuisance != Acts::none) {
+      sum.value += slot.prior.log_density(u[s]);
+      sum.gradient[s] = slot.prior.slope(u[s]);
+    } else if (slot.cut) {
+      const double z = (u[s] - slot.cut->mean) / slot.cut->sd;
+      sum.value -= 0.5 * z * z;
+      sum.gradient[s] = -z / slot.cut->sd;
+    }
+  }
+  return sum;
 }
 
 Target posterior_target(std::shared_ptr<const CaseModel> model) {

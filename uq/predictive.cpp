@@ -54,29 +54,26 @@ Eigen::MatrixXd thinned(const Eigen::MatrixXd& draws, Eigen::Index count) {
 }
 
 FitCheck check_fit(const CaseModel& model, const Eigen::MatrixXd& draws, const Eigen::VectorXd& best) {
-  const Eigen::VectorXd y = observed(model), variance = observed_variance(model);
+  const Eigen::VectorXd y = observed(model);
   const double n = static_cast<double>(y.size());
   const Eigen::MatrixXd used = thinned(draws, predictive_draws);
   FitCheck check;
   for (Eigen::Index i = 0; i < used.rows(); ++i)
-    check.predictive_p += gsl_cdf_chisq_Q(chi_squared(predict(model, used.row(i).transpose()), variance, y), n);
+    check.predictive_p += gsl_cdf_chisq_Q(chi_squared(predict(model, used.row(i).transpose()), y), n);
   check.predictive_p /= static_cast<double>(used.rows());
-  check.chi2 = chi_squared(predict(model, best), variance, y);
+  check.chi2 = chi_squared(predict(model, best), y);
   check.dof = std::max(1, static_cast<int>(y.size()) - fisher_spectrum(model, best).known_directions);
   check.best_fit_p = gsl_cdf_chisq_Q(check.chi2, check.dof);
   return check;
 }
 
 Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws, std::uint64_t seed) {
-  const Eigen::VectorXd variance = observed_variance(model);
-  Eigen::MatrixXd made(draws.rows(), variance.size());
+  Eigen::MatrixXd made(draws.rows(), model.row_count());
   data::RandomStream random(seed, data::Purpose::posterior_predictive, 0);
   for (Eigen::Index i = 0; i < draws.rows(); ++i) {
     const StackedPrediction prediction = predict(model, draws.row(i).transpose());
-    Eigen::MatrixXd covariance = prediction.covariance;
-    covariance.diagonal() += variance;
-    const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-    Eigen::VectorXd noise(variance.size());
+    const Eigen::LLT<Eigen::MatrixXd> factor(prediction.total());
+    Eigen::VectorXd noise(made.cols());
     for (double& value : noise) value = random.normal();
     made.row(i) = (prediction.mean + factor.matrixL() * noise).transpose();
   }
@@ -139,9 +136,13 @@ std::vector<PredictiveCurve> predictive_curves(const data::Study& study, const C
         for (Eigen::Index k = 0; k < points.cols(); ++k)
           if (rows.slot[k] >= 0) points.col(k).setConstant(used(i, rows.slot[k]));
         const surrogate::Prediction prediction = group.emulator.predict(points);
+        const Meter meter =
+            meter_at(group.measurement, model.slots, used.row(i).transpose(), static_cast<Eigen::Index>(row));
         // Each point's own law; the bands are pointwise, so the covariance between points does not enter.
         for (Eigen::Index j = 0; j < rows.x.size(); ++j)
-          values(i, j) = prediction.mean[j] + std::sqrt(std::max(prediction.covariance(j, j), 0.0)) * random.normal();
+          values(i, j) =
+              meter.offset + meter.factor * (prediction.mean[j] +
+                                             std::sqrt(std::max(prediction.covariance(j, j), 0.0)) * random.normal());
       }
       const data::Control& x = study.controls[control->index];
       const data::Output& output = study.outputs[group.origin[row].output];
@@ -167,7 +168,7 @@ std::vector<PredictiveCurve> predictive_curves(const data::Study& study, const C
 }
 
 void check_priors(const data::Study& study, const CaseModel& model) {
-  const Eigen::VectorXd y = observed(model), variance = observed_variance(model);
+  const Eigen::VectorXd y = observed(model);
   const std::vector<RowOrigin> from = origins(model);
   data::RandomStream random(study.seed, data::Purpose::prior_predictive, 0);
   // Smallest distance of each measured number from the predictions, in sd, and which side they lie on.
@@ -181,7 +182,7 @@ void check_priors(const data::Study& study, const CaseModel& model) {
                 .highest = Eigen::VectorXd::Constant(y.size(), -1e300)};
     for (int i = 0; i < count; ++i) {
       const StackedPrediction prediction = predict(model, draw());
-      const Eigen::VectorXd sd = (prediction.covariance.diagonal() + variance).cwiseSqrt();
+      const Eigen::VectorXd sd = (prediction.covariance.diagonal() + prediction.noise).cwiseSqrt();
       const Eigen::VectorXd away = (y - prediction.mean).cwiseQuotient(sd);
       found.nearest = found.nearest.cwiseMin(away.cwiseAbs());
       found.lowest = found.lowest.cwiseMin(prediction.mean);
@@ -204,8 +205,12 @@ void check_priors(const data::Study& study, const CaseModel& model) {
     if (out_of_reach(prior, i)) excluded.push_back(i);
   if (excluded.empty()) return;
   const Reach range = reach(1000, [&] {
+    // Parameters anywhere in their ranges; a nuisance has no range but its prior's.
     Eigen::VectorXd u(d);
-    for (Eigen::Index s = 0; s < d; ++s) u[s] = random.uniform();
+    for (Eigen::Index s = 0; s < d; ++s) {
+      const Slot& slot = model.slots[static_cast<std::size_t>(s)];
+      u[s] = slot.nuisance == Acts::none ? random.uniform() : slot.prior.draw(random);
+    }
     return u;
   });
   std::vector<data::Problem> problems;

@@ -1,11 +1,11 @@
 #pragma once
 // What the posterior says of the data: the check whether the model fits at all, and the bands of the figures.
 //
-// Check. T(y, u) = (y - m(u))' (D + C(u))^-1 (y - m(u)). A replicate y' ~ N(m(u), D + C(u)) has T(y', u) chi-squared
-// with n degrees of freedom for every u, so the posterior predictive p = E[ P(chi2_n >= T(y, u)) | y ] (Gelman, Meng,
-// Stern 1996) is a mean over draws of an exact tail, without simulation. It is conservative when n is little more than
-// the number of parameters; beside it stands the best fit's own tail, P(chi2_(n - k) >= T(y, u*)), k = directions that
-// the data know (uq/fisher.hpp).
+// Check. T(y, u) = (y - m(u))' S(u)^-1 (y - m(u)), S all that is uncertain of y given u. A replicate y' ~ N(m(u), S(u))
+// has T(y', u) chi-squared with n degrees of freedom for every u, so the posterior predictive p = E[ P(chi2_n >= T(y,
+// u)) | y ] (Gelman, Meng, Stern 1996) is a mean over draws of an exact tail, without simulation. It is conservative
+// when n is little more than the number of parameters; beside it stands the best fit's own tail, P(chi2_(n - k) >= T(y,
+// u*)), k = directions that the data know (uq/fisher.hpp).
 #include <Eigen/Dense>
 
 #include "data/study.hpp"
@@ -29,8 +29,8 @@ FitCheck check_fit(const CaseModel& model, const Eigen::MatrixXd& draws, const E
 std::vector<PredictivePoint> predictive_points(const data::Study& study, const CaseModel& model,
                                                const Eigen::MatrixXd& draws, std::uint64_t seed);
 
-/// Bands of the model alone (surrogate error included, measurement error not) against the first control of each own
-/// set.
+/// Bands of the model alone (surrogate error included; scale, gain and offset of the meter, but no measurement error
+/// and no discrepancy) against the first control of each own set.
 std::vector<PredictiveCurve> predictive_curves(const data::Study& study, const CaseModel& model,
                                                const Eigen::MatrixXd& draws, std::uint64_t seed);
 

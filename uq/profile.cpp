@@ -40,8 +40,13 @@ std::optional<Eigen::VectorXd> draw_near(const Guides& guides, int k, double val
   return Eigen::VectorXd(guides.draws.row(*chosen).transpose());
 }
 
+/// Of the data, and of what calibrated the nuisances.
 Differentiable likelihood_of(const CaseModel& model) {
-  return [&model](const Eigen::VectorXd& u) { return log_likelihood_gradient(model, u); };
+  return [&model](const Eigen::VectorXd& u) -> Evaluation {
+    const Evaluation data = log_likelihood_gradient(model, u), certificates = log_certificates(model, u);
+    const Eigen::VectorXd gradient = data.gradient + certificates.gradient;
+    return {.value = data.value + certificates.value, .gradient = gradient};
+  };
 }
 
 /// Where the deviance crosses the drop, and the maximiser there.
@@ -111,7 +116,7 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
     const Eigen::VectorXd start = profile.path.row(from).transpose();
     Eigen::VectorXd moved = start;
     moved[k] = values[static_cast<std::size_t>(i)];
-    if (log_likelihood(model, moved) <= level[i]) return;
+    if (log_likelihood(model, moved) + log_certificates(model, moved).value <= level[i]) return;
     const Maximum found =
         maximise(likelihood_of(model), box, start.transpose(), Held{k, values[static_cast<std::size_t>(i)]});
     if (found.value <= level[i]) return;
@@ -189,8 +194,14 @@ NoiseFree noise_free_extent(const CaseModel& model, const Profile& profile, cons
                             double variance_factor, double drop) {
   const Box box{model.lower(), model.upper()};
   const Eigen::VectorXd truth = predict(model, best).mean;
-  const Eigen::VectorXd variance = variance_factor * observed_variance(model);
-  auto match = [&](const Eigen::VectorXd& u) { return -chi_squared(predict(model, u), variance, truth); };
+  // Twice the log likelihood of that truth, up to constants. What only widens the spread explains nothing, and stays.
+  const double known = log_certificates(model, best).value;
+  auto match = [&](const Eigen::VectorXd& u) {
+    Eigen::VectorXd at = u;
+    for (int s = 0; s < model.dimension(); ++s)
+      if (model.slots[static_cast<std::size_t>(s)].nuisance == Acts::on_spread) at[s] = best[s];
+    return -chi_squared(predict(model, at), truth, variance_factor) + 2.0 * (log_certificates(model, at).value - known);
+  };
   const Differentiable function = with_differences(match, box);
   Eigen::Index nearest = 0;
   (profile.u.array() - best[profile.unknown]).abs().minCoeff(&nearest);

@@ -1,6 +1,7 @@
 #pragma once
 // Profile likelihood: for one unknown k held at u_k,
 //   deviance(u_k) = 2 (max over all u of log L - max over the other unknowns of log L),
+// log L that of the data and of what calibrated the nuisances, their priors (posterior.hpp, log_certificates),
 // by constrained optimisation (Raue et al., Bioinformatics 25:1923 (2009)). The 95 % interval is where it stays
 // below 3.84 (chi squared, one degree of freedom). An end is closed when the deviance crosses before the support ends,
 // open when the support's bound is met first: a bound is not a finding. Nor is an end that is there only because
@@ -49,9 +50,9 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
 
 /// How far unknown k can go while the predicted means stay the same:
 ///   d(u) = (m(u) - m(u*))' (f D + C(u))^-1 (m(u) - m(u*)),   minimised over the other unknowns
-/// stays below the drop, with the measurement variance D cut by f. What still spans most of the profile's interval
-/// cannot be closed by a better measurement of the same kind: the confounding is structural, as far as the emulator's
-/// own error C lets one see.
+/// stays below the drop, with the variance D of the noise cut by f (and the nuisances' priors counted in d). What still
+/// spans most of the profile's interval cannot be closed by a better measurement of the same kind: the confounding is
+/// structural, as far as the emulator's own error C lets one see.
 struct NoiseFree {
   double low = 0.0, high = 0.0;  ///< u reached on each side
   double share = 0.0;            ///< of the profile's interval

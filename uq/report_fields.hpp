@@ -31,6 +31,9 @@ void visit_fields(Visit&& visit, T& s) {
   visit("standardised", s.standardised);
   visit("observed_se", s.observed_se);
   visit("notes", s.notes);
+  visit("low_runs", s.low_runs);
+  visit("rho", s.rho);
+  visit("rho_sd", s.rho_sd);
 }
 
 template <class Visit, SameAs<ParameterReport> T>
@@ -62,6 +65,22 @@ void visit_fields(Visit&& visit, T& p) {
   visit("reason", p.reason);
   visit("borderline", p.borderline);
   visit("sentence", p.sentence);
+}
+
+template <class Visit, SameAs<NuisanceReport> T>
+void visit_fields(Visit&& visit, T& n) {
+  visit("name", n.name);
+  visit("unit", n.unit);
+  visit("prior_mean", n.prior_mean);
+  visit("prior_sd", n.prior_sd);
+  visit("mean", n.mean);
+  visit("sd", n.sd);
+  visit("q05", n.q05);
+  visit("q50", n.q50);
+  visit("q95", n.q95);
+  visit("rhat", n.rhat);
+  visit("ess_bulk", n.ess_bulk);
+  visit("ess_tail", n.ess_tail);
 }
 
 template <class Visit, SameAs<TradedPair> T>
@@ -128,6 +147,7 @@ void visit_fields(Visit&& visit, T& c) {
   visit("consequence", c.consequence);
   visit("remedy", c.remedy);
   visit("warnings", c.warnings);
+  visit("nuisances", c.nuisances);
 }
 
 template <class Visit, SameAs<ErrorScan> T>

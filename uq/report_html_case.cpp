@@ -70,6 +70,24 @@ std::string parameter_table(const CaseReport& result) {
   return html(table) + (sentences.empty() ? "" : "<ul>\n" + sentences + "</ul>\n");
 }
 
+std::string nuisance_table(const CaseReport& result) {
+  if (result.nuisances.empty()) return {};
+  Table table{.caption =
+                  "Unknowns of the measurement, sampled with the parameters and integrated out; no verdict is "
+                  "asked of them. Their priors count as calibrations of the meter.",
+              .head = {{"Unknown"}, {"Prior mean \u00b1 sd"}, {"Mean \u00b1 sd"}, {"90\u00a0% interval"}},
+              .rows = {}};
+  for (const NuisanceReport& nuisance : result.nuisances)
+    table.rows.push_back(
+        {{text(nuisance.name)},
+         {text(format_with_error(nuisance.prior_mean, nuisance.prior_sd, nuisance.unit, pretty)), "nowrap"},
+         {text(format_with_error(nuisance.mean, nuisance.sd, nuisance.unit, pretty)), "nowrap"},
+         {text(format_interval(nuisance.q05, nuisance.q95, rounding_of(nuisance.mean, nuisance.sd), nuisance.unit,
+                               pretty)),
+          "nowrap"}});
+  return html(table);
+}
+
 std::string fit_and_data(const CaseReport& result) {
   std::string out =
       fmt::format("<p>Fit: \u03c7\u00b2 = {} for {} degree{} of freedom; posterior predictive p = {}{}.</p>\n",
@@ -259,8 +277,9 @@ std::string profile_part(const CaseReport& result, const std::string& id, const 
 std::string case_section(const CaseReport& result, std::size_t index, const Context& context) {
   const std::string id = case_id(index, result);
   return fmt::format("<section id=\"{}\">\n<h2>Case {}</h2>\n", id, text(result.name)) + verdict_words(result) +
-         parameter_table(result) + fit_and_data(result) + predictive_part(result, id, context) +
-         joint_part(result, id, context) + profile_part(result, id, context) + "</section>\n";
+         parameter_table(result) + nuisance_table(result) + fit_and_data(result) +
+         predictive_part(result, id, context) + joint_part(result, id, context) + profile_part(result, id, context) +
+         "</section>\n";
 }
 
 }  // namespace uq::page

@@ -47,7 +47,10 @@ Json surrogate_json(const SurrogateReport& surrogate) {
           {"finding", surrogate.finding},
           {"consequence", surrogate.consequence},
           {"remedy", surrogate.remedy},
-          {"notes", surrogate.notes}};
+          {"notes", surrogate.notes},
+          {"low_runs", surrogate.low_runs},
+          {"rho", surrogate.low_runs > 0 ? number(surrogate.rho) : Json(nullptr)},
+          {"rho_sd", surrogate.low_runs > 0 ? number(surrogate.rho_sd) : Json(nullptr)}};
 }
 
 Json parameter_json(const CaseReport& result, const ParameterReport& parameter) {
@@ -75,6 +78,20 @@ Json parameter_json(const CaseReport& result, const ParameterReport& parameter) 
             {"mean", number(parameter.prior_mean)},
             {"sd", number(parameter.prior_sd)}}},
           {"sentence", shown_sentence(result, parameter)}};
+}
+
+Json nuisance_json(const NuisanceReport& nuisance) {
+  return {{"name", nuisance.name},
+          {"unit", nuisance.unit},
+          {"mean", number(nuisance.mean)},
+          {"sd", number(nuisance.sd)},
+          {"q05", number(nuisance.q05)},
+          {"q50", number(nuisance.q50)},
+          {"q95", number(nuisance.q95)},
+          {"rhat", number(nuisance.rhat)},
+          {"ess_bulk", number(nuisance.ess_bulk)},
+          {"ess_tail", number(nuisance.ess_tail)},
+          {"prior", {{"mean", number(nuisance.prior_mean)}, {"sd", number(nuisance.prior_sd)}}}};
 }
 
 Json traded_json(const TradedPair& traded) {
@@ -120,8 +137,10 @@ Json case_json(const CaseReport& result) {
       {"observed_sets", result.observed_sets},
       {"observed_notes", result.observed_notes},
       {"linked", result.linked},
-      {"warnings", result.warnings}};
+      {"warnings", result.warnings},
+      {"nuisances", Json::array()}};
   for (const auto& parameter : result.parameters) json["parameters"].push_back(parameter_json(result, parameter));
+  for (const auto& nuisance : result.nuisances) json["nuisances"].push_back(nuisance_json(nuisance));
   for (const auto& row : result.correlation) json["correlation"].push_back(numbers(row));
   for (const auto& traded : result.traded) json["traded"].push_back(traded_json(traded));
   for (const auto& point : result.predictive) json["predictive"].push_back(predictive_json(point));

@@ -94,6 +94,13 @@ std::string case_text(const CaseReport& result, int columns) {
   }
   if (!result.converged) text += fold("  ! ", "The sampler has not converged.", columns);
   text += parameter_lines(result, columns);
+  for (const NuisanceReport& nuisance : result.nuisances)
+    text +=
+        fold("  integrated out: ",
+             fmt::format("{} {} (prior {})", nuisance.name,
+                         format_with_error(nuisance.mean, nuisance.sd, nuisance.unit, Typography::ascii),
+                         format_with_error(nuisance.prior_mean, nuisance.prior_sd, nuisance.unit, Typography::ascii)),
+             columns);
   for (const TradedPair& traded : result.traded) {
     text += fold("  traded: ",
                  fmt::format("{} against {}; the data fix only {} (correlation {:.3f})", traded.first, traded.second,

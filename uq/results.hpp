@@ -28,6 +28,8 @@ struct SurrogateReport {
   std::vector<double> observed, predicted, standardised;  ///< leave-one-out, per run
   std::vector<double> observed_se;
   std::vector<std::string> notes;  ///< hyper-parameter on its bound, jitter, multi-start outcomes
+  int low_runs = 0;                ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
+  double rho = 0.0, rho_sd = 0.0;  ///< this level's output per the cheaper one's
 };
 
 struct ParameterReport {
@@ -44,6 +46,14 @@ struct ParameterReport {
   std::optional<std::string> reason;  ///< "structural", "practical", "one-sided", "bound"
   bool borderline = false;
   std::string sentence;  ///< the verdict in words with its numbers
+};
+
+/// An unknown of the measurement that was sampled with the parameters and integrated out.
+struct NuisanceReport {
+  std::string name, unit;
+  double prior_mean = 0.0, prior_sd = 0.0;
+  double mean = 0.0, sd = 0.0, q05 = 0.0, q50 = 0.0, q95 = 0.0;
+  double rhat = 0.0, ess_bulk = 0.0, ess_tail = 0.0;
 };
 
 /// A pair whose values are traded against each other.
@@ -92,6 +102,7 @@ struct CaseReport {
   std::vector<std::string> linked;  ///< other cases sampled jointly (their data inform a shared parameter)
   std::string finding, consequence, remedy;
   std::vector<std::string> warnings;  ///< first lines of the report
+  std::vector<NuisanceReport> nuisances;
 };
 
 /// How the verdict changes when the measurement error is another one.

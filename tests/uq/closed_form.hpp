@@ -45,7 +45,7 @@ inline uq::CaseModel make_case(const std::vector<Unknown>& unknowns, const Formu
   for (const auto& unknown : unknowns) {
     parameters.push_back(parameter_of(unknown));
     model.slots.push_back(
-        {.label = unknown.name, .prior = uq::ScaledPrior(parameters.back(), parameters.back().prior), .own = true});
+        {.label = unknown.name, .prior = uq::ScaledPrior(parameters.back(), parameters.back().prior), .cut = {}});
   }
   const auto d = static_cast<Eigen::Index>(unknowns.size());
   uq::RowGroup group{.emulator = {},

@@ -1,0 +1,268 @@
+// What is known of a measurement beside its numbers: the meter's offset, gain, noise and common error, settings known
+// only within an uncertainty, the machine's scale, and the model's discrepancy.
+//
+// Default priors, where a study only asks for an unknown:
+//   noise = "unknown"     log-normal with median 1 and sd 0.5 of the logarithm, on 0.1 to 10 times the standard errors
+//   discrepancy = true    sd: half-normal of scale 0.1, as a share of the root mean square of the measured values;
+//                         length: log-normal with median 0.5 and sd 0.7, in ranges of the controls
+// A table without `kind` is a normal prior. Ranges not given: six sd about the mean.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/edit_distance.hpp"
+#include "data/study_parts.hpp"
+
+namespace data {
+namespace {
+
+constexpr double noise_sd = 0.5, noise_low = 0.1, noise_high = 10.0;
+constexpr double discrepancy_scale = 0.1, discrepancy_length = 0.5, discrepancy_length_sd = 0.7;
+
+/// Where a nuisance's numbers lie when the study does not say.
+struct Usual {
+  std::optional<double> mean = {};  ///< SI
+  double low = -INFINITY;           ///< SI, physical
+};
+
+/// The range of a nuisance's prior, from its own numbers.
+void find_range(const Section& section, Parameter& parameter, const Usual& usual) {
+  Prior& prior = parameter.prior;
+  const auto bound = [&](std::string_view key, double otherwise) {
+    return section.has(key) ? section.quantity(key, parameter.unit.si_symbol, any_number, {}, bare_unit(parameter.unit))
+                            : otherwise;
+  };
+  const bool logarithmic = prior.kind == PriorKind::log_normal;
+  const bool own_range = prior.kind == PriorKind::uniform || prior.kind == PriorKind::beta;
+  if (own_range)
+    for (const char* key : {"low", "high"})
+      if (!section.has(key))
+        section.problem(key, "is missing, and this prior has no other bounds", "state low and high, or a normal prior");
+  const double low = logarithmic ? prior.mean * std::exp(-6.0 * prior.sd) : prior.mean - 6.0 * prior.sd;
+  const double high = logarithmic ? prior.mean * std::exp(6.0 * prior.sd) : prior.mean + 6.0 * prior.sd;
+  parameter.low = std::max(bound("low", own_range ? 0.0 : low), usual.low);
+  parameter.high = bound("high", own_range ? 1.0 : high);
+  if (logarithmic) parameter.scale = Scale::log;
+  if (!(parameter.low < parameter.high))
+    section.problem("low", "leaves nothing below high", "choose low < high, and high above what is physical");
+}
+
+/// A table of a prior; `usual.mean` stands in for a missing mean.
+Parameter read_unknown(const Section& section, const std::string& name, const Unit& unit, const Usual& usual) {
+  Parameter parameter{.name = name, .target = name, .unit = unit, .place = section.place()};
+  Prior& prior = parameter.prior;
+  if (section.has("posterior")) {
+    prior = read_prior(section, parameter, PriorOf::case_);
+    return parameter;
+  }
+  Unit difference = unit;
+  difference.offset = 0.0;
+  if (!section.has("kind") || section.text("kind") == "normal") {
+    prior.kind = PriorKind::normal;
+    prior.mean = section.quantity("mean", unit.si_symbol, any_number, usual.mean, bare_unit(unit));
+    prior.sd = section.quantity("sd", unit.si_symbol, positive, {}, bare_unit(difference));
+    prior.place = section.place();
+    find_range(section, parameter, usual);
+    prior.low = parameter.low;
+    prior.high = parameter.high;
+    return parameter;
+  }
+  // First the numbers, which tell the range; then the prior is cut to it.
+  parameter.low = -INFINITY;
+  parameter.high = INFINITY;
+  prior = read_prior(section, parameter, PriorOf::case_);
+  find_range(section, parameter, usual);
+  prior.low = std::max(prior.low, parameter.low);
+  prior.high = std::min(prior.high, parameter.high);
+  return parameter;
+}
+
+std::optional<std::size_t> read_output(const Section& section, const Study& study,
+                                       std::optional<std::size_t> otherwise) {
+  if (!section.has("output")) return otherwise;
+  std::vector<std::string> names;
+  for (const Output& output : study.outputs) names.push_back(output.name);
+  const std::string chosen = section.choice("output", names);
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), chosen) - names.begin());
+}
+
+bool is_percent(const Section& section, std::string_view key) {
+  return section.kind(key) == ValueKind::text && section.text(key).find('%') != std::string::npos;
+}
+
+/// What a number without a unit is.
+enum class BareNumber { share, value };
+
+/// "2 %", or a value with its unit, which a bare number may have from `section_unit`.
+Spread read_spread(const Section& section, std::string_view key, const Unit& unit, BareNumber bare,
+                   const Unit* section_unit = nullptr) {
+  Spread spread;
+  const bool number = section.kind(key) == ValueKind::number;
+  if (is_percent(section, key) || (number && bare == BareNumber::share)) {
+    spread.relative = section.quantity(key, "1", {.low = 0.0, .high = 1.0, .open_low = true});
+    return spread;
+  }
+  Unit difference = section_unit != nullptr ? *section_unit : Unit{};
+  difference.offset = 0.0;
+  spread.absolute =
+      section.quantity(key, unit.si_symbol, positive, {}, section_unit != nullptr ? &difference : nullptr);
+  return spread;
+}
+
+Nuisance noise_of(const Section& section, const Study& study) {
+  Parameter parameter{.name = "noise", .target = "noise", .low = noise_low, .high = noise_high, .scale = Scale::log};
+  parameter.prior = {.kind = PriorKind::log_normal, .low = noise_low, .high = noise_high, .mean = 1.0, .sd = noise_sd};
+  if (section.kind("noise") == ValueKind::text) {
+    section.choice("noise", {"unknown"});
+    return {NuisanceKind::noise_scale, {}, parameter};
+  }
+  const Section table = section.child("noise");
+  if (!table.flag("absolute", false)) {
+    parameter = read_unknown(table, "noise", {}, {.mean = 1.0, .low = 1e-3});
+    return {NuisanceKind::noise_scale, read_output(table, study, {}), parameter};
+  }
+  const std::size_t output = read_output(table, study, 0).value();
+  const Unit& unit = study.outputs[output].unit;
+  parameter = read_unknown(table, "noise", unit, {.mean = {}, .low = 0.0});
+  return {NuisanceKind::noise_sd, output, parameter};
+}
+
+/// sd and length of the discrepancy process.
+std::vector<Nuisance> discrepancy_of(const Section& section, const Study& study) {
+  double scale = discrepancy_scale, length = discrepancy_length;
+  std::optional<std::size_t> output;
+  if (section.kind("discrepancy") != ValueKind::table) {
+    if (!section.flag("discrepancy", false)) return {};
+  } else {
+    const Section table = section.child("discrepancy");
+    scale = table.number("sd", {.low = 0.0, .high = 1.0, .open_low = true}, scale);
+    length = table.number("length", {.low = 0.01, .high = 10.0}, length);
+    output = read_output(table, study, {});
+  }
+  Parameter sd{.name = "discrepancy_sd", .target = "discrepancy_sd", .low = 0.0, .high = 5.0 * scale};
+  sd.prior = {.kind = PriorKind::truncated_normal, .low = 0.0, .high = sd.high, .mean = 0.0, .sd = scale};
+  Parameter reach{.name = "discrepancy_length",
+                  .target = "discrepancy_length",
+                  .low = 0.1 * length,
+                  .high = 10.0 * length,
+                  .scale = Scale::log};
+  reach.prior = {
+      .kind = PriorKind::log_normal, .low = reach.low, .high = reach.high, .mean = length, .sd = discrepancy_length_sd};
+  return {{NuisanceKind::discrepancy_sd, output, sd}, {NuisanceKind::discrepancy_length, output, reach}};
+}
+
+}  // namespace
+
+void read_rig_scale(const Section& root, Study& study) {
+  if (!root.has("rig")) return;
+  const Section rig = root.child("rig");
+  if (rig.kind("scale") == ValueKind::missing) return;
+  RigScale scale;
+  if (rig.kind("scale") == ValueKind::table) {
+    scale.unknown = Nuisance{NuisanceKind::scale, 0, read_unknown(rig.child("scale"), "scale", {}, {.low = 1e-6})};
+    scale.value = scale.unknown->parameter.prior.mean;
+  } else {
+    scale.value = rig.number("scale", positive);
+  }
+  study.scale = scale;
+}
+
+std::optional<SettingError> read_uncertainty(const Section& section, std::string_view key, const Control& control,
+                                             const Unit* section_unit) {
+  SettingError error{.control = 0, .spread = {}, .unknown = false, .place = section.place(key)};
+  switch (section.kind(key)) {
+    case ValueKind::missing:
+      return {};
+    case ValueKind::table: {
+      const Section table = section.child(key);
+      if (table.kind("sd") == ValueKind::missing) {
+        table.quantity("sd", control.unit.si_symbol, positive, {}, section_unit);  // says what is missing
+        return {};
+      }
+      error.spread = read_spread(table, "sd", control.unit, BareNumber::value, section_unit);
+      error.unknown = table.choice("as", {"covariance", "unknown"}, "covariance") == "unknown";
+      return error;
+    }
+    default:
+      error.spread = read_spread(section, key, control.unit, BareNumber::value, section_unit);
+      return error;
+  }
+}
+
+void read_measurement(const Section& root, const Section& section, const Study& study, ObservationSet& set) {
+  // A machine's torque says nothing of a slice's until a scale joins them.
+  if (root.has("rig")) {
+    const std::string simulated = root.child("rig").text("kind", "slice");
+    const std::string measured = section.choice("rig", {"slice", "machine", "stl"}, simulated);
+    set.of_machine = simulated == "slice" && measured != "slice";
+    if (set.of_machine && !study.scale)
+      section.problem("rig", "is the whole machine, but the runs simulate a slice of it, and nothing says how many",
+                      "state [rig] scale = PITCHES PER MACHINE, or scale = { mean = ..., sd = ... }");
+    if (set.of_machine)
+      for (const std::size_t output : set.outputs)
+        if (output != 0)
+          section.problem("file",
+                          fmt::format("measures {} on the machine, and [rig] scale is of {} only",
+                                      study.outputs[output].name, study.outputs[0].name),
+                          "leave that column out");
+  }
+
+  if (section.kind("common_error") == ValueKind::table) {
+    const Section table = section.child("common_error");
+    for (const std::size_t output : set.outputs)
+      if (const std::string& name = study.outputs[output].name; table.has(name))
+        set.common_errors.push_back({output, read_spread(table, name, study.outputs[output].unit, BareNumber::share)});
+  } else if (section.kind("common_error") != ValueKind::missing) {
+    const std::size_t output = set.outputs.empty() ? 0 : set.outputs.front();
+    set.common_errors.push_back(
+        {output, read_spread(section, "common_error", study.outputs[output].unit, BareNumber::share)});
+  }
+
+  const Section uncertainties = section.child("uncertainty");
+  for (std::size_t c = 0; c < study.controls.size(); ++c) {
+    const Control& control = study.controls[c];
+    std::optional<SettingError> error = read_uncertainty(uncertainties, control.name, control, nullptr);
+    if (!error) error = control.uncertainty;
+    if (!error) continue;
+    error->control = c;
+    const bool varies = std::any_of(set.points.begin(), set.points.end(), [&](const Observation& point) {
+      return point.controls[c] != set.points.front().controls[c];
+    });
+    if (error->unknown && varies)
+      section.problem(
+          "uncertainty",
+          fmt::format("{} differs from point to point of '{}', so it is not one unknown", control.name, set.name),
+          "leave out as = \"unknown\": its errors then enter the covariance");
+    set.setting_errors.push_back(*error);
+  }
+}
+
+std::map<std::string, double> read_settings(const Section& section, const Study& study) {
+  std::map<std::string, double> settings;
+  for (const Control& control : study.controls)
+    if (section.has(control.name))
+      settings[control.name] =
+          section.quantity(control.name, control.unit.si_symbol, any_number, {}, bare_unit(control.unit));
+  return settings;
+}
+
+std::vector<Nuisance> read_nuisances(const Section& section, const Study& study) {
+  std::vector<Nuisance> found;
+  if (section.has("offset")) {
+    const Section table = section.child("offset");
+    const std::size_t output = read_output(table, study, 0).value();
+    found.push_back(
+        {NuisanceKind::offset, output, read_unknown(table, "offset", study.outputs[output].unit, {.mean = 0.0})});
+  }
+  if (section.has("gain")) {
+    const Section table = section.child("gain");
+    found.push_back({NuisanceKind::gain, read_output(table, study, 0),
+                     read_unknown(table, "gain", {}, {.mean = 1.0, .low = 1e-3})});
+  }
+  if (section.has("noise")) found.push_back(noise_of(section, study));
+  for (Nuisance& part : discrepancy_of(section, study)) found.push_back(std::move(part));
+  return found;
+}
+
+}  // namespace data
