@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::int64_t format = 1;
+constexpr std::int64_t format = 2;
 
 void write(const data::Hdf5Group& group, const std::string& name, const MatrixXd& matrix) {
   const RowMatrix rows = matrix;
@@ -44,6 +44,34 @@ std::vector<int> read_integers(const data::Hdf5Group& group, const std::string& 
 
 std::span<const double> numbers(const VectorXd& vector) {
   return {vector.data(), static_cast<std::size_t>(vector.size())};
+}
+
+void save(const data::Hdf5Group& group, const FitDiagnostics& diagnostics) {
+  group.set("converged", std::int64_t{diagnostics.converged});
+  group.set("jitter", diagnostics.jitter);
+  group.set("agreeing_starts", std::int64_t{diagnostics.agreeing_starts});
+  const auto starts = static_cast<Index>(diagnostics.starts.size());
+  const Index count = starts ? diagnostics.starts.front().start.size() : 0;
+  MatrixXd outcomes(starts, 6), from(starts, count), to(starts, count);
+  for (Index i = 0; i < starts; ++i) {
+    const StartOutcome& s = diagnostics.starts[i];
+    outcomes.row(i) << s.objective, s.gradient_norm, s.evaluations, s.converged ? 1.0 : 0.0, s.points,
+        s.agrees ? 1.0 : 0.0;
+    from.row(i) = s.start;
+    to.row(i) = s.end;
+  }
+  write(group, "starts", outcomes);
+  write(group, "start_from", from);
+  write(group, "start_to", to);
+  std::vector<std::string> names;
+  MatrixXd hits(static_cast<Index>(diagnostics.bound_hits.size()), 3);
+  for (Index i = 0; i < hits.rows(); ++i) {
+    const BoundHit& hit = diagnostics.bound_hits[i];
+    names.push_back(hit.parameter);
+    hits.row(i) << (hit.upper ? 1.0 : 0.0), hit.value, (hit.harmless ? 1.0 : 0.0);
+  }
+  group.write_texts("bound_names", names);
+  write(group, "bound_hits", hits);
 }
 
 void save(const data::Hdf5Group& group, const GaussianProcess& process) {
@@ -76,33 +104,21 @@ void save(const data::Hdf5Group& group, const GaussianProcess& process) {
   group.write("signal_variance", signal);
   group.write("nugget_variance", nugget);
   group.write("weight", weight);
+  save(group, process.diagnostics());
+}
 
-  const FitDiagnostics& diagnostics = process.diagnostics();
-  group.set("converged", std::int64_t{diagnostics.converged});
-  group.set("jitter", diagnostics.jitter);
-  group.set("agreeing_starts", std::int64_t{diagnostics.agreeing_starts});
-  const auto starts = static_cast<Index>(diagnostics.starts.size());
-  const Index count = starts ? diagnostics.starts.front().start.size() : 0;
-  MatrixXd outcomes(starts, 6), from(starts, count), to(starts, count);
-  for (Index i = 0; i < starts; ++i) {
-    const StartOutcome& s = diagnostics.starts[i];
-    outcomes.row(i) << s.objective, s.gradient_norm, s.evaluations, s.converged ? 1.0 : 0.0, s.points,
-        s.agrees ? 1.0 : 0.0;
-    from.row(i) = s.start;
-    to.row(i) = s.end;
+void save(const data::Hdf5Group& group, const HighLevel& high) {
+  group.set("discrepancy_mean", to_text(high.discrepancy_mean));
+  write(group, "x", high.runs.x);
+  group.write<double>("y", numbers(high.runs.y));
+  group.write<double>("noise_variance", numbers(high.runs.noise_variance));
+  MatrixXd settings(static_cast<Index>(high.settings.size()), 5);
+  for (Index i = 0; i < settings.rows(); ++i) {
+    const TwoLevelParameters& p = high.settings[i];
+    settings.row(i) << p.weight, p.rho, p.length_factor, p.discrepancy_sd, p.nugget_sd;
   }
-  write(group, "starts", outcomes);
-  write(group, "start_from", from);
-  write(group, "start_to", to);
-  std::vector<std::string> names;
-  MatrixXd hits(static_cast<Index>(diagnostics.bound_hits.size()), 3);
-  for (Index i = 0; i < hits.rows(); ++i) {
-    const BoundHit& hit = diagnostics.bound_hits[i];
-    names.push_back(hit.parameter);
-    hits.row(i) << (hit.upper ? 1.0 : 0.0), hit.value, (hit.harmless ? 1.0 : 0.0);
-  }
-  group.write_texts("bound_names", names);
-  write(group, "bound_hits", hits);
+  write(group, "settings", settings);
+  save(group, high.diagnostics);
 }
 
 template <class Enum>
@@ -118,6 +134,27 @@ Enum read_enum(const data::Hdf5Group& group, const std::string& attribute, std::
 void require(bool condition, const data::Hdf5Group& group, const std::string& what) {
   if (!condition)
     throw data::InputError(data::ExitStatus::bad_data, {group.place(), what, "delete the file, it is made again"});
+}
+
+FitDiagnostics load_diagnostics(const data::Hdf5Group& group) {
+  FitDiagnostics diagnostics;
+  diagnostics.converged = group.integer("converged") != 0;
+  diagnostics.jitter = group.number("jitter");
+  diagnostics.agreeing_starts = static_cast<int>(group.integer("agreeing_starts"));
+  const MatrixXd outcomes = read_matrix(group, "starts"), from = read_matrix(group, "start_from"),
+                 to = read_matrix(group, "start_to");
+  require(outcomes.cols() == 6 && from.rows() == outcomes.rows() && to.rows() == outcomes.rows(), group,
+          "its starts do not fit together");
+  for (Index i = 0; i < outcomes.rows(); ++i)
+    diagnostics.starts.push_back({from.row(i), to.row(i), outcomes(i, 0), outcomes(i, 1),
+                                  static_cast<int>(outcomes(i, 2)), outcomes(i, 3) != 0.0,
+                                  static_cast<int>(outcomes(i, 4)), outcomes(i, 5) != 0.0});
+  const std::vector<std::string> names = group.read_texts("bound_names");
+  const MatrixXd hits = read_matrix(group, "bound_hits");
+  require(hits.cols() == 3 && hits.rows() == static_cast<Index>(names.size()), group, "its bounds do not fit together");
+  for (Index i = 0; i < hits.rows(); ++i)
+    diagnostics.bound_hits.push_back({names[i], hits(i, 0) != 0.0, hits(i, 1), hits(i, 2) != 0.0});
+  return diagnostics;
 }
 
 GaussianProcess load(const data::Hdf5Group& group) {
@@ -166,24 +203,21 @@ GaussianProcess load(const data::Hdf5Group& group) {
     parts.push_back(std::move(part));
   }
 
-  FitDiagnostics diagnostics;
-  diagnostics.converged = group.integer("converged") != 0;
-  diagnostics.jitter = group.number("jitter");
-  diagnostics.agreeing_starts = static_cast<int>(group.integer("agreeing_starts"));
-  const MatrixXd outcomes = read_matrix(group, "starts"), from = read_matrix(group, "start_from"),
-                 to = read_matrix(group, "start_to");
-  require(outcomes.cols() == 6 && from.rows() == outcomes.rows() && to.rows() == outcomes.rows(), group,
-          "its starts do not fit together");
-  for (Index i = 0; i < outcomes.rows(); ++i)
-    diagnostics.starts.push_back({from.row(i), to.row(i), outcomes(i, 0), outcomes(i, 1),
-                                  static_cast<int>(outcomes(i, 2)), outcomes(i, 3) != 0.0,
-                                  static_cast<int>(outcomes(i, 4)), outcomes(i, 5) != 0.0});
-  const std::vector<std::string> names = group.read_texts("bound_names");
-  const MatrixXd hits = read_matrix(group, "bound_hits");
-  require(hits.cols() == 3 && hits.rows() == static_cast<Index>(names.size()), group, "its bounds do not fit together");
-  for (Index i = 0; i < hits.rows(); ++i)
-    diagnostics.bound_hits.push_back({names[i], hits(i, 0) != 0.0, hits(i, 1), hits(i, 2) != 0.0});
-  return {kernel, mean, nugget, std::move(data), std::move(parts), std::move(diagnostics)};
+  return {kernel, mean, nugget, std::move(data), std::move(parts), load_diagnostics(group)};
+}
+
+HighLevel load_high(const data::Hdf5Group& group) {
+  HighLevel high;
+  high.discrepancy_mean = read_enum(group, "discrepancy_mean", {MeanBasis::zero, MeanBasis::constant});
+  high.runs = {read_matrix(group, "x"), read_vector(group, "y"), read_vector(group, "noise_variance")};
+  require(high.runs.x.rows() == high.runs.y.size() && high.runs.noise_variance.size() == high.runs.y.size(), group,
+          "its arrays do not fit together");
+  const MatrixXd settings = read_matrix(group, "settings");
+  require(settings.rows() >= 1 && settings.cols() == 5, group, "its settings are incomplete");
+  for (Index i = 0; i < settings.rows(); ++i)
+    high.settings.push_back({settings(i, 0), settings(i, 1), settings(i, 2), settings(i, 3), settings(i, 4)});
+  high.diagnostics = load_diagnostics(group);
+  return high;
 }
 
 }  // namespace
@@ -197,9 +231,12 @@ void save_processes(const std::string& path, const ProcessSet& processes, const 
     root.set("table_hash", key.table_hash);
     std::vector<std::string> names;
     int index = 0;
-    for (const auto& [name, process] : processes) {  // names may hold a slash: groups are numbered
+    for (const auto& [name, saved] : processes) {  // names may hold a slash: groups are numbered
       names.push_back(name);
-      save(root.create_group("process" + std::to_string(index++)), process);
+      const data::Hdf5Group group = root.create_group("process" + std::to_string(index++));
+      save(group, saved.process);
+      if (saved.high) save(group.create_group("second_level"), *saved.high);
+      group.write_texts("remarks", {saved.remarks});
     }
     root.write_texts("names", names);
     root.flush();
@@ -218,8 +255,14 @@ LoadedProcesses load_processes(const std::string& path, const SurrogateKey& key)
   LoadedProcesses result;
   result.processes.emplace();
   int index = 0;
-  for (const std::string& name : root.read_texts("names"))
-    result.processes->emplace(name, load(root.group("process" + std::to_string(index++))));
+  for (const std::string& name : root.read_texts("names")) {
+    const data::Hdf5Group group = root.group("process" + std::to_string(index++));
+    const std::vector<std::string> remarks = group.read_texts("remarks");
+    require(remarks.size() == 1, group, "its remarks are missing");
+    SavedProcess saved{load(group), std::nullopt, remarks.front()};
+    if (group.has("second_level")) saved.high = load_high(group.group("second_level"));
+    result.processes->emplace(name, std::move(saved));
+  }
   return result;
 }
 

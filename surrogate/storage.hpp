@@ -6,13 +6,17 @@
 //   (training.hpp) /processN/length_scales, signal_variance, nugget_variance, weight   one row per hyper-parameter
 //   setting /processN/starts           one row per start: objective, gradient norm, evaluations, converged
 //   /processN/bound_*          hyper-parameters that are on a bound
+//   /processN/second_level     where there is a second level (two_level.hpp): x, y, noise_variance, discrepancy_mean,
+//                              settings (weight, rho, length factor, discrepancy sd, nugget sd), and the fit's outcome
+//                              as above
+//   /processN/remarks          a text of the caller's, kept as it is
 // Covariances are factorised again when read: a file is small, and the same bits come back.
 // A file whose study or table hash is not the one asked for is stale: it is refused and named, never used silently.
 #include <map>
 #include <optional>
 #include <string>
 
-#include "surrogate/gaussian_process.hpp"
+#include "surrogate/two_level.hpp"
 
 namespace surrogate {
 
@@ -22,7 +26,13 @@ struct SurrogateKey {
   std::string table_hash;  ///< of the run table
 };
 
-using ProcessSet = std::map<std::string, GaussianProcess>;  ///< by name, such as "carrier torque"
+struct SavedProcess {
+  GaussianProcess process;        ///< of the low level where there are two
+  std::optional<HighLevel> high;  ///< none: one level
+  std::string remarks = {};       ///< the caller's, such as how the process was judged
+};
+
+using ProcessSet = std::map<std::string, SavedProcess>;  ///< by name, such as "carrier torque"
 
 /// Atomic. Throws data::InputError (73).
 void save_processes(const std::string& path, const ProcessSet& processes, const SurrogateKey& key);

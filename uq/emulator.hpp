@@ -35,8 +35,27 @@ struct Emulator {
   std::function<std::vector<surrogate::Prediction>(const Eigen::MatrixXd& points, int group)> predict_batch = {};
 };
 
-/// The process as an emulator; it is shared, not copied.
-Emulator make_emulator(std::shared_ptr<const surrogate::GaussianProcess> process, std::string material,
-                       std::size_t output, std::vector<EmulatorInput> inputs);
+/// A process of the surrogate layer as an emulator; it is shared, not copied.
+template <class Process>
+Emulator make_emulator(std::shared_ptr<const Process> process, std::string material, std::size_t output,
+                       std::vector<EmulatorInput> inputs) {
+  Emulator emulator{.material = std::move(material),
+                    .output = output,
+                    .inputs = std::move(inputs),
+                    .constants = {},
+                    .control_range = {},
+                    .predict = {}};
+  emulator.predict = [process](const Eigen::MatrixXd& points) -> surrogate::Prediction {
+    return process->predict(points);
+  };
+  emulator.predict_with_gradient = [process](const Eigen::MatrixXd& points,
+                                             std::span<const int> coordinates) -> surrogate::PredictionGradient {
+    return process->predict_with_gradient(points, coordinates);
+  };
+  emulator.predict_batch = [process](const Eigen::MatrixXd& points, int group) -> std::vector<surrogate::Prediction> {
+    return process->predict_batch(points, group);
+  };
+  return emulator;
+}
 
 }  // namespace uq

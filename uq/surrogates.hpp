@@ -1,51 +1,66 @@
 #pragma once
-// One Gaussian process per material and output from the run table. Its inputs are what that material's rows vary:
+// One surrogate per material and output from the run table: a Gaussian process, or, where there are runs of a cheaper
+// level ([training] low), a two-level process under the table's. Its inputs are what that material's rows vary:
 // parameters in uq/prior.hpp's u, controls by their range. Each run's standard error enters as known noise, scatter
-// beyond it as nugget.
+// beyond it as nugget. A row without one output (NaN) trains the others.
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "data/run_table.hpp"
 #include "data/study.hpp"
 #include "surrogate/fit.hpp"
+#include "surrogate/two_level.hpp"
 #include "surrogate/validation.hpp"
 #include "uq/emulator.hpp"
 #include "uq/results.hpp"
 
 namespace uq {
 
-struct SurrogateOptions {
-  surrogate::FitOptions fit = {};
-  surrogate::ValidationOptions validation = {};  ///< its seed is that of the fit
-  bool observed_only = false;                    ///< leave out the outputs that no case observes
-};
-
 /// A material's rows of one output, as the surrogate sees them.
 struct TrainingRows {
   std::string material;
   std::size_t output = 0;
-  surrogate::TrainingSet set;  ///< SI
+  surrogate::TrainingSet set;                 ///< SI
+  std::optional<surrogate::TrainingSet> low;  ///< SI, runs of the cheaper level
   std::vector<EmulatorInput> inputs;
   std::map<std::size_t, double> constants;  ///< parameters held at one value, SI
   std::map<std::size_t, std::pair<double, double>> control_range;
 };
 
-/// Rows of every material and output that have any. Throws data::InputError (65): a table without a column of the
-/// study, rows fewer than a surrogate needs (inputs + 2), rows outside a parameter's range.
-std::vector<TrainingRows> training_rows(const data::Study& study, const data::RunTable& table);
-
 struct FittedSurrogate {
   TrainingRows rows;
-  std::shared_ptr<const surrogate::GaussianProcess> process;
+  std::shared_ptr<const surrogate::GaussianProcess> process;    ///< of the low level where there are two
+  std::shared_ptr<const surrogate::TwoLevelProcess> two_level;  ///< none: one level
   SurrogateReport report;
 };
+
+struct SurrogateOptions {
+  surrogate::FitOptions fit = {};
+  std::vector<std::string> log_outputs = {};     ///< outputs that are learnt as logarithms, whatever fit.scale
+  surrogate::ValidationOptions validation = {};  ///< its seed is that of the fit
+  bool observed_only = false;                    ///< leave out the outputs that no case observes
+  std::optional<data::RunTable> low = {};        ///< runs of the cheaper level
+  std::vector<FittedSurrogate> known = {};       ///< fitted before under the same options: not fitted again
+};
+
+/// Rows of every material and output that have any. Throws data::InputError (65): a table without a column of the
+/// study, rows fewer than a surrogate needs (inputs + 2; three of the dear level where there are two).
+std::vector<TrainingRows> training_rows(const data::Study& study, const data::RunTable& table,
+                                        const std::optional<data::RunTable>& low = {});
 
 std::vector<FittedSurrogate> fit_surrogates(const data::Study& study, const data::RunTable& table,
                                             const SurrogateOptions& options = {});
 
-/// The process of given rows with its emulator's bookkeeping: for processes loaded from a file.
-Emulator emulator_of(const TrainingRows& rows, std::shared_ptr<const surrogate::GaussianProcess> process);
+/// What the observations ask of the surrogate outside the box of its runs, one sentence each.
+std::vector<std::string> extrapolation_notes(const data::Study& study, const TrainingRows& rows);
+
+/// "carrier torque": by this name a surrogate is saved.
+std::string surrogate_name(const data::Study& study, const TrainingRows& rows);
+
+/// The process, or the two, with the emulator's bookkeeping.
+Emulator emulator_of(const FittedSurrogate& fitted);
 std::vector<Emulator> emulators_of(const std::vector<FittedSurrogate>& fitted);
 
 }  // namespace uq

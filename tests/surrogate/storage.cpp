@@ -40,19 +40,22 @@ TEST_CASE("a saved process predicts the same bits when it is read again") {
   const Folder folder;
   const MatrixXd points = scrambled_sobol(8, 3, 5);
   ProcessSet processes;
-  processes.emplace("plain", fit(small_set(), {.starts = 2}));
-  processes.emplace("integrated, log / second", fit(small_set(), {.kernel = Kernel::matern32,
-                                                                  .mean = MeanBasis::linear,
-                                                                  .scale = OutputScale::log,
-                                                                  .starts = 2,
-                                                                  .hyper_uncertainty = HyperUncertainty::integrated}));
+  processes.emplace("plain", SavedProcess{fit(small_set(), {.starts = 2}), std::nullopt, "judged \"good\""});
+  processes.emplace("integrated, log / second",
+                    SavedProcess{fit(small_set(), {.kernel = Kernel::matern32,
+                                                   .mean = MeanBasis::linear,
+                                                   .scale = OutputScale::log,
+                                                   .starts = 2,
+                                                   .hyper_uncertainty = HyperUncertainty::integrated})});
   const SurrogateKey key{"study", "table"};
   save_processes(folder.file("surrogate.h5"), processes, key);
   const LoadedProcesses loaded = load_processes(folder.file("surrogate.h5"), key);
   REQUIRE(loaded.processes);
   REQUIRE(loaded.processes->size() == 2);
-  for (const auto& [name, process] : processes) {
-    const GaussianProcess& again = loaded.processes->at(name);
+  for (const auto& [name, saved] : processes) {
+    const GaussianProcess &process = saved.process, &again = loaded.processes->at(name).process;
+    CHECK(loaded.processes->at(name).remarks == saved.remarks);
+    CHECK_FALSE(loaded.processes->at(name).high);
     CHECK(process.predict(points).mean == again.predict(points).mean);
     CHECK(process.predict(points).covariance == again.predict(points).covariance);
     CHECK(process.log_marginal_likelihood() == again.log_marginal_likelihood());
@@ -62,10 +65,27 @@ TEST_CASE("a saved process predicts the same bits when it is read again") {
   }
 }
 
+TEST_CASE("a two-level process predicts the same bits when it is read again") {
+  const Folder folder;
+  const MatrixXd points = scrambled_sobol(8, 3, 5);
+  TrainingSet dear{scrambled_sobol(5, 3, 9), VectorXd(5), {}};
+  for (int i = 0; i < 5; ++i) dear.y[i] = 3.0 + dear.x(i, 0) + 0.2 * std::sin(7.0 * dear.x(i, 1));
+  const TwoLevelProcess process = fit_two_level(fit(small_set(), {.starts = 1}), dear);
+  save_processes(folder.file("two.h5"), {{"torque", SavedProcess{process.low(), process.high()}}}, {"study", "table"});
+  const LoadedProcesses loaded = load_processes(folder.file("two.h5"), {"study", "table"});
+  REQUIRE(loaded.processes);
+  const SavedProcess& saved = loaded.processes->at("torque");
+  REQUIRE(saved.high);
+  const TwoLevelProcess again(saved.process, *saved.high);
+  CHECK(process.predict(points).mean == again.predict(points).mean);
+  CHECK(process.predict(points).covariance == again.predict(points).covariance);
+  CHECK(process.high().diagnostics.starts.size() == again.high().diagnostics.starts.size());
+}
+
 TEST_CASE("a surrogate of another study or table is stale, and says so") {
   const Folder folder;
   ProcessSet processes;
-  processes.emplace("torque", fit(small_set(), {.starts = 1}));
+  processes.emplace("torque", SavedProcess{fit(small_set(), {.starts = 1})});
   save_processes(folder.file("surrogate.h5"), processes, {"study", "table"});
   CHECK_FALSE(load_processes(folder.file("surrogate.h5"), {"study", "other"}).processes);
   CHECK(load_processes(folder.file("surrogate.h5"), {"study", "other"}).reason.find("table") != std::string::npos);
@@ -76,7 +96,7 @@ TEST_CASE("a surrogate of another study or table is stale, and says so") {
 TEST_CASE("a truncated surrogate file is bad data, not a crash") {
   const Folder folder;
   ProcessSet processes;
-  processes.emplace("torque", fit(small_set(), {.starts = 1}));
+  processes.emplace("torque", SavedProcess{fit(small_set(), {.starts = 1})});
   const std::string path = folder.file("surrogate.h5");
   save_processes(path, processes, {"study", "table"});
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);

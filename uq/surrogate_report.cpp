@@ -1,0 +1,168 @@
+#include "uq/surrogate_report.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/prior.hpp"
+
+namespace uq {
+namespace {
+
+std::vector<double> in_unit(const Eigen::VectorXd& values, const data::Unit& unit) {
+  std::vector<double> shown;
+  for (const double value : values) shown.push_back(unit.from_si(value));
+  return shown;
+}
+
+const std::string& input_name(const data::Study& study, const EmulatorInput& input) {
+  return input.kind == InputKind::parameter ? study.parameters[input.index].name : study.controls[input.index].name;
+}
+
+/// What the two-level process found, and how its cheaper level did.
+void add_levels(SurrogateReport& report, const FittedSurrogate& fitted, const data::Output& output) {
+  const surrogate::TwoLevelProcess& two = *fitted.two_level;
+  report.low_runs = two.low().runs();
+  report.rho = two.mean_rho();
+  double spread = 0.0;
+  for (const surrogate::TwoLevelParameters& p : two.high().settings)
+    spread += p.weight * std::pow(p.rho - report.rho, 2);
+  report.rho_sd = std::sqrt(spread);
+  const double q2_low = surrogate::q2(fitted.rows.low->y, two.low().leave_one_out().mean);
+  report.notes.insert(
+      report.notes.begin(),
+      fmt::format(
+          "two levels: {} runs over {} of the cheaper level (Q2 {:.4f} left out); output = rho times the cheaper "
+          "level's plus a discrepancy, rho {:.3g} +- {:.2g}, discrepancy sd {:.3g} {}",
+          report.runs, report.low_runs, q2_low, report.rho, report.rho_sd,
+          two.parameters().discrepancy_sd / output.unit.factor, output.unit.symbol));
+  for (const std::string& note : surrogate::fit_notes(two.low().diagnostics()))
+    report.notes.push_back("cheaper level: " + note);
+}
+
+/// "friction 0.45, rpm 120 rpm": a point of the unit cube in the study's units.
+std::string point_text(const data::Study& study, const TrainingRows& rows, const Eigen::VectorXd& point) {
+  std::string text;
+  for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
+    const EmulatorInput& input = rows.inputs[k];
+    const double u = point[static_cast<Eigen::Index>(k)];
+    const bool is_parameter = input.kind == InputKind::parameter;
+    const data::Unit& unit = is_parameter ? study.parameters[input.index].unit : study.controls[input.index].unit;
+    const double value = is_parameter ? from_scaled(study.parameters[input.index], u)
+                                      : study.controls[input.index].low +
+                                            u * (study.controls[input.index].high - study.controls[input.index].low);
+    text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", input_name(study, input), unit.from_si(value),
+                        unit.symbol.empty() ? "" : " ", unit.symbol);
+  }
+  return text;
+}
+
+}  // namespace
+
+surrogate::FitOptions options_for(const data::Study& study, const TrainingRows& rows, const SurrogateOptions& options) {
+  surrogate::FitOptions fit = options.fit;
+  const std::string& name = study.outputs[rows.output].name;
+  if (std::find(options.log_outputs.begin(), options.log_outputs.end(), name) != options.log_outputs.end())
+    fit.scale = surrogate::OutputScale::log;
+  return fit;
+}
+
+SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitted, const SurrogateOptions& options) {
+  const TrainingRows& rows = fitted.rows;
+  const data::Output& output = study.outputs[rows.output];
+  const surrogate::FitOptions fit_options = options_for(study, rows, options);
+  surrogate::ValidationOptions validation_options = options.validation;
+  validation_options.seed = options.fit.seed;
+  const surrogate::Validation found =
+      fitted.two_level ? surrogate::validate(*fitted.two_level, {.seed = options.fit.seed}, validation_options)
+                       : surrogate::validate(rows.set, fit_options, *fitted.process, validation_options);
+  SurrogateReport report;
+  report.output = output.name;
+  report.material = rows.material;
+  report.runs = found.runs;
+  report.unit = output.unit.symbol;
+  report.q2 = found.q2_leave_one_out;
+  report.q2_held_out = found.q2_held_out;
+  report.coverage95 = found.coverage_leave_one_out.observed[2];
+  const surrogate::HyperParameters hyper = fitted.process->hyper_parameters();
+  // On the log scale the nugget is relative; shown at the mean output.
+  const bool logarithmic = fit_options.scale == surrogate::OutputScale::log;
+  const double nugget_sd = fitted.two_level ? fitted.two_level->parameters().nugget_sd
+                                            : hyper.nugget_sd * (logarithmic ? std::abs(rows.set.y.mean()) : 1.0);
+  report.nugget_sd = nugget_sd / output.unit.factor;
+  for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
+    report.inputs.push_back(input_name(study, rows.inputs[k]));
+    report.length_scales.push_back(hyper.length_scales[static_cast<Eigen::Index>(k)]);
+  }
+  report.observed = in_unit(rows.set.y, output.unit);
+  report.predicted = in_unit(found.leave_one_out.mean, output.unit);
+  report.standardised.assign(found.leave_one_out.standardised.begin(), found.leave_one_out.standardised.end());
+  for (const double variance : rows.set.noise_variance)
+    report.observed_se.push_back(std::sqrt(variance) / output.unit.factor);
+  report.verdict = surrogate::to_text(found.verdict);
+  report.finding = found.finding;
+  report.consequence = found.consequence;
+  report.remedy = found.remedy;
+  if (found.more_runs > 0 && found.next_points.rows() > 0) {
+    report.remedy += " Least is known at";
+    for (Eigen::Index i = 0; i < found.next_points.rows(); ++i)
+      report.remedy += fmt::format("{} {}", i > 0 ? ";" : "", point_text(study, rows, found.next_points.row(i)));
+    report.remedy += ".";
+  }
+  report.notes = found.notes;
+  const auto& active = fitted.process->data();
+  if (active.points.rows() < active.z.size())
+    report.notes.push_back(fmt::format("{} runs at {} points: replicates are pooled with their own errors",
+                                       active.z.size(), active.points.rows()));
+  if (fitted.two_level) add_levels(report, fitted, output);
+  return report;
+}
+
+std::vector<std::string> extrapolation_notes(const data::Study& study, const TrainingRows& rows) {
+  std::vector<std::string> notes;
+  for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
+    const EmulatorInput& input = rows.inputs[k];
+    Eigen::VectorXd column = rows.set.x.col(static_cast<Eigen::Index>(k));
+    double low = column.minCoeff(), high = column.maxCoeff();
+    if (rows.low) {
+      column = rows.low->x.col(static_cast<Eigen::Index>(k));
+      low = std::min(low, column.minCoeff());
+      high = std::max(high, column.maxCoeff());
+    }
+    if (input.kind == InputKind::parameter) {
+      // A scrambled design of a few dozen runs stops several percent short of its range's ends.
+      constexpr double slack = 0.1;
+      const data::Parameter& parameter = study.parameters[input.index];
+      if (low > slack || high < 1.0 - slack)
+        notes.push_back(fmt::format(
+            "the runs cover {} from {:.3g} to {:.3g}{}{} only; in the rest of its range the surrogate extrapolates",
+            parameter.name, parameter.unit.from_si(from_scaled(parameter, low)),
+            parameter.unit.from_si(from_scaled(parameter, high)), parameter.unit.symbol.empty() ? "" : " ",
+            parameter.unit.symbol));
+      continue;
+    }
+    const data::Control& control = study.controls[input.index];
+    int outside = 0, points = 0;
+    for (const data::ObservationSet& set : study.observations) {
+      if (set.material != rows.material ||
+          std::find(set.outputs.begin(), set.outputs.end(), rows.output) == set.outputs.end())
+        continue;
+      for (const data::Observation& point : set.points) {
+        const double u = (point.controls[input.index] - control.low) / (control.high - control.low);
+        ++points;
+        outside += u < low - 1e-9 || u > high + 1e-9;
+      }
+    }
+    if (outside > 0) {
+      const auto& [from, to] = rows.control_range.at(input.index);
+      notes.push_back(fmt::format(
+          "{} of {} observed points lie outside the runs' {}, {:.4g} to {:.4g} {}: the "
+          "surrogate extrapolates there",
+          outside, points, control.name, control.unit.from_si(from), control.unit.from_si(to), control.unit.symbol));
+    }
+  }
+  return notes;
+}
+
+}  // namespace uq
