@@ -8,6 +8,7 @@
 
 #include "data/error.hpp"
 #include "uq/diagnostics.hpp"
+#include "uq/discrepancy.hpp"
 #include "uq/posterior.hpp"
 #include "uq/quadrature.hpp"
 
@@ -18,11 +19,65 @@ std::uint64_t seed_of(const data::Study& study, const CalibrateOptions& options)
   return options.seed.value_or(study.seed);
 }
 
-MixtureSamplerOptions sampler_options(const data::Study& study, const CalibrateOptions& options) {
-  MixtureSamplerOptions sampler = options.sampler;
-  sampler.seed = seed_of(study, options);
-  sampler.threads = options.threads;
-  return sampler;
+/// Index of the unknown of this name in another case's model.
+int unknown_of(const CaseModel& model, const std::string& name) {
+  for (int k = 0; k < model.dimension(); ++k)
+    if (model.slots[static_cast<std::size_t>(k)].label == name) return k;
+  return -1;
+}
+
+/// The sampled case whose posterior an unknown has.
+const SampledCase& source_of(const SampledCase& sampled, const Slot& slot) {
+  const auto found = std::find_if(sampled.cut_sources.begin(), sampled.cut_sources.end(),
+                                  [&](const auto& source) { return source->model->name == slot.cut_from; });
+  return **found;
+}
+
+/// Draws of the cut unknowns, chain by chain, as their sources gave them.
+GivenDraws given_draws(const SampledCase& sampled) {
+  GivenDraws given;
+  const CaseModel& model = *sampled.model;
+  for (int k = 0; k < model.dimension(); ++k)
+    if (!model.slots[static_cast<std::size_t>(k)].cut_from.empty()) given.unknowns.push_back(k);
+  for (const int unknown : given.unknowns) {
+    const Slot& slot = model.slots[static_cast<std::size_t>(unknown)];
+    const SampledCase& source = source_of(sampled, slot);
+    const Eigen::MatrixXd column = source.draws.coordinate(unknown_of(*source.model, slot.label));
+    const Eigen::Index rows =
+        given.chains.empty() ? column.rows() : std::min(column.rows(), given.chains.front().rows());
+    given.chains.resize(static_cast<std::size_t>(column.cols()), Eigen::MatrixXd(rows, 0));
+    for (std::size_t c = 0; c < given.chains.size(); ++c) {
+      given.chains[c].conservativeResize(rows, given.chains[c].cols() + 1);
+      given.chains[c].rightCols(1) = column.col(static_cast<Eigen::Index>(c)).head(rows);
+    }
+  }
+  return given;
+}
+
+/// Draws of `model`, which is the sampled case's own or the same for other data; at least `draws` per chain.
+Draws draw(const data::Study& study, const SampledCase& sampled, std::shared_ptr<const CaseModel> model,
+           const std::pair<int, CalibrateOptions>& draws_and_options) {
+  const auto& [draws, options] = draws_and_options;
+  const Target target = posterior_target(std::move(model));
+  const std::uint64_t seed = seed_of(study, options);
+  if (!sampled.cut_sources.empty()) {
+    CutOptions cut = options.cut;
+    cut.seed = seed;
+    cut.threads = options.threads;
+    return sample_cut(target, given_draws(sampled), cut);
+  }
+  if (sampled.sampler == data::Sampler::nuts) {
+    NutsOptions nuts = options.nuts;
+    nuts.seed = seed;
+    nuts.threads = options.threads;
+    nuts.draws = draws;
+    return sample_nuts(target, nuts);
+  }
+  MixtureSamplerOptions mixture = options.mixture;
+  mixture.seed = seed;
+  mixture.threads = options.threads;
+  mixture.draws = draws;
+  return sample_mixture(target, mixture);
 }
 
 /// Convergence of each parameter, and the Monte Carlo error of its mean in the study's unit.
@@ -117,14 +172,56 @@ void add_quadrature(CaseReport& report, const SampledCase& sampled, const Eigen:
                                           report.name, *report.grid_difference));
 }
 
+/// What is known of a cut parameter is what its own case says.
+void take_cut_verdicts(Identification& found, const SampledCase& sampled, const CalibrateOptions& options) {
+  for (const auto& source : sampled.cut_sources) {
+    const Identification of_source = identify(*source->model, source->draws.pooled(), options.identify);
+    for (std::size_t k = 0; k < found.parameters.size(); ++k) {
+      if (sampled.model->slots[k].cut_from != source->model->name) continue;
+      for (const ParameterReport& known : of_source.parameters)
+        if (known.name == found.parameters[k].name) {
+          found.parameters[k] = known;
+          found.parameters[k].sentence += fmt::format(
+              " This is the posterior of case {}, cut: the data of this case do not change it.", source->model->name);
+        }
+    }
+  }
+}
+
+void add_sampler_warnings(CaseReport& report, const Draws& draws) {
+  for (const auto& chain : draws.chains)
+    if (chain.energy.size() > 0) {
+      const double fraction = energy_fraction(chain.energy);
+      if (!(report.energy_fraction <= fraction)) report.energy_fraction = fraction;
+    }
+  if (report.divergences > 0)
+    report.warnings.push_back(fmt::format(
+        "case {}: {} divergent trajectories: the draws may miss a sharp corner of the posterior (sampler = \"mixture\" "
+        "does not follow gradients)",
+        report.name, report.divergences));
+  if (report.energy_fraction < 0.3)
+    report.warnings.push_back(fmt::format("case {}: E-BFMI {:.2f} is below 0.3: the chains explore the energies slowly",
+                                          report.name, report.energy_fraction));
+  const bool has_evidence = !std::isnan(report.log_evidence);
+  if (has_evidence && !(report.log_evidence_error < 0.2))
+    report.warnings.push_back(
+        fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
+}
+
 void add_warnings(CaseReport& report, const SampledCase& sampled) {
   if (!report.converged)
     report.warnings.push_back(
         fmt::format("case {}: the chains have not converged: {}", report.name, sampled.draws.reason));
   if (!report.fits) report.warnings.push_back(fmt::format("case {}: the model does not fit the data", report.name));
-  if (!(report.log_evidence_error < 0.2))
+  add_sampler_warnings(report, sampled.draws);
+  if (!report.discrepancies.empty()) {
+    double largest = 0.0;
+    for (const auto& band : report.discrepancies) largest = std::max(largest, band.share);
     report.warnings.push_back(
-        fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
+        fmt::format("case {}: a discrepancy competes with the parameters for the data (it takes {:.0f} % of the spread "
+                    "about the model); what it takes, the parameters need not explain",
+                    report.name, 100.0 * largest));
+  }
   for (const auto& slot : sampled.model->slots)
     if (slot.nuisance == Acts::none && slot.prior.kept_mass() < 0.99)
       report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
@@ -135,10 +232,32 @@ void add_warnings(CaseReport& report, const SampledCase& sampled) {
 
 SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
                         const CalibrateOptions& options) {
-  SampledCase sampled;
-  sampled.model = std::make_shared<const CaseModel>(build_case(study, emulators, case_index));
+  const data::CalibrationCase& item = study.cases.at(case_index);
+  SampledCase sampled{.model = nullptr, .draws = {}, .sampler = options.sampler.value_or(item.sampler)};
+  CaseModel model = build_case(study, emulators, case_index);
+  for (Slot& slot : model.slots) {
+    if (slot.cut_from.empty()) continue;
+    const auto known = std::find_if(sampled.cut_sources.begin(), sampled.cut_sources.end(),
+                                    [&](const auto& source) { return source->model->name == slot.cut_from; });
+    if (known == sampled.cut_sources.end()) {
+      const auto from = std::find_if(study.cases.begin(), study.cases.end(),
+                                     [&](const data::CalibrationCase& other) { return other.name == slot.cut_from; });
+      sampled.cut_sources.push_back(std::make_shared<const SampledCase>(
+          sample_case(study, emulators, static_cast<std::size_t>(from - study.cases.begin()), options)));
+    }
+    const SampledCase& source = source_of(sampled, slot);
+    if (source.draws.chains.empty()) {
+      sampled.model = std::make_shared<const CaseModel>(std::move(model));
+      sampled.draws.reason = fmt::format("case '{}', whose posterior it takes, has no draws", source.model->name);
+      return sampled;
+    }
+    const Eigen::VectorXd u = source.draws.pooled().col(unknown_of(*source.model, slot.label));
+    slot.cut = NormalLaw{.mean = u.mean(), .sd = std::sqrt((u.array() - u.mean()).square().mean())};
+  }
+  sampled.model = std::make_shared<const CaseModel>(std::move(model));
   check_priors(study, *sampled.model);
-  sampled.draws = sample_mixture(posterior_target(sampled.model), sampler_options(study, options));
+  const bool nuts = sampled.sampler == data::Sampler::nuts;
+  sampled.draws = draw(study, sampled, sampled.model, {nuts ? options.nuts.draws : options.mixture.draws, options});
   return sampled;
 }
 
@@ -157,6 +276,9 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.converged = sampled.draws.converged;
   report.chains = static_cast<int>(sampled.draws.chains.size());
   report.divergences = sampled.draws.divergences;
+  report.sampler = sampled.draws.sampler;
+  for (const auto& slot : model.slots)
+    if (!slot.cut_from.empty()) report.cuts.push_back(slot.label + " from " + slot.cut_from);
   report.log_evidence = sampled.draws.log_evidence;
   report.log_evidence_error = sampled.draws.log_evidence_error;
   if (sampled.draws.chains.empty()) {
@@ -172,6 +294,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
 
   const Eigen::MatrixXd draws = sampled.draws.pooled();
   Identification found = identify(model, draws, options.identify);
+  take_cut_verdicts(found, sampled, options);
   report.chi2 = found.check.chi2;
   report.dof = found.check.dof;
   report.ppp = found.check.predictive_p;
@@ -186,7 +309,9 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   const std::uint64_t seed = seed_of(study, options);
   report.predictive = predictive_points(study, model, draws, seed);
   report.curves = predictive_curves(study, model, draws, seed);
-  if (options.quadrature && model.dimension() <= 2) add_quadrature(report, sampled, draws, options);
+  report.discrepancies = discrepancy_bands(study, model, draws, seed);
+  if (options.quadrature && model.dimension() <= 2 && report.cuts.empty())
+    add_quadrature(report, sampled, draws, options);
   const Words words = summarise(model, found, options.identify.thresholds);
   report.finding = words.finding;
   report.consequence = words.consequence;
@@ -208,9 +333,7 @@ std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& 
     const Eigen::VectorXd sd = error * truth.cwiseAbs();
     const Eigen::VectorXd y = truth + sd.cwiseProduct(normal);
     const auto model = std::make_shared<const CaseModel>(with_data(*sampled.model, y, sd.cwiseAbs2()));
-    MixtureSamplerOptions sampler = sampler_options(study, options);
-    sampler.draws = 500;
-    const Draws draws = sample_mixture(posterior_target(model), sampler);
+    const Draws draws = draw(study, sampled, model, {500, options});
     ErrorScan scan;
     scan.case_name = model->name;
     scan.relative_error = error;
@@ -257,6 +380,8 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   const std::vector<Emulator> emulators = emulators_of(result.surrogates);
   for (const auto& fitted : result.surrogates) {
     report.surrogates.push_back(fitted.report);
+    for (const std::string& note : extrapolation_notes(study, fitted.rows))
+      report.surrogates.back().notes.push_back(note);
     if (fitted.report.verdict == "unusable")
       report.warnings.push_back(fmt::format("the surrogate of {}{} is unusable: {}", fitted.report.output,
                                             fitted.report.material.empty() ? "" : " of " + fitted.report.material,
