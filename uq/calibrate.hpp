@@ -10,9 +10,11 @@
 
 #include "data/run_table.hpp"
 #include "data/study.hpp"
+#include "uq/cut.hpp"
 #include "uq/draws.hpp"
 #include "uq/identifiability.hpp"
 #include "uq/mixture_sampler.hpp"
+#include "uq/nuts.hpp"
 #include "uq/results.hpp"
 #include "uq/surrogates.hpp"
 
@@ -20,7 +22,10 @@ namespace uq {
 
 struct CalibrateOptions {
   SurrogateOptions surrogates = {};
-  MixtureSamplerOptions sampler = {};  ///< its seed and threads are set from those below
+  std::optional<data::Sampler> sampler = {};  ///< instead of each case's own
+  MixtureSamplerOptions mixture = {};         ///< its seed and threads are set from those below
+  NutsOptions nuts = {};                      ///< likewise
+  CutOptions cut = {};                        ///< likewise
   IdentifyOptions identify = {};
   std::vector<double> error_scan = {0.01, 0.03, 0.05};  ///< relative measurement errors; empty: no scan
   bool quadrature = true;                               ///< check one- and two-dimensional posteriors by integration
@@ -33,6 +38,8 @@ struct CalibrateOptions {
 struct SampledCase {
   std::shared_ptr<const CaseModel> model;
   Draws draws;
+  data::Sampler sampler = data::Sampler::mixture;
+  std::vector<std::shared_ptr<const SampledCase>> cut_sources = {};  ///< cases whose posteriors were cut
 };
 
 struct Calibration {
@@ -41,6 +48,7 @@ struct Calibration {
   std::vector<SampledCase> cases;  ///< in the study's order
 };
 
+/// A case whose parameter is another's posterior, cut, has that case sampled first.
 SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
                         const CalibrateOptions& options = {});
 

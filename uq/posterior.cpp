@@ -99,14 +99,17 @@ void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::Ve
 
 }  // namespace
 
+GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u) {
+  return law_of(group.measurement, model.slots, group.variance, group.emulator.predict(rows_at(group, u)), u);
+}
+
 StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u) {
   const Eigen::Index rows = model.row_count();
   StackedPrediction stacked{
       .mean = Eigen::VectorXd(rows), .covariance = Eigen::MatrixXd::Zero(rows, rows), .noise = Eigen::VectorXd(rows)};
   Eigen::Index first = 0;
   for (const auto& group : model.groups) {
-    const GroupLaw part =
-        law_of(group.measurement, model.slots, group.variance, group.emulator.predict(rows_at(group, u)), u);
+    const GroupLaw part = group_law(model, group, u);
     const Eigen::Index count = part.mean.size();
     stacked.mean.segment(first, count) = part.mean;
     stacked.covariance.block(first, first, count, count) = part.covariance;

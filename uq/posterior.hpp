@@ -28,6 +28,8 @@ struct StackedPrediction {
   }
 };
 StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u);
+/// Of one group's rows.
+GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u);
 
 double log_prior(const CaseModel& model, const Eigen::VectorXd& u);
 Evaluation log_prior_gradient(const CaseModel& model, const Eigen::VectorXd& u);

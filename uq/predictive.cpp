@@ -17,11 +17,6 @@ namespace {
 
 constexpr int predictive_draws = 500;
 
-bool own_set(const data::Study& study, const CaseModel& model, std::size_t set) {
-  return std::find(model.observed_sets.begin(), model.observed_sets.end(), study.observations[set].name) !=
-         model.observed_sets.end();
-}
-
 /// Rows at which a set's curve is drawn: the set's first row, with one control spread over its range.
 struct CurveRows {
   Eigen::MatrixXd base;
@@ -45,6 +40,11 @@ CurveRows curve_rows(const data::Study& study, const RowGroup& group, std::size_
 }
 
 }  // namespace
+
+bool is_own_set(const data::Study& study, const CaseModel& model, std::size_t set) {
+  return std::find(model.observed_sets.begin(), model.observed_sets.end(), study.observations[set].name) !=
+         model.observed_sets.end();
+}
 
 Eigen::MatrixXd thinned(const Eigen::MatrixXd& draws, Eigen::Index count) {
   if (draws.rows() <= count) return draws;
@@ -93,7 +93,7 @@ std::vector<PredictivePoint> predictive_points(const data::Study& study, const C
   const std::vector<RowOrigin> from = origins(model);
   std::vector<PredictivePoint> points;
   for (std::size_t row = 0; row < from.size(); ++row) {
-    if (!own_set(study, model, from[row].set)) continue;
+    if (!is_own_set(study, model, from[row].set)) continue;
     const data::ObservationSet& set = study.observations[from[row].set];
     const data::Observation& observation = set.points[from[row].point];
     const data::Output& output = study.outputs[from[row].output];
@@ -128,7 +128,7 @@ std::vector<PredictiveCurve> predictive_curves(const data::Study& study, const C
     const auto control_column = static_cast<std::size_t>(control - group.emulator.inputs.begin());
     for (std::size_t row = 0; row < group.origin.size(); ++row) {
       const bool first_of_set = row == 0 || group.origin[row].set != group.origin[row - 1].set;
-      if (!first_of_set || !own_set(study, model, group.origin[row].set)) continue;
+      if (!first_of_set || !is_own_set(study, model, group.origin[row].set)) continue;
       const CurveRows rows = curve_rows(study, group, row, control_column);
       Eigen::MatrixXd values(used.rows(), rows.x.size());
       for (Eigen::Index i = 0; i < used.rows(); ++i) {

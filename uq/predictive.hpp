@@ -43,6 +43,9 @@ Eigen::VectorXd mean_prediction(const CaseModel& model, const Eigen::MatrixXd& d
 /// Throws data::InputError (78) when the priors alone put a measured value out of reach that the ranges would allow.
 void check_priors(const data::Study& study, const CaseModel& model);
 
+/// Whether the case itself observes a set (index in Study::observations), not one linked with it.
+bool is_own_set(const data::Study& study, const CaseModel& model, std::size_t set);
+
 /// At most `count` rows, evenly spaced.
 Eigen::MatrixXd thinned(const Eigen::MatrixXd& draws, Eigen::Index count);
 

@@ -83,6 +83,20 @@ void visit_fields(Visit&& visit, T& n) {
   visit("ess_tail", n.ess_tail);
 }
 
+template <class Visit, SameAs<DiscrepancyBand> T>
+void visit_fields(Visit&& visit, T& d) {
+  visit("output", d.output);
+  visit("unit", d.unit);
+  visit("control", d.control);
+  visit("control_unit", d.control_unit);
+  visit("observation_set", d.observation_set);
+  visit("share", d.share);
+  visit("x", d.x);
+  visit("mean", d.mean);
+  visit("q05", d.q05);
+  visit("q95", d.q95);
+}
+
 template <class Visit, SameAs<TradedPair> T>
 void visit_fields(Visit&& visit, T& t) {
   visit("first", t.first);
@@ -148,6 +162,10 @@ void visit_fields(Visit&& visit, T& c) {
   visit("remedy", c.remedy);
   visit("warnings", c.warnings);
   visit("nuisances", c.nuisances);
+  visit("discrepancies", c.discrepancies);
+  visit("cuts", c.cuts);
+  visit("sampler", c.sampler);
+  visit("energy_fraction", c.energy_fraction);
 }
 
 template <class Visit, SameAs<ErrorScan> T>

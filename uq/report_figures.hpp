@@ -17,6 +17,9 @@ std::vector<PredictiveCurve> curves_to_draw(const CaseReport& result);
 /// Observed points with their errors and the posterior predictive band against one control.
 Figure predictive_figure(const CaseReport& result, const PredictiveCurve& curve, const std::string& stem);
 
+/// The band of a case's discrepancy against one control, with the line 0.
+Figure discrepancy_figure(const CaseReport& result, const DiscrepancyBand& band, const std::string& stem);
+
 /// The joint posterior of two parameters: draws, 50 and 90 % regions, prior box, equivalent points.
 enum class FigureSize { wide, half };  ///< of the page's width
 Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t> pair, FigureSize size,

@@ -111,7 +111,9 @@ std::string sampler_section(const CalibrationReport& report) {
               .head = {{"Case"},
                        number("Chains \u00d7 draws"),
                        {"Converged"},
+                       {"Sampler"},
                        number("Divergences"),
+                       number("E-BFMI"),
                        number("Difference to quadrature"),
                        number("Log evidence"),
                        number("Collinearity"),
@@ -129,14 +131,19 @@ std::string sampler_section(const CalibrationReport& report) {
   for (const CaseReport& result : report.cases) {
     const std::string difference =
         result.grid_difference ? significant(*result.grid_difference, 2, pretty) + "\u00a0sd" : "\u2013";
-    cases.rows.push_back({{text(result.name)},
-                          number(fmt::format("{}\u00a0\u00d7\u00a0{}", result.chains, result.draws)),
-                          {result.converged ? "yes" : "<strong>no</strong>"},
-                          number(std::to_string(result.divergences)),
-                          number(difference),
-                          number(format_with_error(result.log_evidence, result.log_evidence_error, "", pretty)),
-                          number(significant(result.collinearity, 3, pretty)),
-                          number(significant(result.fisher_condition, 3, pretty))});
+    cases.rows.push_back(
+        {{text(result.name)},
+         number(fmt::format("{}\u00a0\u00d7\u00a0{}", result.chains, result.draws)),
+         {result.converged ? "yes" : "<strong>no</strong>"},
+         {text(result.sampler)},
+         number(std::to_string(result.divergences)),
+         number(std::isfinite(result.energy_fraction) ? significant(result.energy_fraction, 2, pretty) : "\u2013"),
+         number(difference),
+         number(std::isfinite(result.log_evidence)
+                    ? format_with_error(result.log_evidence, result.log_evidence_error, "", pretty)
+                    : "\u2013"),
+         number(significant(result.collinearity, 3, pretty)),
+         number(significant(result.fisher_condition, 3, pretty))});
     bool first = true;
     for (const ParameterReport& parameter : result.parameters) {
       const auto count = [](double ess) { return std::isfinite(ess) ? fmt::format("{:.0f}", ess) : "not available"; };

@@ -105,6 +105,11 @@ std::string fit_and_data(const CaseReport& result) {
         "case.</p>\n",
         joined(result.linked), result.linked.size() == 1 ? "its" : "their");
   }
+  if (!result.cuts.empty())
+    out += fmt::format(
+        "<p>Cut: <strong>{}</strong>. That posterior is taken as it is: the observations of this case do not change "
+        "it.</p>\n",
+        joined(result.cuts));
   return out;
 }
 
@@ -171,6 +176,22 @@ std::string predictive_part(const CaseReport& result, const std::string& id, con
                context);
   }
   return out + predictive_table(result, context.options.rows_shown_openly);
+}
+
+std::string discrepancy_part(const CaseReport& result, const std::string& id, const Context& context) {
+  if (result.discrepancies.empty()) return {};
+  std::string out =
+      "<h3>Discrepancy</h3>\n<p>A process over the controls that stands for what no parameter value explains. It "
+      "competes with the parameters: what it takes, they need not explain, and they become less certain.</p>\n";
+  for (std::size_t i = 0; i < result.discrepancies.size(); ++i) {
+    const DiscrepancyBand& band = result.discrepancies[i];
+    out += figure(discrepancy_figure(result, band, fmt::format("{}-discrepancy-{}", id, i + 1)),
+                  fmt::format("{} ({}): {:.0f}\u00a0% of the spread of the observations about the model is put down to "
+                              "the discrepancy.",
+                              text(band.output), text(band.observation_set), 100.0 * band.share),
+                  context);
+  }
+  return out;
 }
 
 std::string equivalent_table(const CaseReport& result, const TradedPair& traded) {
@@ -278,8 +299,8 @@ std::string case_section(const CaseReport& result, std::size_t index, const Cont
   const std::string id = case_id(index, result);
   return fmt::format("<section id=\"{}\">\n<h2>Case {}</h2>\n", id, text(result.name)) + verdict_words(result) +
          parameter_table(result) + nuisance_table(result) + fit_and_data(result) +
-         predictive_part(result, id, context) + joint_part(result, id, context) + profile_part(result, id, context) +
-         "</section>\n";
+         predictive_part(result, id, context) + discrepancy_part(result, id, context) +
+         joint_part(result, id, context) + profile_part(result, id, context) + "</section>\n";
 }
 
 }  // namespace uq::page

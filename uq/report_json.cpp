@@ -94,6 +94,19 @@ Json nuisance_json(const NuisanceReport& nuisance) {
           {"prior", {{"mean", number(nuisance.prior_mean)}, {"sd", number(nuisance.prior_sd)}}}};
 }
 
+Json discrepancy_json(const DiscrepancyBand& band) {
+  return {{"observation_set", band.observation_set},
+          {"output", band.output},
+          {"unit", band.unit},
+          {"control", band.control},
+          {"control_unit", band.control_unit},
+          {"share", number(band.share)},
+          {"x", numbers(band.x)},
+          {"mean", numbers(band.mean)},
+          {"q05", numbers(band.q05)},
+          {"q95", numbers(band.q95)}};
+}
+
 Json traded_json(const TradedPair& traded) {
   Json points = Json::array();
   for (const auto& point : traded.equivalent) points.push_back(numbers(point));
@@ -138,9 +151,14 @@ Json case_json(const CaseReport& result) {
       {"observed_notes", result.observed_notes},
       {"linked", result.linked},
       {"warnings", result.warnings},
-      {"nuisances", Json::array()}};
+      {"nuisances", Json::array()},
+      {"discrepancies", Json::array()},
+      {"cuts", result.cuts},
+      {"sampler", result.sampler},
+      {"energy_fraction", number(result.energy_fraction)}};
   for (const auto& parameter : result.parameters) json["parameters"].push_back(parameter_json(result, parameter));
   for (const auto& nuisance : result.nuisances) json["nuisances"].push_back(nuisance_json(nuisance));
+  for (const auto& band : result.discrepancies) json["discrepancies"].push_back(discrepancy_json(band));
   for (const auto& row : result.correlation) json["correlation"].push_back(numbers(row));
   for (const auto& traded : result.traded) json["traded"].push_back(traded_json(traded));
   for (const auto& point : result.predictive) json["predictive"].push_back(predictive_json(point));

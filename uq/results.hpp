@@ -2,6 +2,7 @@
 // What a calibration found, as plain data: made by uq/calibrate.cpp, written by uq/report_json.cpp, uq/report_html.cpp.
 // Values of parameters, controls and outputs are in the study's units (Parameter::unit and so on), not SI: this is the
 // reader's side of the border.
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -56,6 +57,13 @@ struct NuisanceReport {
   double rhat = 0.0, ess_bulk = 0.0, ess_tail = 0.0;
 };
 
+/// What a case's discrepancy process makes of one observation set, against its first control.
+struct DiscrepancyBand {
+  std::string output, unit, control, control_unit, observation_set;
+  double share = 0.0;  ///< of the spread of the data about the model, 0 to 1
+  std::vector<double> x, mean, q05, q95;
+};
+
 /// A pair whose values are traded against each other.
 struct TradedPair {
   std::string first, second;
@@ -103,6 +111,11 @@ struct CaseReport {
   std::string finding, consequence, remedy;
   std::vector<std::string> warnings;  ///< first lines of the report
   std::vector<NuisanceReport> nuisances;
+  std::vector<DiscrepancyBand> discrepancies;
+  std::vector<std::string> cuts;  ///< "friction from zirconia-800": taken without feedback
+  std::string sampler;            ///< "mixture", "nuts", "cut"
+  double energy_fraction = std::numeric_limits<double>::quiet_NaN();  ///< smallest of the chains (E-BFMI); NaN where
+                                                                      ///< the sampler has no energy
 };
 
 /// How the verdict changes when the measurement error is another one.
