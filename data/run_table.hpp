@@ -17,7 +17,7 @@ struct Column {
 struct RunRow {
   std::string material;                 ///< "" in a study without materials
   std::vector<double> inputs;           ///< SI: parameters, then controls, in the table's column order
-  std::vector<double> outputs;          ///< SI
+  std::vector<double> outputs;          ///< SI; NaN: the run has no such output
   std::vector<double> standard_errors;  ///< SI, of the outputs' means
   std::uint64_t seed = 0;               ///< of the run's random streams
   std::string settings;                 ///< hash of every setting that is not an input; "" for another code's runs
@@ -42,7 +42,8 @@ std::string row_key(const RunRow& row);
 /// Rows of `first`, then those of `second` whose key is not there yet.
 RunTable merge(const RunTable& first, const RunTable& second);
 
-/// Reads .h5 or .csv with the study's columns, in any column order. CSV rows with NaN or an empty cell are left out and
+/// Reads .h5 or .csv with the study's columns, in any column order. CSV rows with NaN or an empty cell among the
+/// inputs, or in every output, are left out; one that lacks some of the outputs (NaN in the row) is kept. Both are
 /// named in `left_out`. Throws InputError: 66 missing file; 65 truncated, missing column, text for a number
 /// (file:line).
 struct TableRead {

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
@@ -102,14 +103,24 @@ std::string read_material(const Csv& csv, const CsvRow& row, const std::optional
                            fmt::format("the study has '{}'", fmt::join(names, "', '"))});
 }
 
-/// The first column of a row in which a number is missing or not finite.
-std::optional<std::size_t> not_finite(const Csv& csv, const CsvRow& row, const Columns& at) {
-  for (const auto* columns : {&at.inputs, &at.outputs, &at.errors}) {
-    for (const std::size_t column : *columns) {
-      if (!std::isfinite(csv.number(row, column))) return column;
+/// Columns of a row in which a number is missing or not finite.
+struct Missing {
+  std::optional<std::size_t> input;  ///< the first: the row is of no use
+  std::vector<std::size_t> outputs;  ///< value or standard error, one per output: the row lacks these
+};
+
+Missing not_finite(const Csv& csv, const CsvRow& row, const Columns& at) {
+  Missing missing;
+  for (const std::size_t column : at.inputs)
+    if (!missing.input && !std::isfinite(csv.number(row, column))) missing.input = column;
+  for (std::size_t i = 0; i < at.outputs.size(); ++i) {
+    if (!std::isfinite(csv.number(row, at.outputs[i]))) {
+      missing.outputs.push_back(at.outputs[i]);
+    } else if (!std::isfinite(csv.number(row, at.errors[i]))) {
+      missing.outputs.push_back(at.errors[i]);
     }
   }
-  return {};
+  return missing;
 }
 
 }  // namespace
@@ -127,12 +138,18 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
   for (const Column& column : table.parameters) input_units.push_back(&column.unit);
   for (const Column& column : table.controls) input_units.push_back(&column.unit);
   for (const CsvRow& line : csv.rows) {
-    if (const auto missing = not_finite(csv, line, at)) {
-      const std::string& field = line.fields[*missing];
-      result.left_out.push_back(fmt::format("{}: {}, the row is left out", csv.place(line, *missing),
-                                            field.empty() ? "is empty" : fmt::format("is {}", field)));
+    const Missing missing = not_finite(csv, line, at);
+    const auto shown = [&](std::size_t column) {
+      const std::string& field = line.fields[column];
+      return fmt::format("{}: {}", csv.place(line, column), field.empty() ? "is empty" : fmt::format("is {}", field));
+    };
+    if (missing.input || missing.outputs.size() == at.outputs.size()) {
+      result.left_out.push_back(shown(missing.input ? *missing.input : missing.outputs.front()) +
+                                ", the row is left out");
       continue;
     }
+    for (const std::size_t column : missing.outputs)
+      result.left_out.push_back(shown(column) + ", the row counts for the other outputs only");
     RunRow row;
     row.material = read_material(csv, line, at.material, study);
     for (std::size_t i = 0; i < at.inputs.size(); ++i)
@@ -141,6 +158,11 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
       const Unit& unit = table.outputs[i].unit;
       Unit difference = unit;
       difference.offset = 0.0;
+      if (!std::isfinite(csv.number(line, at.outputs[i])) || !std::isfinite(csv.number(line, at.errors[i]))) {
+        row.outputs.push_back(std::numeric_limits<double>::quiet_NaN());
+        row.standard_errors.push_back(std::numeric_limits<double>::quiet_NaN());
+        continue;
+      }
       row.outputs.push_back(to_si(line.fields[at.outputs[i]], unit));
       row.standard_errors.push_back(to_si(line.fields[at.errors[i]], difference));
       if (row.standard_errors.back() < 0.0) {

@@ -92,6 +92,7 @@ struct Training {
   int runs = 64;                  ///< per material
   double standard_error = 0.02;   ///< wanted relative standard error of the first output
   std::string table;              ///< file of rows that come with the study, absolute path; empty if none
+  std::string low;                ///< rows of a cheaper level of the model under the table's, absolute path; or empty
   std::string engine = "demcal";  ///< "demcal", or "none" for a study on another code's runs
   std::string place;
 };

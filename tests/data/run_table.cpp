@@ -1,6 +1,7 @@
 #include "data/run_table.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "data/hdf5.hpp"
 #include "data/random.hpp"
@@ -93,6 +94,35 @@ TEST_CASE("rows with NaN or an empty cell are left out and named") {
   REQUIRE(read.left_out.size() == 2);
   CHECK(read.left_out[0].find("t.csv:2: torque: is nan, the row is left out") != std::string::npos);
   CHECK(read.left_out[1].find("t.csv:4: cohesion: is empty, the row is left out") != std::string::npos);
+}
+
+TEST_CASE("a row that lacks one of several outputs is kept for the others, through either file") {
+  const TemporaryFolder folder;
+  data::Study study = study_of(folder);
+  study.outputs.push_back({.name = "flow", .unit = data::parse_unit("g/s"), .place = {}});
+  const auto path = folder.write("t.csv", header + ",flow,flow_se\n0.4,4,60,20,nan,0.1,3,0.2\n0.4,4,60,20,8,0.1,3,\n" +
+                                              "0.4,4,60,20,8,0.1,3,0.2\n0.4,4,60,20,,,nan,nan\n");
+  const data::TableRead read = data::read_table(path, study);
+  REQUIRE(read.table.rows.size() == 3);
+  CHECK(std::isnan(read.table.rows[0].outputs[0]));
+  CHECK(read.table.rows[0].outputs[1] == Approx(3e-3));
+  CHECK(std::isnan(read.table.rows[1].outputs[1]));
+  REQUIRE(read.left_out.size() == 3);
+  CHECK(read.left_out[0].find("t.csv:2: torque: is nan, the row counts for the other outputs only") !=
+        std::string::npos);
+  CHECK(read.left_out[1].find("t.csv:3: flow_se: is empty") != std::string::npos);
+  CHECK(read.left_out[2].find("t.csv:5") != std::string::npos);
+
+  const std::string again = folder.write("again.csv", ""), stored = folder.write("again.h5", "");
+  data::write_table_csv(again, read.table, study);
+  data::write_table_hdf5(stored, read.table, study);
+  for (const std::string& file : {again, stored}) {
+    const data::RunTable back = data::read_table(file, study).table;
+    REQUIRE(back.rows.size() == 3);
+    CHECK(std::isnan(back.rows[0].outputs[0]));
+    CHECK(back.rows[0].outputs[1] == read.table.rows[0].outputs[1]);
+    CHECK(back.rows[2].outputs == read.table.rows[2].outputs);
+  }
 }
 
 TEST_CASE("what is wrong with a table in CSV is named with line and column") {
