@@ -6,6 +6,7 @@
 
 #include "data/random.hpp"
 #include "surrogate/design.hpp"
+#include "surrogate/verdict.hpp"
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -71,6 +72,47 @@ TEST_CASE("three runs are too few to say anything") {
   const TrainingSet training = runs_of(smooth, 3, 2, 0.01, 7);
   const FitOptions options{.mean = MeanBasis::constant};
   CHECK(validate(training, options, fit(training, options)).verdict == SurrogateVerdict::unusable);
+}
+
+TEST_CASE("jitter, a bound and a maximisation that did not converge are each said, and make no good surrogate") {
+  FitDiagnostics met;
+  met.converged = false;
+  met.jitter = 3e-11;
+  met.bound_hits = {{"signal", true, 300.0, false}, {"nugget", false, 1e-5, true}};
+  const std::vector<std::string> notes = fit_notes(met);
+  REQUIRE(notes.size() == 4);
+  CHECK_THAT(notes[0], Catch::Contains("did not converge"));
+  CHECK_THAT(notes[1], Catch::Contains("jitter of 3.0e-11"));
+  CHECK_THAT(notes[2], Catch::Contains("signal is on its upper bound, 300"));
+  CHECK_THAT(notes[3], Catch::Contains("no run-to-run scatter"));
+
+  // Numbers of a good validation, so that only the fit's own trouble counts.
+  Validation numbers;
+  numbers.runs = 40;
+  numbers.coverage_held_out.observed = {0.5, 0.9, 0.95};
+  numbers.q2_attainable = numbers.q2_function = 0.99;
+  numbers.mahalanobis_probability = 0.5;
+  FitDiagnostics clean;
+  clean.converged = true;
+  CHECK(judge(numbers, 40, clean, {}) == SurrogateVerdict::good);
+  CHECK(judge(numbers, 40, met, {}) == SurrogateVerdict::caution);
+  met.converged = true;
+  CHECK(judge(numbers, 40, met, {}) == SurrogateVerdict::caution);  // the signal's bound
+  met.bound_hits.erase(met.bound_hits.begin());
+  CHECK(judge(numbers, 40, met, {}) == SurrogateVerdict::good);
+}
+
+TEST_CASE("two runs of an exact code almost at one point need jitter, and the fit says how much") {
+  TrainingSet training{scrambled_sobol(12, 2, 4), VectorXd(12), {}};
+  training.x.row(1) = training.x.row(0);
+  training.x(1, 0) += 1e-9;
+  for (int i = 0; i < 12; ++i) training.y[i] = 1.0 + training.x(i, 0);
+  HyperParameters hyper;
+  hyper.length_scales = Eigen::Vector2d(20.0, 20.0);
+  hyper.signal_sd = 1.0;
+  const GaussianProcess process = condition(training, {.kernel = Kernel::squared_exponential}, hyper);
+  CHECK(process.diagnostics().jitter > 0.0);
+  CHECK_THAT(fit_notes(process.diagnostics()).at(0), Catch::Contains("jitter"));
 }
 
 TEST_CASE("pivoted errors are a whitening: uncorrelated, and their squares add up to the Mahalanobis distance") {
