@@ -88,7 +88,9 @@ TEST_CASE("the functions to learn have their published values") {
 }
 
 TEST_CASE("Branin, Hartmann-3, the borehole and Ishigami's function are learnt") {
-  // Bounds on Q2 with ten runs or so per input and twice that for the wavy ones; kernels smooth as the functions are.
+  // Bounds on Q2 with ten runs or so per input, more for the wavy ones; kernels smooth as the functions are. Ishigami's
+  // sin^2 has four half-waves over its range, which 150 points (5.3 per axis) hardly see: with these scikit-learn 1.2.1
+  // reaches 0.944 to 0.954 on the same model (ours 0.942), with 256 0.986 to 0.987.
   const FitOptions smooth{.kernel = Kernel::squared_exponential, .starts = 3};
   CHECK(learnt_q2(branin, 2, 40, smooth) > 0.999);
   CHECK(learnt_q2(hartmann3, 3, 100, {.starts = 3}) > 0.97);
