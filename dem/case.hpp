@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "dem/laws.hpp"
+
 namespace dem {
 
 /// The horizontal auger slice: shaft and helical blade, turning about +x in an open U-trough; periodic along x.
@@ -32,24 +34,42 @@ enum class HamakerOf { simulation, original };        ///< whether `hamaker` is 
 enum class FrictionCap { net, repulsion, thornton };  ///< options (a), (b), (c) of the Coulomb limit
 enum class DashpotTension { allowed, clamped };       ///< whether elastic + damping force may pull
 
-/// Linear spring-dashpot, tangential spring with Coulomb slider, van der Waals attraction (dem/contact_law.hpp).
+enum class Cohesion { van_der_waals, dmt };  ///< what attracts beside the normal law; `jkr` brings its own
+
+/// The contact law (dem/contact_law.hpp). What a wall has of its own follows the grains' when not set.
 struct Contact {
-  double stiffness = 100.0;              ///< N/m, grain-grain
-  std::optional<double> wall_stiffness;  ///< N/m, follows stiffness when not set
-  double restitution = 0.7;              ///< of a head-on collision without attraction, tension allowed; walls too
-  double tangential_ratio = 2.0 / 7.0;   ///< kt / k
-  double tangential_damping = 0.5;       ///< tangential dashpot / normal dashpot
-  double friction = 0.4;                 ///< Coulomb coefficient, grain-grain
-  std::optional<double> wall_friction;   ///< follows friction when not set
+  NormalLaw normal = NormalLaw::linear;
+  std::optional<TangentialLaw> tangential;  ///< follows normal: linear, or mindlin with hertz and jkr
+  ResistanceLaw resistance = ResistanceLaw::none;
+  double stiffness = 100.0;                  ///< N/m, linear, grain-grain
+  std::optional<double> wall_stiffness;      ///< N/m
+  double young_modulus = 5e6;                ///< Pa, of a grain: hertz and jkr
+  double poisson_ratio = 0.25;               ///< of grains and walls
+  std::optional<double> wall_young_modulus;  ///< Pa; may be infinite
+  double restitution = 0.7;                  ///< of a head-on collision without attraction, tension allowed
+  std::optional<double> wall_restitution;
+  double tangential_ratio = 2.0 / 7.0;  ///< kt / k, linear
+  double tangential_damping = 0.5;      ///< tangential dashpot / normal dashpot
+  double friction = 0.4;                ///< Coulomb coefficient, grain-grain
+  std::optional<double> wall_friction;
   DashpotTension tension = DashpotTension::allowed;
   FrictionCap cap = FrictionCap::repulsion;
+  double rolling_friction = 0.0;  ///< rolling torque at most this times R* times the cap's load
+  std::optional<double> wall_rolling_friction;
+  double twisting_friction = 0.0;              ///< alike, for the torque about the normal
+  double rolling_stiffness_ratio = 2.0 / 7.0;  ///< rolling spring / normal stiffness (hertz: at 1 % overlap)
+  double rolling_damping = 0.3;                ///< fraction of critical
+  Cohesion cohesion = Cohesion::van_der_waals;
   double hamaker = 0.0;                ///< J, H* (or H with hamaker_of = original)
-  std::optional<double> wall_hamaker;  ///< J, follows hamaker when not set
+  std::optional<double> wall_hamaker;  ///< J
   HamakerOf hamaker_of = HamakerOf::simulation;
   LengthScale length_scale = LengthScale::diameter;
   WallAttraction wall_attraction = WallAttraction::as_grains;
-  double minimum_separation = 1.5e-9;  ///< m, h_min of eq. (1); constant attraction below it and in contact
-  double cut_off = 100e-9;             ///< m, no attraction beyond
+  double minimum_separation = 1.5e-9;           ///< m, h_min of eq. (1); constant attraction below it and in contact
+  double cut_off = 100e-9;                      ///< m, no attraction beyond
+  double work_of_adhesion = 0.0;                ///< J/m2, w = 2 gamma of equal materials: jkr and dmt
+  std::optional<double> wall_work_of_adhesion;  ///< J/m2
+  std::optional<double> true_stiffness;         ///< N/m (linear) of the real grain: attraction scaled by sqrt(k / it)
 };
 
 struct RunControl {

@@ -9,29 +9,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-template <bool Clamped, class Attraction>
-LinearLaw<Clamped, Attraction> make_law(const Contact& c, double stiffness, double friction, double reduced_mass,
-                                        Attraction attraction) {
-  LinearLaw<Clamped, Attraction> law;
-  const double damping = 2.0 * damping_ratio(c.restitution) * std::sqrt(stiffness * reduced_mass);
-  law.normal = {stiffness, damping};
-  law.tangential = {c.tangential_ratio * stiffness, c.tangential_damping * damping, friction};
-  law.attraction = attraction;
-  law.cap_weight = c.cap == FrictionCap::net ? -1.0 : c.cap == FrictionCap::repulsion ? 0.0 : 1.0;
-  return law;
-}
-
-template <class Attraction>
-Laws make_pair(const Case& c, const Derived& d, Attraction grain, Attraction wall) {
-  const Contact& k = c.contact;
-  if (k.tension == DashpotTension::clamped) {
-    return {make_law<true>(k, k.stiffness, k.friction, 0.5 * d.mass, grain),
-            make_law<true>(k, d.wall_stiffness, d.wall_friction, d.mass, wall)};
-  }
-  return {make_law<false>(k, k.stiffness, k.friction, 0.5 * d.mass, grain),
-          make_law<false>(k, d.wall_stiffness, d.wall_friction, d.mass, wall)};
-}
-
 double wall_factor(const Contact& k) { return k.wall_attraction == WallAttraction::derjaguin ? 2.0 : 1.0; }
 
 }  // namespace
@@ -71,14 +48,63 @@ Derived derive(const Case& c) {
   return d;
 }
 
-Laws make_laws(const Case& c) {
+BedCoefficients make_bed(const Case& c, std::size_t bodies) {
   const Derived d = derive(c);
   const Contact& k = c.contact;
-  if (d.hamaker == 0.0 && d.wall_hamaker == 0.0) return make_pair(c, d, NoAttraction{}, NoAttraction{});
-  const auto part = [&](double hamaker) {
-    return VanDerWaals{hamaker * d.length_scale / 12.0, k.minimum_separation, k.cut_off};
-  };
-  return make_pair(c, d, part(d.hamaker), part(wall_factor(k) * d.wall_hamaker));
+  PairCoefficients grain;
+  grain.stiffness = k.stiffness;
+  const double flexible = (1.0 - k.poisson_ratio * k.poisson_ratio) / k.young_modulus;
+  const double shearing = 2.0 * (2.0 - k.poisson_ratio) * (1.0 + k.poisson_ratio) / k.young_modulus;
+  grain.young_modulus = 1.0 / (2.0 * flexible);
+  grain.shear_modulus = 1.0 / (2.0 * shearing);
+  grain.damping_ratio = damping_ratio(k.restitution);
+  grain.tension = k.tension == DashpotTension::allowed;
+  grain.tangential_stiffness = k.tangential_ratio * k.stiffness;
+  grain.tangential_damping = k.tangential_damping;
+  grain.friction = k.friction;
+  grain.cap_weight = k.cap == FrictionCap::net ? -1.0 : k.cap == FrictionCap::repulsion ? 0.0 : 1.0;
+  grain.rolling_friction = k.rolling_friction;
+  grain.twisting_friction = k.twisting_friction;
+  grain.rolling_damping = k.rolling_damping;
+  grain.adhesion = k.work_of_adhesion;
+  PairCoefficients wall = grain;
+  const double wall_modulus = k.wall_young_modulus.value_or(k.young_modulus);
+  wall.young_modulus = 1.0 / (flexible * (1.0 + k.young_modulus / wall_modulus));
+  wall.shear_modulus = 1.0 / (shearing * (1.0 + k.young_modulus / wall_modulus));
+  wall.stiffness = d.wall_stiffness;
+  wall.tangential_stiffness = k.tangential_ratio * d.wall_stiffness;
+  wall.damping_ratio = damping_ratio(k.wall_restitution.value_or(k.restitution));
+  wall.friction = d.wall_friction;
+  wall.rolling_friction = k.wall_rolling_friction.value_or(k.rolling_friction);
+  wall.adhesion = k.wall_work_of_adhesion.value_or(k.work_of_adhesion);
+
+  const double radius = 0.5 * c.material.diameter;
+  const bool hertzian = k.normal != NormalLaw::linear;
+  for (auto [pair, reduced] : {std::pair{&grain, 0.5 * radius}, std::pair{&wall, radius}}) {
+    // The tangent of the Hertz law at an overlap of 1 % of the radius.
+    const double normal = hertzian ? 2.0 * pair->young_modulus * std::sqrt(reduced * 0.01 * radius) : pair->stiffness;
+    pair->rolling_stiffness = k.rolling_stiffness_ratio * normal;
+    if (k.cohesion == Cohesion::dmt) {
+      pair->pull_off = 2.0 * pi * pair->adhesion;
+    } else {
+      pair->pull_off = (pair == &grain ? d.pull_off : d.wall_pull_off) / reduced;
+      pair->minimum_separation = k.minimum_separation;
+      pair->cut_off = k.cut_off;
+    }
+    if (k.true_stiffness) pair->pull_off *= std::sqrt(pair->stiffness / *k.true_stiffness);
+  }
+
+  BedCoefficients bed;
+  bed.choice.normal = k.normal;
+  bed.choice.tangential = k.tangential.value_or(hertzian ? TangentialLaw::mindlin : TangentialLaw::linear);
+  bed.choice.resistance = k.resistance;
+  const bool attracts = k.normal != NormalLaw::jkr && (grain.pull_off > 0.0 || wall.pull_off > 0.0);
+  bed.choice.attraction = attracts ? AttractionLaw::short_range : AttractionLaw::none;
+  bed.grain = {grain};
+  bed.wall.assign(bodies, wall);
+  bed.equal_mass = d.mass;
+  bed.equal_radius = radius;
+  return bed;
 }
 
 }  // namespace dem

@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "dem/case.hpp"
-#include "dem/simulation.hpp"
+#include "dem/laws.hpp"
 
 namespace dem {
 
@@ -30,11 +30,8 @@ struct Derived {
 
 Derived derive(const Case& c);
 
-/// The laws with the coefficients of this case.
-struct Laws {
-  AnyLaw grain, wall;
-};
-Laws make_laws(const Case& c);
+/// The coefficients of this case, for spheres and a number of bodies alike.
+BedCoefficients make_bed(const Case& c, std::size_t bodies);
 
 /// zeta of a linear spring-dashpot with dashpot tension for a restitution in (0, 1].
 double damping_ratio(double restitution);

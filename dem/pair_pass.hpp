@@ -1,118 +1,204 @@
 #pragma once
-// The pair forces of a run of particles, in three stages: slots in range are compressed into a list of hits; hits are
-// evaluated `lanes` at a time, their data gathered into arrays over which plain loops run that the compiler
-// vectorises; results are handed out in slot order. Every operation is elementwise, so the instruction set does not
-// change a bit.
-#include <cmath>
+// The pair forces of a run of pairs, in two stages: the pairs in range are compressed into a list of hits; hits are
+// then evaluated as many at a time as a register has lanes.
 #include <cstdint>
 #include <vector>
 
+#include "dem/contact_law.hpp"
 #include "dem/state.hpp"
 
 namespace dem {
 
-/// Four doubles moved and added as one; lowered to what the instruction set has.
-typedef double Four __attribute__((vector_size(32), may_alias));
-inline const Four& four(const double& first) { return reinterpret_cast<const Four&>(first); }
-inline Four& four(double& first) { return reinterpret_cast<Four&>(first); }
+/// Sums over the contacts of one step.
+struct PairSums {
+  double virial = 0.0;         ///< J, sum of push * distance of the centres
+  double dissipated = 0.0;     ///< J in this step
+  std::uint64_t contacts = 0;  ///< pairs that touch
+  std::uint64_t deep = 0;      ///< contacts whose overlap is more than 10 % of a radius
+  double max_overlap = 0.0;    ///< of the mean radius of the two
+};
 
 struct PairView {
   const PositionRow* position;
   const MotionRow* motion;
-  const std::uint32_t* first;
-  const std::uint32_t* partner;
+  const Pair* pair;  ///< readable `ahead` + lanes beyond the last
+  const std::uint32_t* partner_load;
   std::uint8_t* in_range;
-  VectorRow* spring;
-  const VectorRow* image;  ///< [27]
-  double time_step;        ///< s
-  double range;            ///< m, of the attraction
+  VectorRow* history;
+  LoadRow* load;
+  double time_step;  ///< s
+  double range;      ///< m, of the laws beyond touching
 };
 
-struct Hit {
-  std::uint32_t slot, i;
-};
+/// Laws of the pairs of a bed: one for all where spheres are equal, else a table over both materials.
+template <class Law, bool Uniform>
+struct PairLaws {
+  const Law* table;  ///< materials x materials
+  int materials;
+  double mass, radius;  ///< reduced, of the one kind of pair
 
-inline constexpr int lanes = 16;
-
-/// Contacts under way: rows of four (x, y, z and padding) where whole rows are read or written, else plain arrays.
-struct alignas(64) Lanes {
-  double apart[lanes][4], velocity[lanes][4], roll[lanes][4], spring[lanes][4];  // roll: r_i spin_i + r_j spin_j
-  double force[lanes][4], moment[lanes][4];                                      // on i; torque is -arm moment on both
-  double sum[lanes], push[lanes], distance[lanes], arm[lanes];                   // sum of radii; arm / radius
-};
-
-/// `deliver(slot, i, j, lanes, k)` is called for each slot in range of particles [begin, end), in slot order.
-template <class Law, class Deliver>
-void pair_pass(Law law, PairView v, std::size_t begin, std::size_t end, Deliver&& deliver) {
-  thread_local std::vector<Hit> hits;
-  hits.resize(v.first[end] - v.first[begin] + lanes);
-  Hit* const list = hits.data();
-  std::size_t count = 0;
-  for (std::size_t i = begin; i < end; ++i) {
-    const PositionRow a = v.position[i];
-    const std::uint32_t last = v.first[i + 1];
-    for (std::uint32_t slot = v.first[i]; slot < last; ++slot) {
-      const std::uint32_t p = v.partner[slot];
-      const PositionRow& b = v.position[p & partner_mask];
-      const Vec3 apart = a.at - b.at - v.image[p >> image_shift].v;
-      const double reach = a.radius + b.radius + v.range;
-      const bool near = dot(apart, apart) < reach * reach;
-      // The flag of the step before rides in the top bit: a spring starts from nothing.
-      list[count] = {slot | (static_cast<std::uint32_t>(v.in_range[slot]) << 31), static_cast<std::uint32_t>(i)};
-      v.in_range[slot] = near;
-      count += near;
-    }
+  double each_radius() const { return 2.0 * radius; }
+  auto at_all() const {
+    if constexpr (Uniform)
+      return table->at(mass, radius);
+    else
+      return 0;
   }
-  for (std::size_t k = count; k < (count + lanes - 1) / lanes * lanes; ++k) list[k] = list[count - 1];
+};
 
-  Lanes l;
-  for (std::size_t base = 0; base < count; base += lanes) {
-    for (int k = 0; k < lanes; ++k) {
-      const Hit hit = list[base + k];
-      const std::uint32_t slot = hit.slot & 0x7fffffffu, p = v.partner[slot], j = p & partner_mask;
-      const PositionRow &a = v.position[hit.i], &b = v.position[j];
-      const MotionRow &ma = v.motion[hit.i], &mb = v.motion[j];
-      four(l.apart[k][0]) = four(a.at.x) - four(b.at.x) - four(v.image[p >> image_shift].v.x);
-      four(l.velocity[k][0]) = four(ma.velocity.x) - four(mb.velocity.x);
-      four(l.roll[k][0]) = a.radius * four(ma.spin.x) + b.radius * four(mb.spin.x);
-      const double keep = static_cast<double>(hit.slot >> 31);
-      four(l.spring[k][0]) = keep * four(v.spring[slot].v.x);
-      l.sum[k] = a.radius + b.radius;
-    }
-    for (int k = 0; k < lanes; ++k) {
-      const Vec3 apart{l.apart[k][0], l.apart[k][1], l.apart[k][2]};
-      const double d = length(apart);
-      const Vec3 n = (1.0 / d) * apart;
-      const double arm = d / l.sum[k];  // arms r_i d / (r_i + r_j): to the contact point, and together the distance
-      const Vec3 surface_velocity = Vec3{l.velocity[k][0], l.velocity[k][1], l.velocity[k][2]} -
-                                    arm * cross(Vec3{l.roll[k][0], l.roll[k][1], l.roll[k][2]}, n);
-      const ContactForce c =
-          law(n, l.sum[k] - d, surface_velocity, {l.spring[k][0], l.spring[k][1], l.spring[k][2]}, v.time_step);
-      const Vec3 moment = cross(n, c.tangential);
-      l.force[k][0] = c.push * n.x + c.tangential.x;
-      l.force[k][1] = c.push * n.y + c.tangential.y;
-      l.force[k][2] = c.push * n.z + c.tangential.z;
-      l.force[k][3] = 0.0;
-      l.moment[k][0] = moment.x;
-      l.moment[k][1] = moment.y;
-      l.moment[k][2] = moment.z;
-      l.moment[k][3] = 0.0;
-      l.spring[k][0] = c.spring.x;
-      l.spring[k][1] = c.spring.y;
-      l.spring[k][2] = c.spring.z;
-      l.spring[k][3] = 0.0;
-      l.push[k] = c.push;
-      l.distance[k] = d;
-      l.arm[k] = arm;
-    }
-    const int used = count - base < lanes ? static_cast<int>(count - base) : lanes;
+inline constexpr std::uint32_t hit_batch = 512;  ///< pairs looked at before their hits are evaluated
+inline constexpr std::uint32_t ahead = 24;       ///< pairs whose rows are asked for in advance
+
+/// x_i - x_j, and r_i + r_j.
+inline Four with_sum_of_radii(const PositionRow& a, const PositionRow& b) {
+  typedef long long Bits __attribute__((vector_size(32)));
+  const Bits sign = reinterpret_cast<Bits>(Four{0.0, 0.0, 0.0, -0.0});
+  return four(a.at.x) - reinterpret_cast<Four>(reinterpret_cast<Bits>(four(b.at.x)) ^ sign);
+}
+
+/// Slots of [begin, end) that are in range, or were the step before and have a history to give up.
+[[gnu::flatten]] inline std::uint32_t find_hits(const PairView& v, std::uint32_t begin, std::uint32_t end,
+                                                std::uint32_t* hits) {
+  std::uint32_t count = 0;
+  const auto look = [&](std::uint32_t base, int used) {
+    const Pair* const p = v.pair + base;
+    const LaneRows apart = transposed([&](int k) { return with_sum_of_radii(v.position[p[k].i], v.position[p[k].j]); });
+    for (int k = 0; k < lanes; ++k) __builtin_prefetch(&v.position[p[k + ahead].j]);
+    const Lane reach = apart.w + v.range;
+    const unsigned near = bits(dot(apart.v, apart.v) < reach * reach);
     for (int k = 0; k < used; ++k) {
-      const Hit hit = list[base + k];
-      const std::uint32_t slot = hit.slot & 0x7fffffffu;
-      four(v.spring[slot].v.x) = four(l.spring[k][0]);
-      deliver(slot, hit.i, v.partner[slot] & partner_mask, l, k);
+      const std::uint32_t slot = base + k, is = (near >> k) & 1u;
+      hits[count] = slot;
+      count += is | v.in_range[slot];
+      v.in_range[slot] = static_cast<std::uint8_t>(is);
+    }
+  };
+  std::uint32_t base = begin;
+  for (; base + lanes <= end; base += lanes) look(base, lanes);
+  if (base < end) look(base, static_cast<int>(end - base));
+  return count;
+}
+
+template <class Law, bool Uniform>
+[[gnu::flatten]] void pair_pass(const PairLaws<Law, Uniform>& laws, const PairView& v, std::uint32_t begin,
+                                std::uint32_t end, PairSums& sums) {
+  constexpr int rows = Law::history_rows;
+  constexpr bool turning = Law::Resistance::present;
+  const auto one = laws.at_all();
+  Lane virial = 0.0, dissipated = 0.0, max_overlap = 0.0;
+  std::uint64_t contacts = 0, deep = 0;
+  std::uint32_t hits[hit_batch + lanes];
+  for (std::uint32_t from = begin; from < end; from += hit_batch) {
+    const std::uint32_t count = find_hits(v, from, std::min(end, from + hit_batch), hits);
+    if (count == 0) continue;
+    for (int k = 0; k < lanes; ++k) hits[count + k] = hits[count - 1];
+    for (std::uint32_t base = 0; base < count; base += lanes) {
+      const std::uint32_t* const slot = hits + base;
+      Pair p[lanes];
+      for (int k = 0; k < lanes; ++k) p[k] = v.pair[slot[k]];
+      const auto velocity = [&](std::uint32_t row) -> Four { return four(v.motion[row].velocity.x); };
+      const auto spin = [&](std::uint32_t row) -> Four { return four(v.motion[row].spin.x); };
+      const LaneRows apart =
+          transposed([&](int k) { return with_sum_of_radii(v.position[p[k].i], v.position[p[k].j]); });
+      const LaneRows moving = transposed([&](int k) { return velocity(p[k].i) - velocity(p[k].j); });
+      // Surfaces roll by r_i w_i + r_j w_j.
+      const LaneRows roll = transposed([&](int k) -> Four {
+        if constexpr (Uniform)
+          return laws.each_radius() * (spin(p[k].i) + spin(p[k].j));
+        else
+          return v.position[p[k].i].radius * spin(p[k].i) + v.position[p[k].j].radius * spin(p[k].j);
+      });
+      const auto radius = [&](auto of) -> Lane {
+        if constexpr (Uniform)
+          return laws.each_radius();
+        else
+          return Lane([&](auto k) { return v.position[of(p[k])].radius; });
+      };
+      const Lane radius_i = radius([](Pair q) { return q.i; }), radius_j = radius([](Pair q) { return q.j; });
+      const auto remembered = [&](int row) {
+        return transposed([&](int k) -> Four { return four(v.history[slot[k] * rows + row].v.x); });
+      };
+      const LaneRows slip = remembered(0);
+      History<Lane> history{slip.v, slip.w, {}, Lane(0.0)};
+      if constexpr (rows == 2) {
+        const LaneRows second = remembered(1);
+        history.roll = second.v;
+        history.twist = second.w;
+      }
+
+      const Lane distance = norm(apart.v), sum = Uniform ? Lane(2.0 * laws.each_radius()) : apart.w;
+      Meeting<Lane> m;
+      m.normal = Lane(1.0 / distance) * apart.v;
+      m.overlap = sum - distance;
+      const Lane arm =
+          Uniform ? Lane(distance * (0.5 / laws.each_radius()))
+                  : Lane(distance / sum);  // arms r_i d / (r_i + r_j): to the contact point, and together the distance
+      m.velocity = moving.v - arm * cross(roll.v, m.normal);
+      if constexpr (turning) m.spin = transposed([&](int k) { return spin(p[k].i) - spin(p[k].j); }).v;
+
+      const auto react = [&]() -> Reaction<Lane> {
+        if constexpr (Uniform) {
+          return one(m, history, v.time_step);
+        } else {
+          const Lane mass_i([&](auto k) { return v.motion[p[k].i].mass; });
+          const Lane mass_j([&](auto k) { return v.motion[p[k].j].mass; });
+          const auto law_of = [&](int k) {
+            const int a = static_cast<int>(v.motion[p[k].i].material), b = static_cast<int>(v.motion[p[k].j].material);
+            return laws.table + a * laws.materials + b;
+          };
+          return Law::at_lanes(law_of, Lane(mass_i * mass_j / (mass_i + mass_j)), Lane(radius_i * radius_j / sum))(
+              m, history, v.time_step);
+        }
+      };
+      const Reaction<Lane> r = react();
+
+      Four force[lanes], torque_i[lanes], torque_j[lanes], kept[lanes], kept_too[lanes];
+      const Vector3<Lane> moment = arm * cross(m.normal, r.tangential);
+      untransposed({r.push * m.normal + r.tangential, Lane(0.0)}, force);
+      untransposed({r.history.slip, r.history.radius}, kept);
+      if constexpr (rows == 2) untransposed({r.history.roll, r.history.twist}, kept_too);
+      if constexpr (turning) {
+        untransposed({r.couple - radius_i * moment, Lane(0.0)}, torque_i);
+        untransposed({-r.couple - radius_j * moment, Lane(0.0)}, torque_j);
+      } else if constexpr (Uniform) {
+        untransposed({radius_i * moment, Lane(0.0)}, torque_i);
+      } else {
+        untransposed({radius_i * moment, Lane(0.0)}, torque_i);
+        untransposed({radius_j * moment, Lane(0.0)}, torque_j);
+      }
+      const int used = static_cast<int>(std::min<std::uint32_t>(lanes, count - base));
+      for (int k = 0; k < used; ++k) {
+        LoadRow &a = v.load[p[k].i], &b = v.load[v.partner_load[slot[k]]];
+        four(v.history[slot[k] * rows].v.x) = kept[k];
+        if constexpr (rows == 2) four(v.history[slot[k] * rows + 1].v.x) = kept_too[k];
+        four(a.force.x) += force[k];
+        four(b.force.x) -= force[k];
+        if constexpr (turning) {
+          four(a.torque.x) += torque_i[k];
+          four(b.torque.x) += torque_j[k];
+        } else {
+          four(a.torque.x) -= torque_i[k];
+          four(b.torque.x) -= Uniform ? torque_i[k] : torque_j[k];
+        }
+      }
+
+      const unsigned lane_mask = (1u << used) - 1u;
+      const Lane valid = first_lanes(used);
+      virial += valid * (r.push * distance);
+      dissipated += valid * r.dissipated;
+      const Lane relative = Uniform ? Lane(m.overlap * (1.0 / laws.each_radius())) : Lane(2.0 * m.overlap / sum);
+      max_overlap = larger(max_overlap, relative);
+      contacts += static_cast<unsigned>(std::popcount(bits(r.touch > 0.0) & lane_mask));
+      deep += static_cast<unsigned>(std::popcount(bits(relative > 0.1) & lane_mask));
     }
   }
+  for (int k = 0; k < lanes; ++k) {
+    sums.virial += virial[k];
+    sums.dissipated += dissipated[k];
+    sums.max_overlap = larger(sums.max_overlap, static_cast<double>(max_overlap[k]));
+  }
+  sums.contacts += contacts;
+  sums.deep += deep;
 }
 
 }  // namespace dem

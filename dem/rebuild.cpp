@@ -1,49 +1,19 @@
-// Rebuild of the neighbour list: wrap, sort along the cells, find pairs within reach + skin, carry each pair's spring
-// over to its new slot, and list the features of the bodies near each sphere.
+// Rebuild of the neighbour list: wrap, sort along the cells, make the ghosts of periodic faces, find pairs within reach
+// + skin, carry each pair's history over to its new slot, cut chunks and halos, and list the features of the bodies
+// near each sphere.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "dem/pair_pass.hpp"
 #include "dem/simulation.hpp"
 
 namespace dem {
 namespace {
 
-struct Cells {
-  Vec3 low, size;  ///< m, origin and edge lengths of one cell
-  int n[3] = {1, 1, 1};
-  std::size_t total() const { return static_cast<std::size_t>(n[0]) * n[1] * n[2]; }
-};
-
-/// Cells at least `reach` long; no more of them than a few per particle, so that a large empty box costs nothing.
-Cells make_cells(const Setup& setup, double reach) {
-  Cells c;
-  c.low = setup.low;
-  const Vec3 size = setup.high - setup.low;
-  const double length[3] = {size.x, size.y, size.z};
-  const std::size_t most = std::max<std::size_t>(32768, 16 * setup.spheres.position.size());
-  for (double edge = reach;; edge *= 1.25) {
-    for (int a = 0; a < 3; ++a) c.n[a] = std::clamp(static_cast<int>(length[a] / edge), 1, 512);
-    if (c.total() <= most) break;
-  }
-  c.size = {size.x / c.n[0], size.y / c.n[1], size.z / c.n[2]};
-  return c;
-}
-
 int cell_along(double x, double low, double size, int n) {
   return std::clamp(static_cast<int>((x - low) / size), 0, n - 1);
-}
-
-/// A cell index put back into the box, and the image it came from: 0 below, 1 inside, 2 above.
-struct Wrapped {
-  int cell;
-  std::uint32_t image;
-};
-Wrapped wrap_cell(int cell, int n) {
-  if (cell < 0) return {cell + n, 0};
-  if (cell >= n) return {cell - n, 2};
-  return {cell, 1};
 }
 
 double wrapped(double x, double low, double high, bool periodic) {
@@ -56,8 +26,8 @@ double wrapped(double x, double low, double high, bool periodic) {
 
 template <class Row>
 void permute(std::vector<Row>& rows, const std::vector<std::uint32_t>& order) {
-  std::vector<Row> sorted(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) sorted[i] = rows[order[i]];
+  std::vector<Row> sorted(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = rows[order[i]];
   rows.swap(sorted);
 }
 
@@ -66,7 +36,7 @@ void permute(std::vector<Row>& rows, const std::vector<std::uint32_t>& order) {
 /// Puts every particle back into the box along periodic axes; a particle outside ends the run.
 void Simulation::wrap() {
   const Vec3 low = setup_.low, high = setup_.high;
-  for (std::size_t i = 0; i < state_.position.size(); ++i) {
+  for (std::size_t i = 0; i < state_.particles(); ++i) {
     Vec3& p = state_.position[i].at;
     const Vec3 v = state_.half[i].velocity;
     if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(dot(v, v)))) {
@@ -96,105 +66,233 @@ void Simulation::wrap() {
 }
 
 void Simulation::rebuild() {
-  State& s = state_;
   wrap();
-  const std::size_t n = s.position.size();
-  const double reach = 2.0 * setup_.spheres.radius + range_ + setup_.skin;
-  const Cells cells = make_cells(setup_, reach);
-
-  // Sort along the cells (counting sort, stable).
-  std::vector<std::uint32_t> cell(n), start(cells.total() + 1, 0), order(n), place(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 p = s.position[i].at;
-    const int x = cell_along(p.x, cells.low.x, cells.size.x, cells.n[0]),
-              y = cell_along(p.y, cells.low.y, cells.size.y, cells.n[1]),
-              z = cell_along(p.z, cells.low.z, cells.size.z, cells.n[2]);
-    cell[i] = static_cast<std::uint32_t>((static_cast<std::size_t>(x) * cells.n[1] + y) * cells.n[2] + z);
-    ++start[cell[i] + 1];
-  }
-  for (std::size_t c = 1; c < start.size(); ++c) start[c] += start[c - 1];
-  std::vector<std::uint32_t> fill(start.begin(), start.end() - 1);
-  for (std::size_t i = 0; i < n; ++i) place[i] = fill[cell[i]]++;
-  for (std::size_t i = 0; i < n; ++i) order[place[i]] = static_cast<std::uint32_t>(i);
-  permute(s.position, order);
-  permute(s.motion, order);
-  permute(s.half, order);
-  permute(s.load, order);
-  permute(s.id, order);
-  permute(cell, order);
-  s.reference.resize(n);
-  for (std::size_t i = 0; i < n; ++i) s.reference[i] = s.position[i].at;
-
-  // Pairs, with the springs of the old list.
-  std::vector<std::uint32_t> first(n + 1, 0), partner;
-  std::vector<std::uint8_t> in_range;
-  std::vector<VectorRow> spring;
-  partner.reserve(s.partner.size() + n);
-  in_range.reserve(s.partner.size() + n);
-  spring.reserve(s.partner.size() + n);
-  const auto take_over = [&](std::uint32_t i, std::uint32_t j) {
-    const std::uint32_t a = order[i], b = order[j], low = std::min(a, b), high = std::max(a, b);
-    for (std::uint32_t slot = s.first[low]; slot < s.first[low + 1]; ++slot) {
-      if ((s.partner[slot] & partner_mask) != high) continue;
-      in_range.push_back(s.in_range[slot]);
-      const double sign = s.in_range[slot] ? (a < b ? 1.0 : -1.0) : 0.0;
-      spring.push_back({sign * s.spring[slot].v});
-      return;
-    }
-    in_range.push_back(0);
-    spring.push_back({});
-  };
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const Vec3 p = s.position[i].at;
-    const auto c = static_cast<int>(cell[i]);
-    const int cx = c / (cells.n[1] * cells.n[2]), cy = c / cells.n[2] % cells.n[1], cz = c % cells.n[2];
-    // The cells around, as runs of cells that follow each other along z; only partners after i.
-    const auto visit = [&](std::size_t from, std::size_t to, std::uint32_t code) {
-      const std::uint32_t last = start[to + 1];
-      const Vec3 from_image = p - image_[code].v;
-      for (std::uint32_t j = std::max(start[from], i + 1); j < last; ++j) {
-        const Vec3 apart = from_image - s.position[j].at;
-        if (dot(apart, apart) >= reach * reach) continue;
-        partner.push_back(j | code << image_shift);
-        take_over(i, j);
-      }
-    };
-    const int z_low = std::max(cz - 1, 0), z_high = std::min(cz + 1, cells.n[2] - 1);
-    const bool wrap_low = setup_.periodic[2] && cz == 0, wrap_high = setup_.periodic[2] && cz == cells.n[2] - 1;
-    for (int dx = -1; dx <= 1; ++dx) {
-      const Wrapped x = wrap_cell(cx + dx, cells.n[0]);
-      if (x.image != 1 && !setup_.periodic[0]) continue;
-      for (int dy = -1; dy <= 1; ++dy) {
-        const Wrapped y = wrap_cell(cy + dy, cells.n[1]);
-        if (y.image != 1 && !setup_.periodic[1]) continue;
-        const std::size_t column = (static_cast<std::size_t>(x.cell) * cells.n[1] + y.cell) * cells.n[2];
-        if (start[column + cells.n[2]] <= i + 1) continue;
-        const std::uint32_t code = x.image + 3 * y.image;
-        visit(column + z_low, column + z_high, code + 9);
-        if (wrap_low) visit(column + cells.n[2] - 1, column + cells.n[2] - 1, code);
-        if (wrap_high) visit(column, column, code + 18);
-      }
-    }
-    first[i + 1] = static_cast<std::uint32_t>(partner.size());
-  }
-  s.first.swap(first);
-  s.partner.swap(partner);
-  s.in_range.swap(in_range);
-  s.spring.swap(spring);
-  list_walls(place);
-  index_partners();
+  sort();
+  make_ghosts();
+  list_pairs();
+  cut_chunks();
+  list_walls();
   max_displacement2_ = 0.0;
-  ++s.rebuilds;
+  ++state_.rebuilds;
 }
 
-/// Features near each sphere, and the springs of the contacts it had; `place` maps old to new particle indices.
-void Simulation::list_walls(const std::vector<std::uint32_t>& place) {
+/// Sorts the particles along the cells (counting sort, stable). Cells are at least as long as a pair's reach and cover
+/// the ghosts; no more of them than a few per particle, so that a large empty box costs nothing.
+void Simulation::sort() {
   State& s = state_;
-  const std::size_t n = s.position.size(), bodies = setup_.bodies.size(), blocks = (n + block_size - 1) / block_size;
+  const std::size_t n = s.particles();
+  const double reach = 2.0 * largest_radius_ + range_ + setup_.skin;
+  const auto margin = [&](int axis) { return setup_.periodic[axis] ? reach : 0.0; };
+  const Vec3 around{margin(0), margin(1), margin(2)};
+  cells_.low = setup_.low - around;
+  const Vec3 size = setup_.high + around - cells_.low;
+  const double extent[3] = {size.x, size.y, size.z};
+  const std::size_t most = std::max<std::size_t>(32768, 4 * n);
+  for (double edge = reach;; edge *= 1.25) {
+    for (int a = 0; a < 3; ++a) cells_.n[a] = std::clamp(static_cast<int>(extent[a] / edge), 1, 1024);
+    if (cells_.total() <= most) break;
+  }
+  cells_.size = {size.x / cells_.n[0], size.y / cells_.n[1], size.z / cells_.n[2]};
+
+  cells_.of.resize(n);
+  cells_.first.assign(cells_.total() + 1, 0);
+  for (std::size_t i = 0; i < n; ++i) ++cells_.first[(cells_.of[i] = cell_of(s.position[i].at)) + 1];
+  for (std::size_t c = 1; c < cells_.first.size(); ++c) cells_.first[c] += cells_.first[c - 1];
+  order_.resize(n);
+  place_.resize(n);
+  std::vector<std::uint32_t> fill(cells_.first.begin(), cells_.first.end() - 1);
+  for (std::size_t i = 0; i < n; ++i) place_[i] = fill[cells_.of[i]]++;
+  for (std::size_t i = 0; i < n; ++i) order_[place_[i]] = static_cast<std::uint32_t>(i);
+  permute(s.position, order_);
+  permute(s.motion, order_);
+  permute(s.half, order_);
+  permute(s.id, order_);
+  permute(cells_.of, order_);
+  s.reference.resize(n);
+  for (std::size_t i = 0; i < n; ++i) s.reference[i] = s.position[i].at;
+}
+
+std::uint32_t Simulation::cell_of(Vec3 p) const {
+  const Cells& c = cells_;
+  const int x = cell_along(p.x, c.low.x, c.size.x, c.n[0]), y = cell_along(p.y, c.low.y, c.size.y, c.n[1]),
+            z = cell_along(p.z, c.low.z, c.size.z, c.n[2]);
+  return static_cast<std::uint32_t>((static_cast<std::size_t>(x) * c.n[1] + y) * c.n[2] + z);
+}
+
+/// Each pair across a periodic face is met once: a particle has ghosts for the lexicographically positive shifts only.
+void Simulation::make_ghosts() {
+  State& s = state_;
+  const std::size_t n = s.particles();
+  const double reach = 2.0 * largest_radius_ + range_ + setup_.skin;
+  const Vec3 size = setup_.high - setup_.low;
+  old_ghosts_.swap(s.ghost);
+  s.ghost.clear();
+  const auto near = [&](double x, double low, double high, int shift) {
+    return shift == 0 || (shift > 0 ? x - low < reach : high - x < reach);
+  };
+  std::vector<std::uint32_t> cell;
+  for (int sx = 0; sx <= (setup_.periodic[0] ? 1 : 0); ++sx) {
+    for (int sy = setup_.periodic[1] ? -1 : 0; sy <= (setup_.periodic[1] ? 1 : 0); ++sy) {
+      for (int sz = setup_.periodic[2] ? -1 : 0; sz <= (setup_.periodic[2] ? 1 : 0); ++sz) {
+        if (!(sx > 0 || (sx == 0 && (sy > 0 || (sy == 0 && sz > 0))))) continue;
+        const Vec3 shift{sx * size.x, sy * size.y, sz * size.z};
+        for (std::size_t i = 0; i < n; ++i) {
+          const Vec3 p = s.position[i].at;
+          if (near(p.x, setup_.low.x, setup_.high.x, sx) && near(p.y, setup_.low.y, setup_.high.y, sy) &&
+              near(p.z, setup_.low.z, setup_.high.z, sz)) {
+            s.ghost.push_back({static_cast<std::uint32_t>(i), shift});
+            cell.push_back(cell_of(p + shift));
+          }
+        }
+      }
+    }
+  }
+  // Sorted along the cells, too.
+  cells_.ghost_first.assign(cells_.total() + 1, 0);
+  for (const std::uint32_t c : cell) ++cells_.ghost_first[c + 1];
+  for (std::size_t c = 1; c < cells_.ghost_first.size(); ++c) cells_.ghost_first[c] += cells_.ghost_first[c - 1];
+  std::vector<std::uint32_t> fill(cells_.ghost_first.begin(), cells_.ghost_first.end() - 1);
+  std::vector<Ghost> sorted(s.ghost.size());
+  for (std::size_t g = 0; g < s.ghost.size(); ++g) sorted[fill[cell[g]]++] = s.ghost[g];
+  s.ghost.swap(sorted);
+  s.position.resize(n + s.ghost.size());
+  s.motion.resize(n + s.ghost.size());
+  follow_owners();
+}
+
+/// Pairs within reach, with the history of the old list.
+void Simulation::list_pairs() {
+  State& s = state_;
+  const std::size_t n = s.particles();
+  const int rows = setup_.laws->history_rows();
+  const double beyond = range_ + setup_.skin;
+  std::vector<Pair> pair;
+  std::vector<std::uint32_t> first(n + 1, 0);
+  std::vector<std::uint8_t> in_range;
+  std::vector<VectorRow> history;
+  pair.reserve(s.pair.size() + n);
+  in_range.reserve(s.pair.size() + n);
+  history.reserve((s.pair.size() + n) * static_cast<std::size_t>(rows));
+  const bool any = !s.pair.empty();
+
+  // The old slot of the old pair (a, b), stored with a first.
+  constexpr std::uint32_t none = ~0u;
+  const auto old_slot = [&](std::uint32_t a, std::uint32_t b) {
+    for (std::uint32_t slot = s.pair_first[a]; slot < s.pair_first[a + 1]; ++slot) {
+      const std::uint32_t j = s.pair[slot].j;
+      if ((j < n ? j : old_ghosts_[j - n].owner) == b) return slot;
+    }
+    return none;
+  };
+  const auto take_over = [&](std::uint32_t i, std::uint32_t j) {
+    std::uint32_t slot = none;
+    double sign = 1.0;
+    if (any) {
+      const std::uint32_t a = order_[i], b = order_[j];
+      slot = old_slot(a, b);
+      if (slot == none) {
+        slot = old_slot(b, a);
+        sign = -1.0;
+      }
+    }
+    const bool known = slot != none && s.in_range[slot] != 0;
+    in_range.push_back(known ? 1 : 0);
+    for (int row = 0; row < rows; ++row) {
+      VectorRow h;
+      if (known) {
+        // Seen from the other sphere forces turn round; the contact radius (row 0) and the twist (row 1) do not.
+        h = s.history[slot * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row)];
+        h.v = sign * h.v;
+      }
+      history.push_back(h);
+    }
+  };
+
+  const int ny = cells_.n[1], nz = cells_.n[2];
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const PositionRow p = s.position[i];
+    const auto c = static_cast<int>(cells_.of[i]);
+    const int cx = c / (ny * nz), cy = c / nz % ny, cz = c % nz;
+    const int z_low = std::max(cz - 1, 0), z_high = std::min(cz + 1, nz - 1);
+    const auto look = [&](std::uint32_t from, std::uint32_t to) {
+      for (std::uint32_t j = from; j < to; ++j) {
+        const PositionRow& q = s.position[j];
+        const Vec3 apart = p.at - q.at;
+        const double reach = p.radius + q.radius + beyond;
+        if (dot(apart, apart) >= reach * reach) continue;
+        pair.push_back({i, j});
+        take_over(i, j < n ? j : s.ghost[j - n].owner);
+      }
+    };
+    // The cells around, as runs of cells that follow each other along z; particles after i, and all ghosts.
+    for (int x = std::max(cx - 1, 0); x <= std::min(cx + 1, cells_.n[0] - 1); ++x) {
+      for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, ny - 1); ++y) {
+        const std::size_t column = (static_cast<std::size_t>(x) * ny + y) * nz;
+        const std::size_t from = column + z_low, to = column + z_high + 1;
+        look(std::max(cells_.first[from], i + 1), cells_.first[to]);
+        const auto ghosts = static_cast<std::uint32_t>(n);
+        look(ghosts + cells_.ghost_first[from], ghosts + cells_.ghost_first[to]);
+      }
+    }
+    first[i + 1] = static_cast<std::uint32_t>(pair.size());
+  }
+  s.pair_first.swap(first);
+  s.pair.swap(pair);
+  s.in_range.swap(in_range);
+  s.history.swap(history);
+}
+
+/// Chunks of about a thousand particles, and what each does to particles of others.
+void Simulation::cut_chunks() {
+  State& s = state_;
+  const std::size_t n = s.particles(), chunks = std::clamp<std::size_t>(n / 1024, 1, 64);
+  s.chunk_first.clear();
+  s.chunk_pair.clear();
+  for (std::size_t c = 0; c <= chunks; ++c) {
+    s.chunk_first.push_back(static_cast<std::uint32_t>(n * c / chunks));
+    s.chunk_pair.push_back(s.pair_first[s.chunk_first.back()]);
+  }
+  const std::size_t pairs = s.chunk_pair.back();
+  s.pair.resize(pairs + ahead + 8);
+  s.partner_load.resize(pairs);
+  s.halo_owner.clear();
+  s.halo_part.assign(1, 0);
+  std::vector<std::uint32_t> foreign, entry(n);
+  for (std::size_t c = 0; c < chunks; ++c) {
+    const std::uint32_t begin = s.chunk_first[c], end = s.chunk_first[c + 1];
+    const auto owner = [&](std::uint32_t j) { return j < n ? j : s.ghost[j - n].owner; };
+    const auto at_home = [&](std::uint32_t j) { return j >= begin && j < end; };
+    foreign.clear();
+    for (std::uint32_t slot = s.chunk_pair[c]; slot < s.chunk_pair[c + 1]; ++slot) {
+      const std::uint32_t j = owner(s.pair[slot].j);
+      if (!at_home(j)) foreign.push_back(j);
+    }
+    std::sort(foreign.begin(), foreign.end());
+    foreign.erase(std::unique(foreign.begin(), foreign.end()), foreign.end());
+    for (std::size_t k = 0; k < foreign.size(); ++k)
+      entry[foreign[k]] = static_cast<std::uint32_t>(n + s.halo_owner.size() + k);
+    for (std::uint32_t slot = s.chunk_pair[c]; slot < s.chunk_pair[c + 1]; ++slot) {
+      const std::uint32_t j = owner(s.pair[slot].j);
+      s.partner_load[slot] = at_home(j) ? j : entry[j];
+    }
+    std::size_t k = 0;
+    for (std::size_t to = 0; to < chunks; ++to) {
+      while (k < foreign.size() && foreign[k] < s.chunk_first[to + 1]) ++k;
+      s.halo_part.push_back(static_cast<std::uint32_t>(s.halo_owner.size() + k));
+    }
+    s.halo_owner.insert(s.halo_owner.end(), foreign.begin(), foreign.end());
+  }
+  s.load.assign(n + s.halo_owner.size(), {});
+}
+
+/// Features near each sphere, and the memory of the contacts it had.
+void Simulation::list_walls() {
+  State& s = state_;
+  const std::size_t n = s.particles(), bodies = setup_.bodies.size();
   constexpr std::uint32_t none = ~0u;
   std::vector<std::uint32_t> old(n * bodies, none);
   for (std::size_t w = 0; w < s.wall.size(); ++w)
-    old[place[s.wall[w].particle] * bodies + s.wall[w].body] = static_cast<std::uint32_t>(w);
+    old[place_[s.wall[w].particle] * bodies + s.wall[w].body] = static_cast<std::uint32_t>(w);
   std::vector<Rotation> rotation(bodies);
   s.angle_at_rebuild.resize(bodies);
   for (std::size_t b = 0; b < bodies; ++b) {
@@ -205,46 +303,32 @@ void Simulation::list_walls(const std::vector<std::uint32_t>& place) {
   std::vector<NearFeature> near;
   s.features.clear();
   s.feature_gap.clear();
-  s.wall_first.assign(1, 0);
-  for (std::size_t i = 0; i < n; ++i) {
+  s.chunk_wall.assign(1, 0);
+  for (std::size_t c = 0; c < s.chunks(); ++c) {
     for (std::size_t b = 0; b < bodies; ++b) {
       const Vec3 point = setup_.bodies[b].axis_point;
-      const Vec3 in_body = point + rotate_back(rotation[b], s.position[i].at - point);
-      const std::size_t before = s.features.size();
-      const double touching = s.position[i].radius + range_;
-      find_features(surface_[b], in_body, touching + setup_.skin, near);
-      if (near.empty()) continue;
-      for (const NearFeature& f : near) {
-        s.features.push_back(f.feature);
-        s.feature_gap.push_back(f.distance - touching);
+      for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
+        const Vec3 in_body = point + rotate_back(rotation[b], s.position[i].at - point);
+        const std::size_t before = s.features.size();
+        const double touching = s.position[i].radius + range_;
+        find_features(surface_[b], in_body, touching + setup_.skin, near);
+        if (near.empty()) continue;
+        for (const NearFeature& f : near) {
+          s.features.push_back(f.feature);
+          s.feature_gap.push_back(f.distance - touching);
+        }
+        WallSlot slot;
+        if (old[i * bodies + b] != none) slot = s.wall[old[i * bodies + b]];
+        slot.particle = i;
+        slot.body = static_cast<std::uint32_t>(b);
+        slot.feature_first = static_cast<std::uint32_t>(before);
+        slot.feature_count = static_cast<std::uint32_t>(s.features.size() - before);
+        wall.push_back(slot);
       }
-      WallSlot slot;
-      if (old[i * bodies + b] != none) slot = s.wall[old[i * bodies + b]];
-      slot.particle = static_cast<std::uint32_t>(i);
-      slot.body = static_cast<std::uint32_t>(b);
-      slot.feature_first = static_cast<std::uint32_t>(before);
-      slot.feature_count = static_cast<std::uint32_t>(s.features.size() - before);
-      wall.push_back(slot);
+      s.chunk_wall.push_back(static_cast<std::uint32_t>(wall.size()));
     }
-    if ((i + 1) % block_size == 0 || i + 1 == n) s.wall_first.push_back(static_cast<std::uint32_t>(wall.size()));
   }
-  s.wall_first.resize(blocks + 1, static_cast<std::uint32_t>(wall.size()));
   s.wall.swap(wall);
-}
-
-/// For several threads: the slots in which each particle is the partner, ascending.
-void Simulation::index_partners() {
-  if (team_.size() == 1) return;
-  const State& s = state_;
-  const std::size_t n = s.position.size();
-  reverse_first_.assign(n + 1, 0);
-  for (const std::uint32_t p : s.partner) ++reverse_first_[(p & partner_mask) + 1];
-  for (std::size_t i = 0; i < n; ++i) reverse_first_[i + 1] += reverse_first_[i];
-  reverse_.resize(s.partner.size());
-  std::vector<std::uint32_t> fill(reverse_first_.begin(), reverse_first_.end() - 1);
-  for (std::uint32_t slot = 0; slot < s.partner.size(); ++slot) reverse_[fill[s.partner[slot] & partner_mask]++] = slot;
-  slot_load_.resize(s.partner.size());
-  wall_load_.resize(s.wall.size());
 }
 
 }  // namespace dem

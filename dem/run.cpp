@@ -96,8 +96,7 @@ void take_sample(const Case& c, const Derived& d, const Simulation& simulation, 
                  Checkpoint& now) {
   const double n = static_cast<double>(now.under_way.steps), spheres = static_cast<double>(d.spheres);
   const double way = c.rig.angular_velocity > 0.0 ? -1.0 : 1.0;
-  double momentum = 0.0;
-  for (const MotionRow& m : simulation.state().motion) momentum += d.mass * m.velocity.x;
+  const double momentum = simulation.momentum().x;
   Series& s = now.series;
   s.time.push_back(static_cast<double>(turning_steps) * d.time_step);
   s.torque.push_back(way * now.under_way.torque / n);

@@ -14,7 +14,7 @@
 namespace dem {
 namespace {
 
-constexpr std::int64_t format = 1;
+constexpr std::int64_t format = 2;
 
 /// Calls visit(name, vector) for each vector of the state; rows are plain data.
 template <class AnyState, class Visit>
@@ -26,12 +26,18 @@ void each_vector(AnyState& s, Visit&& visit) {
   visit("load", s.load);
   visit("reference", s.reference);
   visit("id", s.id);
-  visit("first", s.first);
-  visit("partner", s.partner);
+  visit("ghost", s.ghost);
+  visit("pair", s.pair);
+  visit("pair_first", s.pair_first);
+  visit("partner_load", s.partner_load);
   visit("in_range", s.in_range);
-  visit("spring", s.spring);
+  visit("history", s.history);
+  visit("chunk_first", s.chunk_first);
+  visit("chunk_pair", s.chunk_pair);
+  visit("chunk_wall", s.chunk_wall);
+  visit("halo_owner", s.halo_owner);
+  visit("halo_part", s.halo_part);
   visit("wall", s.wall);
-  visit("wall_first", s.wall_first);
   visit("features", s.features);
   visit("feature_gap", s.feature_gap);
   visit("angle_at_rebuild", s.angle_at_rebuild);
@@ -50,6 +56,7 @@ void each_series(AnySeries& s, Visit&& visit) {
 void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
   group.set("step", static_cast<std::int64_t>(now.state.step));
   group.set("rebuilds", static_cast<std::int64_t>(now.state.rebuilds));
+  group.set("dissipated_J", now.state.dissipated);
   each_vector(now.state, [&](const char* name, const auto& rows) {
     const std::size_t row = sizeof(rows[0]);
     std::vector<std::uint8_t> bytes(rows.size() * row);
@@ -65,6 +72,7 @@ Checkpoint read_checkpoint(const data::Hdf5Group& group) {
   Checkpoint now;
   now.state.step = static_cast<std::uint64_t>(group.integer("step"));
   now.state.rebuilds = static_cast<std::uint64_t>(group.integer("rebuilds"));
+  now.state.dissipated = group.number("dissipated_J");
   each_vector(now.state, [&](const char* name, auto& rows) {
     const auto bytes = group.read<std::uint8_t>(name);
     const std::size_t row = sizeof(rows[0]);

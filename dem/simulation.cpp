@@ -4,82 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
-#include "dem/pair_pass.hpp"
+#include "dem/lanes.hpp"
 
 namespace dem {
 namespace {
 
-std::size_t blocks_of(std::size_t particles) { return (particles + block_size - 1) / block_size; }
-
-struct Frame {
-  bool turned = false;  ///< else the rotation is none
-  Rotation rotation;
-  Vec3 point, spin;
-  double moved = 0.0;  ///< m, how far any point of the body came since the rebuild, at most
-
-  Vec3 to_lab(Vec3 a) const { return turned ? rotate(rotation, a) : a; }
-  Vec3 to_body(Vec3 a) const { return turned ? rotate_back(rotation, a) : a; }
-};
-
-/// Contacts of one sphere with one body: finds them, carries their springs over, returns the load on the sphere.
-template <class Law>
-LoadRow wall_contact(const Law& law, const Surface& surface, const Frame& frame, const State& s, WallSlot& slot,
-                     double time_step, StepSums& sums) {
-  const PositionRow& at = s.position[slot.particle];
-  LoadRow load;
-  // Features are sorted by their gap at the rebuild: those that the sphere and the body cannot have closed are not
-  // asked.
-  const double moved = length(at.at - s.reference[slot.particle]) + frame.moved + 1e-9 * at.radius;
-  const double* gap = s.feature_gap.data() + slot.feature_first;
-  std::uint32_t asked = 0;
-  while (asked < slot.feature_count && gap[asked] <= moved) ++asked;
-  if (asked == 0) {
-    slot.touching = 0;
-    return load;
-  }
-  const Vec3 arm_of_body = at.at - frame.point;
-  const Vec3 in_body = frame.point + frame.to_body(arm_of_body);
-  const Touches touches =
-      find_touches(surface, {s.features.data() + slot.feature_first, asked}, in_body, at.radius + law.range());
-  if (touches.count == 0) {
-    slot.touching = 0;
-    return load;
-  }
-  WallSpring kept[max_touches];
-  const MotionRow& motion = s.motion[slot.particle];
-  for (int t = 0; t < touches.count; ++t) {
-    const Touch& touch = touches.touch[t];
-    // The contact's history is that of the old contact whose normal is nearest.
-    Vec3 spring;
-    double best = merge_cosine;
-    for (std::uint32_t k = 0; k < slot.touching; ++k) {
-      const double cosine = dot(slot.contact[k].normal, touch.normal);
-      if (cosine > best) {
-        best = cosine;
-        spring = slot.contact[k].spring;
-      }
-    }
-    const Vec3 n = frame.to_lab(touch.normal);
-    const Vec3 arm = arm_of_body - touch.distance * n;  // from the axis point to the contact point
-    const double overlap = at.radius - touch.distance;
-    const Vec3 surface_velocity = motion.velocity - touch.distance * cross(motion.spin, n) - cross(frame.spin, arm);
-    const ContactForce c = law(n, overlap, surface_velocity, frame.to_lab(spring), time_step);
-    const Vec3 force = c.push * n + c.tangential;
-    load.force += force;
-    load.torque -= touch.distance * cross(n, c.tangential);
-    sums.body[slot.body].force -= force;
-    sums.body[slot.body].torque -= cross(arm, force);
-    kept[t] = {touch.normal, frame.to_body(c.spring)};
-    if (overlap > 0.0) ++sums.wall_contacts;
-    if (overlap > 0.1 * at.radius) ++sums.deep;
-    sums.max_overlap = std::max(sums.max_overlap, overlap / at.radius);
-  }
-  std::copy(kept, kept + touches.count, slot.contact);
-  slot.touching = static_cast<std::uint32_t>(touches.count);
-  return load;
+/// One for all, or one each.
+template <class T>
+T pick(const std::vector<T>& values, std::size_t i, T otherwise) {
+  return values.empty() ? otherwise : values.size() == 1 ? values[0] : values[i];
 }
 
 void add(StepSums& total, const StepSums& part) {
@@ -88,6 +23,8 @@ void add(StepSums& total, const StepSums& part) {
     total.body[b].torque += part.body[b].torque;
   }
   total.virial += part.virial;
+  total.dissipated += part.dissipated;
+  total.tool_work += part.tool_work;
   total.contacts += part.contacts;
   total.wall_contacts += part.wall_contacts;
   total.deep += part.deep;
@@ -98,50 +35,50 @@ void add(StepSums& total, const StepSums& part) {
 
 Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.threads) {
   const Spheres& given = setup_.spheres;
-  const double r = given.radius;
-  mass_ = given.density * 4.0 / 3.0 * std::numbers::pi * r * r * r;
-  inertia_ = 0.4 * mass_ * r * r;
-  range_ = std::visit([](const auto& a, const auto& b) { return std::max(a.range(), b.range()); }, setup_.grain,
-                      setup_.wall);
-  if (setup_.grain.index() != setup_.wall.index()) throw Fault("grain and wall laws must be of one kind");
+  const std::size_t n = given.position.size();
+  for (const double r : given.radius) largest_radius_ = std::max(largest_radius_, r);
+  range_ = setup_.laws->range(largest_radius_);
   if (setup_.bodies.size() > max_bodies) throw Fault(fmt::format("more than {} bodies", max_bodies));
-
-  const Vec3 size = setup_.high - setup_.low;
-  for (int k = 0; k < 27; ++k) image_[k].v = {(k % 3 - 1) * size.x, (k / 3 % 3 - 1) * size.y, (k / 9 - 1) * size.z};
   for (const Body& b : setup_.bodies) {
-    surface_.push_back(make_surface(b.mesh, r + range_ + setup_.skin));
+    surface_.push_back(make_surface(b.mesh, largest_radius_ + range_ + setup_.skin));
     double far = 0.0;
     for (const Vec3 v : b.mesh.vertices) far = std::max(far, length(cross(b.axis, v - b.axis_point)));
-    body_radius_.push_back(far + r);
+    body_radius_.push_back(far + largest_radius_);
     state_.turning.push_back({.angular_velocity = b.angular_velocity});
   }
 
-  const std::size_t n = given.position.size();
   for (std::size_t i = 0; i < n; ++i) {
+    const double r = pick(given.radius, i, 0.0);
+    const double mass = pick(given.density, i, 0.0) * 4.0 / 3.0 * std::numbers::pi * r * r * r;
     state_.position.push_back({given.position[i], r});
     MotionRow m;
     if (!given.velocity.empty()) m.velocity = given.velocity[i];
     if (!given.spin.empty()) m.spin = given.spin[i];
+    m.mass = mass;
+    m.material = pick(given.material, i, 0u);
     state_.motion.push_back(m);
+    const bool frozen = pick<std::uint8_t>(given.frozen, i, 0) != 0;
+    m.mass = frozen ? 0.0 : 1.0 / mass;
+    m.material = frozen ? 0.0 : 1.0 / (0.4 * mass * r * r);
+    state_.half.push_back(m);
     state_.id.push_back(static_cast<std::uint32_t>(i));
   }
-  state_.half = state_.motion;
   state_.load.resize(n);
-  state_.first.assign(n + 1, 0);
   rebuild();
   compute_forces();
   // The velocities given are those at time 0; the integrator wants them half a step earlier.
+  const double t = 0.5 * setup_.time_step;
   for (std::size_t i = 0; i < n; ++i) {
-    const double t = 0.5 * setup_.time_step;
-    state_.half[i].velocity = state_.motion[i].velocity - t * ((1.0 / mass_) * state_.load[i].force + setup_.gravity);
-    state_.half[i].spin = state_.motion[i].spin - (t / inertia_) * state_.load[i].torque;
+    MotionRow& half = state_.half[i];
+    if (half.mass == 0.0) continue;
+    half.velocity = state_.motion[i].velocity - t * (half.mass * state_.load[i].force + setup_.gravity);
+    half.spin = state_.motion[i].spin - (t * half.material) * state_.load[i].torque;
   }
 }
 
 void Simulation::restore(State state) {
   state_ = std::move(state);
   max_displacement2_ = 0.0;
-  index_partners();
 }
 
 double Simulation::angle(std::size_t body) const {
@@ -153,134 +90,101 @@ void Simulation::turn(std::size_t body, double angular_velocity) {
   state_.turning[body] = {angular_velocity, angle(body), state_.step};
 }
 
-template <class Law>
-void Simulation::contacts(const Law& grain, const Law& wall) {
-  State& s = state_;
-  const std::size_t n = s.position.size(), blocks = blocks_of(n);
-  std::array<Frame, max_bodies> frames;
-  for (std::size_t b = 0; b < setup_.bodies.size(); ++b) {
+std::vector<Frame> Simulation::frames() const {
+  std::vector<Frame> frames(setup_.bodies.size());
+  for (std::size_t b = 0; b < frames.size(); ++b) {
     const Body& body = setup_.bodies[b];
     const double turned = angle(b);
     if (turned != 0.0) {
       frames[b].turned = true;
       frames[b].rotation = rotation_about(body.axis, turned);
     }
-    frames[b].moved = std::abs(turned - s.angle_at_rebuild[b]) * body_radius_[b];
+    frames[b].moved = std::abs(turned - state_.angle_at_rebuild[b]) * body_radius_[b];
     frames[b].point = body.axis_point;
-    frames[b].spin = s.turning[b].angular_velocity * body.axis;
+    frames[b].spin = state_.turning[b].angular_velocity * body.axis;
   }
-  const PairView view{s.position.data(), s.motion.data(), s.first.data(),   s.partner.data(), s.in_range.data(),
-                      s.spring.data(),   image_.data(),   setup_.time_step, grain.range()};
-  block_sums_.assign(blocks, {});
-  const bool direct = team_.size() == 1;
+  return frames;
+}
 
-  const auto count_contact = [](StepSums& sums, const Lanes& l, int k) {
-    const double overlap = l.sum[k] - l.distance[k], relative = 2.0 * overlap / l.sum[k];
-    sums.virial += l.push[k] * l.distance[k];
-    sums.contacts += overlap > 0.0;
-    sums.deep += relative > 0.1;
-    sums.max_overlap = std::max(sums.max_overlap, relative);
-  };
-
-  // One thread adds each pair's load where it belongs at once. Several threads write it into the pair's slot, and each
-  // particle then adds its slots in the order in which the one thread would: as partner by ascending slot, then its
-  // own.
-  team_.for_each(blocks, [&](std::size_t block) {
-    StepSums& sums = block_sums_[block];
-    const std::size_t begin = block * block_size, end = std::min(n, begin + block_size);
-    if (direct) {
-      pair_pass(grain, view, begin, end, [&](std::uint32_t, std::uint32_t i, std::uint32_t j, const Lanes& l, int k) {
-        LoadRow &a = s.load[i], &b = s.load[j];
-        const Four force = four(l.force[k][0]), moment = l.arm[k] * four(l.moment[k][0]);
-        four(a.force.x) += force;
-        four(a.torque.x) -= s.position[i].radius * moment;
-        four(b.force.x) -= force;
-        four(b.torque.x) -= s.position[j].radius * moment;
-        count_contact(sums, l, k);
-      });
-    } else {
-      pair_pass(grain, view, begin, end,
-                [&](std::uint32_t slot, std::uint32_t i, std::uint32_t j, const Lanes& l, int k) {
-                  SlotLoad& to = slot_load_[slot];
-                  const Four moment = l.arm[k] * four(l.moment[k][0]);
-                  four(to.force.v.x) = four(l.force[k][0]);
-                  four(to.torque_i.v.x) = s.position[i].radius * moment;
-                  four(to.torque_j.v.x) = s.position[j].radius * moment;
-                  count_contact(sums, l, k);
-                });
-    }
-    for (std::uint32_t w = s.wall_first[block]; w < s.wall_first[block + 1]; ++w) {
-      WallSlot& slot = s.wall[w];
-      const LoadRow load = wall_contact(wall, surface_[slot.body], frames[slot.body], s, slot, setup_.time_step, sums);
-      if (slot.touching == 0) continue;
-      LoadRow& to = direct ? s.load[slot.particle] : wall_load_[w];
-      if (direct) {
-        to.force += load.force;
-        to.torque += load.torque;
-      } else {
-        to = load;
-      }
-    }
-  });
-  if (!direct) {
-    team_.for_each(blocks, [&](std::size_t block) {
-      const std::size_t begin = block * block_size, end = std::min(n, begin + block_size);
-      for (std::size_t p = begin; p < end; ++p) {
-        LoadRow& to = s.load[p];
-        for (std::uint32_t k = reverse_first_[p]; k < reverse_first_[p + 1]; ++k) {
-          const std::uint32_t slot = reverse_[k];
-          if (!s.in_range[slot]) continue;
-          to.force -= slot_load_[slot].force.v;
-          to.torque -= slot_load_[slot].torque_j.v;
-        }
-        for (std::uint32_t slot = s.first[p]; slot < s.first[p + 1]; ++slot) {
-          if (!s.in_range[slot]) continue;
-          to.force += slot_load_[slot].force.v;
-          to.torque -= slot_load_[slot].torque_i.v;
-        }
-      }
-      for (std::uint32_t w = s.wall_first[block]; w < s.wall_first[block + 1]; ++w) {
-        if (s.wall[w].touching == 0) continue;
-        s.load[s.wall[w].particle].force += wall_load_[w].force;
-        s.load[s.wall[w].particle].torque += wall_load_[w].torque;
-      }
-    });
-  }
-  sums_ = {};
-  for (const StepSums& part : block_sums_) add(sums_, part);
+Surroundings Simulation::around(const std::vector<Frame>& frames) const {
+  return {surface_, frames, setup_.time_step, range_};
 }
 
 void Simulation::compute_forces() {
-  std::visit([this](const auto& grain) { contacts(grain, std::get<std::decay_t<decltype(grain)>>(setup_.wall)); },
-             setup_.grain);
+  const std::vector<Frame> moving = frames();
+  const Surroundings surroundings = around(moving);
+  const std::size_t chunks = state_.chunks();
+  chunk_sums_.assign(chunks, {});
+  team_.for_each(chunks, [&](std::size_t c) { setup_.laws->chunk(state_, surroundings, c, chunk_sums_[c]); });
+  add_halos();
+  sums_ = {};
+  for (const StepSums& part : chunk_sums_) add(sums_, part);
+  state_.dissipated += sums_.dissipated;
+}
+
+/// Adds what each chunk did to others' particles, in the order of the chunks.
+void Simulation::add_halos() {
+  State& s = state_;
+  const std::size_t n = s.particles(), chunks = s.chunks();
+  team_.for_each(chunks, [&](std::size_t to) {
+    for (std::size_t from = 0; from < chunks; ++from) {
+      for (std::uint32_t h = s.halo_part[from * chunks + to]; h < s.halo_part[from * chunks + to + 1]; ++h) {
+        LoadRow &share = s.load[n + h], &load = s.load[s.halo_owner[h]];
+        load.force += share.force;
+        load.torque += share.torque;
+        share = {};
+      }
+    }
+  });
 }
 
 void Simulation::integrate() {
   State& s = state_;
-  const std::size_t n = s.position.size(), blocks = blocks_of(n);
-  const double dt = setup_.time_step, per_mass = dt / mass_, per_inertia = dt / inertia_;
-  const Vec3 fall = dt * setup_.gravity;
-  block_displacement2_.assign(blocks, 0.0);
-  team_.for_each(blocks, [&](std::size_t block) {
+  const double dt = setup_.time_step;
+  const std::size_t chunks = s.chunks();
+  chunk_displacement2_.assign(chunks, 0.0);
+  team_.for_each(chunks, [&](std::size_t c) {
+    const Four fall{dt * setup_.gravity.x, dt * setup_.gravity.y, dt * setup_.gravity.z, 0.0};
     double farthest = 0.0;
-    for (std::size_t i = block * block_size; i < std::min(n, (block + 1) * block_size); ++i) {
-      const Vec3 kick = per_mass * s.load[i].force + fall, twist = per_inertia * s.load[i].torque;
-      MotionRow& half = s.half[i];
-      half.velocity += kick;
-      half.spin += twist;
-      s.motion[i].velocity = half.velocity + 0.5 * kick;
-      s.motion[i].spin = half.spin + 0.5 * twist;
-      s.position[i].at += dt * half.velocity;
-      const Vec3 moved = s.position[i].at - s.reference[i];
+    for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
+      MotionRow &half = s.half[i], &motion = s.motion[i];
+      LoadRow& load = s.load[i];
+      // Whole rows at once: what rides in the fourth places (masses and the like) meets loads of zero there.
+      const double moves = half.mass > 0.0 ? 1.0 : 0.0;
+      const Four kick = (dt * half.mass) * four(load.force.x) + moves * fall;
+      const Four twist = (dt * half.material) * four(load.torque.x);
+      const Four velocity = four(half.velocity.x) + kick, spin = four(half.spin.x) + twist;
+      four(half.velocity.x) = velocity;
+      four(half.spin.x) = spin;
+      const double mass = motion.mass, material = motion.material;
+      four(motion.velocity.x) = velocity + 0.5 * kick;
+      four(motion.spin.x) = spin + 0.5 * twist;
+      motion.mass = mass;
+      motion.material = material;
+      Vec3& at = s.position[i].at;
+      at += (moves * dt) * half.velocity;
+      const Vec3 moved = at - s.reference[i];
       const double d2 = dot(moved, moved);
       farthest = d2 <= farthest ? farthest : d2;  // a NaN stays and forces a rebuild, which reports it
-      s.load[i].force = s.load[i].torque = Vec3{};
+      load = {};
     }
-    block_displacement2_[block] = farthest;
+    chunk_displacement2_[c] = farthest;
   });
   max_displacement2_ = 0.0;
-  for (const double d2 : block_displacement2_) max_displacement2_ = d2 <= max_displacement2_ ? max_displacement2_ : d2;
+  for (const double d2 : chunk_displacement2_) max_displacement2_ = d2 <= max_displacement2_ ? max_displacement2_ : d2;
   ++s.step;
+}
+
+/// Ghost rows are their owners', shifted.
+void Simulation::follow_owners() {
+  State& s = state_;
+  const std::size_t n = s.particles();
+  for (std::size_t g = 0; g < s.ghost.size(); ++g) {
+    const Ghost& ghost = s.ghost[g];
+    s.position[n + g] = s.position[ghost.owner];
+    s.position[n + g].at += ghost.shift;
+    s.motion[n + g] = s.motion[ghost.owner];
+  }
 }
 
 bool Simulation::list_is_stale() const {
@@ -294,29 +198,65 @@ bool Simulation::list_is_stale() const {
 
 void Simulation::step() {
   integrate();
-  if (list_is_stale()) rebuild();
+  if (list_is_stale())
+    rebuild();
+  else
+    follow_owners();
   compute_forces();
 }
 
 MotionRow Simulation::motion(std::size_t i) const {
   const double t = 0.5 * setup_.time_step;
-  MotionRow m = state_.half[i];
-  m.velocity += t * ((1.0 / mass_) * state_.load[i].force + setup_.gravity);
-  m.spin += (t / inertia_) * state_.load[i].torque;
+  const MotionRow& half = state_.half[i];
+  MotionRow m = state_.motion[i];
+  if (half.mass == 0.0) return m;
+  m.velocity = half.velocity + t * (half.mass * state_.load[i].force + setup_.gravity);
+  m.spin = half.spin + (t * half.material) * state_.load[i].torque;
   return m;
+}
+
+Energy Simulation::energy() const {
+  Energy e;
+  for (std::size_t i = 0; i < state_.particles(); ++i) {
+    const MotionRow m = motion(i);
+    const PositionRow& p = state_.position[i];
+    if (state_.half[i].mass == 0.0) continue;
+    e.translation += 0.5 * m.mass * dot(m.velocity, m.velocity);
+    e.rotation += 0.2 * m.mass * p.radius * p.radius * dot(m.spin, m.spin);
+    e.gravity -= m.mass * dot(setup_.gravity, p.at);
+  }
+  const std::vector<Frame> moving = frames();
+  const ContactEnergy contacts = setup_.laws->energy(state_, around(moving));
+  e.elastic = contacts.elastic;
+  e.attraction = contacts.attraction;
+  return e;
 }
 
 double Simulation::kinetic_energy() const {
   double sum = 0.0;
-  for (const MotionRow& m : state_.motion)
-    sum += 0.5 * mass_ * dot(m.velocity, m.velocity) + 0.5 * inertia_ * dot(m.spin, m.spin);
+  for (std::size_t i = 0; i < state_.particles(); ++i) {
+    const MotionRow& m = state_.motion[i];
+    const double r = state_.position[i].radius;
+    sum += 0.5 * m.mass * (dot(m.velocity, m.velocity) + 0.4 * r * r * dot(m.spin, m.spin));
+  }
   return sum;
 }
 
 Vec3 Simulation::momentum() const {
   Vec3 sum;
-  for (std::size_t i = 0; i < state_.half.size(); ++i) sum += mass_ * state_.half[i].velocity;
+  for (std::size_t i = 0; i < state_.particles(); ++i) sum += state_.motion[i].mass * state_.half[i].velocity;
   return sum;
+}
+
+double Simulation::bytes_per_particle() const {
+  const State& s = state_;
+  const auto size = [](const auto& rows) { return static_cast<double>(rows.capacity() * sizeof(rows[0])); };
+  const double total = size(s.position) + size(s.motion) + size(s.half) + size(s.load) + size(s.reference) +
+                       size(s.id) + size(s.ghost) + size(s.pair) + size(s.pair_first) + size(s.partner_load) +
+                       size(s.in_range) + size(s.history) + size(s.halo_owner) + size(s.wall) + size(s.features) +
+                       size(s.feature_gap) + size(cells_.of) + size(cells_.first) + size(cells_.ghost_first) +
+                       size(order_) + size(place_);
+  return total / static_cast<double>(std::max<std::size_t>(1, s.particles()));
 }
 
 }  // namespace dem

@@ -152,8 +152,8 @@ Setup make_slice(const Case& c, std::uint64_t seed, int threads) {
   s.low = {0.0, -side, -side};
   s.high = {length, side, top};
   s.periodic = {true, false, false};
-  s.spheres.radius = 0.5 * c.material.diameter;
-  s.spheres.density = c.material.density;
+  s.spheres.radius = {0.5 * c.material.diameter};
+  s.spheres.density = {c.material.density};
   s.spheres.position = std::move(packing.position);
   const Vec3 period{length, 0.0, 0.0};
   s.bodies.push_back({.name = "mixer",
@@ -166,9 +166,7 @@ Setup make_slice(const Case& c, std::uint64_t seed, int threads) {
                       .axis_point = {},
                       .axis = {1.0, 0.0, 0.0},
                       .angular_velocity = 0.0});
-  const Laws laws = make_laws(c);
-  s.grain = laws.grain;
-  s.wall = laws.wall;
+  s.laws = make_force_pass(make_bed(c, s.bodies.size()));
   s.gravity = {0.0, 0.0, -c.run.gravity};
   s.time_step = d.time_step;
   s.skin = d.skin;

@@ -2,9 +2,13 @@
 // The moving state of a simulation as plain rows and slots. Copying it is a checkpoint: with the setup it decides every
 // bit that follows.
 //
-// Particles are sorted along the cells of the neighbour list at each rebuild; `id` keeps who is who. The pair list is a
-// half list: slots first[i] .. first[i+1] belong to particle i, hold a partner j > i and the tangential spring of the
-// pair.
+// Particles are sorted along the cells of the neighbour list at each rebuild; `id` keeps who is who. Rows beyond the
+// particles are their images across periodic faces ("ghosts"). The pair list is a half list, sorted by its first
+// particle; a pair's history lives in its slot.
+//
+// Chunks. The particles are cut into chunks whose number depends on how many there are, never on the threads. A chunk's
+// pairs add to the loads of its own particles directly, and to a halo of its own for partners elsewhere and ghosts;
+// halos are then added to their owners in the order of the chunks. So any number of threads gives the same bits.
 #include <cstdint>
 #include <vector>
 
@@ -18,10 +22,10 @@ struct alignas(32) PositionRow {
   double radius = 0.0;  ///< m
 };
 struct alignas(64) MotionRow {
-  Vec3 velocity;  ///< m/s
-  double unused = 0.0;
-  Vec3 spin;  ///< rad/s
-  double unused_too = 0.0;
+  Vec3 velocity;          ///< m/s
+  double mass = 0.0;      ///< kg
+  Vec3 spin;              ///< rad/s
+  double material = 0.0;  ///< index into the tables of laws
 };
 struct alignas(64) LoadRow {
   Vec3 force;  ///< N
@@ -29,22 +33,28 @@ struct alignas(64) LoadRow {
   Vec3 torque;  ///< N m
   double unused_too = 0.0;
 };
-/// A vector padded to four lanes.
+/// A vector and a number, four lanes.
 struct alignas(32) VectorRow {
   Vec3 v;
-  double unused = 0.0;
+  double w = 0.0;
+};
+
+/// Two rows that may touch: i < j, or j a ghost.
+struct Pair {
+  std::uint32_t i = 0, j = 0;
 };
 
 /// One contact of a sphere with a body, kept in the body's frame so that it turns with the tool.
-struct WallSpring {
-  Vec3 normal, spring;
+struct WallMemory {
+  Vec3 normal;
+  VectorRow slip, roll;  ///< as the rows of a pair's history
 };
 /// A sphere near a body: the features it may touch until the next rebuild, and its contacts there.
 struct WallSlot {
   std::uint32_t particle = 0, body = 0;
   std::uint32_t feature_first = 0, feature_count = 0;  ///< into State::features
   std::uint32_t touching = 0;
-  WallSpring contact[max_touches];
+  WallMemory contact[max_touches];
 };
 
 /// How a body turns: angle = angle_then + angular_velocity (step - step_then) dt.
@@ -54,31 +64,45 @@ struct Turning {
   std::uint64_t step_then = 0;
 };
 
+/// A ghost row is its owner's, shifted.
+struct Ghost {
+  std::uint32_t owner = 0;
+  Vec3 shift;  ///< m
+};
+
 struct State {
   std::uint64_t step = 0;
   std::uint64_t rebuilds = 0;
+  double dissipated = 0.0;       ///< J, since the start
   std::vector<Turning> turning;  ///< per body
+  // particles, then ghosts
   std::vector<PositionRow> position;
   std::vector<MotionRow> motion;  ///< at the time of `position`: what contacts see
-  std::vector<MotionRow> half;    ///< half a step earlier: what is integrated
-  std::vector<LoadRow> load;      ///< without gravity
-  std::vector<Vec3> reference;    ///< position at the last rebuild
+  // particles
+  std::vector<MotionRow> half;  ///< half a step earlier: what is integrated; 1/mass and 1/inertia in place of the rest
+  std::vector<LoadRow> load;    ///< without gravity; beyond the particles, the halos
+  std::vector<Vec3> reference;  ///< position at the last rebuild
   std::vector<std::uint32_t> id;
+  std::vector<Ghost> ghost;
   // pairs
-  std::vector<std::uint32_t> first, partner;  ///< partner | image << 27
+  std::vector<Pair> pair;                   ///< padded beyond the last, at chunk_pair.back()
+  std::vector<std::uint32_t> pair_first;    ///< first pair of each particle, one more
+  std::vector<std::uint32_t> partner_load;  ///< where in `load` the partner's share goes
   std::vector<std::uint8_t> in_range;
-  std::vector<VectorRow> spring;
+  std::vector<VectorRow> history;  ///< Simulation::history_rows a pair: slip and contact radius, roll and twist
+  // chunks
+  std::vector<std::uint32_t> chunk_first, chunk_pair;  ///< first particle and pair; one more
+  std::vector<std::uint32_t> chunk_wall;               ///< first wall slot, at chunk * bodies + body; one more
+  std::vector<std::uint32_t> halo_owner;               ///< particle of each halo entry
+  std::vector<std::uint32_t> halo_part;  ///< first entry for chunk d in chunk c's halo, at c * chunks + d; one more
   // walls
-  std::vector<WallSlot> wall;             ///< sorted by particle
-  std::vector<std::uint32_t> wall_first;  ///< per block of particles
-  std::vector<std::uint32_t> features;    ///< of each slot, nearest first
-  std::vector<double> feature_gap;        ///< m, from the sphere to the feature at the rebuild, at least
-  std::vector<double> angle_at_rebuild;   ///< per body [rad]
-};
+  std::vector<WallSlot> wall;            ///< sorted by chunk, body, particle
+  std::vector<std::uint32_t> features;   ///< of each slot, nearest first
+  std::vector<double> feature_gap;       ///< m, from the sphere to the feature at the rebuild, at least
+  std::vector<double> angle_at_rebuild;  ///< per body [rad]
 
-inline constexpr std::uint32_t image_shift = 27;
-inline constexpr std::uint32_t partner_mask = (1u << image_shift) - 1;
-/// Sums over particles are made in blocks of this many, then over blocks: the same bits for any number of threads.
-inline constexpr std::size_t block_size = 128;
+  std::size_t particles() const { return half.size(); }
+  std::size_t chunks() const { return chunk_first.size() - 1; }
+};
 
 }  // namespace dem

@@ -62,6 +62,26 @@ void add_edges_and_vertices(const TriangleMesh& mesh, Surface& s) {
   }
 }
 
+/// A lower bound of the distance from a point to a feature [m].
+double distance_at_least(const Surface& s, std::uint32_t feature, Vec3 point) {
+  const std::size_t faces = s.faces.size(), edges = s.edges.size();
+  if (feature < faces) {
+    const Face& f = s.faces[feature];
+    const double height = dot(f.normal, point) - f.offset;
+    double beside = 0.0;
+    for (int k = 0; k < 3; ++k) beside = std::max(beside, dot(f.out[k], point) - f.bound[k]);
+    return std::sqrt(height * height + beside * beside);
+  }
+  if (feature < faces + edges) {
+    const Edge& e = s.edges[feature - faces];
+    const Vec3 w = point - e.start;
+    const double u = dot(w, e.direction), beyond = std::max({0.0, -u, u - e.length});
+    const Vec3 across = w - u * e.direction;
+    return std::sqrt(dot(across, across) + beyond * beyond);
+  }
+  return length(point - s.vertices[feature - faces - edges].point);
+}
+
 struct Box {
   Vec3 low, high;
 };
@@ -83,22 +103,23 @@ void make_grid(const std::vector<Box>& boxes, Surface& s) {
   };
   // Two passes over the boxes: count, then fill; ascending feature order in every cell.
   std::vector<std::uint32_t> count(static_cast<std::size_t>(s.cells[0]) * s.cells[1] * s.cells[2] + 1, 0);
-  const auto each_cell = [&](const Box& b, auto&& visit) {
+  const auto each_cell = [&](std::uint32_t feature, auto&& visit) {
+    const Box& b = boxes[feature];
     for (int x = index(b.low.x, low.x, s.cells[0]); x <= index(b.high.x, low.x, s.cells[0]); ++x) {
       for (int y = index(b.low.y, low.y, s.cells[1]); y <= index(b.high.y, low.y, s.cells[1]); ++y) {
         for (int z = index(b.low.z, low.z, s.cells[2]); z <= index(b.high.z, low.z, s.cells[2]); ++z) {
+          const Vec3 centre = low + Vec3{(x + 0.5) * s.cell, (y + 0.5) * s.cell, (z + 0.5) * s.cell};
+          if (distance_at_least(s, feature, centre) > s.reach + 0.5 * std::sqrt(3.0) * s.cell) continue;
           visit((static_cast<std::size_t>(x) * s.cells[1] + y) * s.cells[2] + z);
         }
       }
     }
   };
-  for (const Box& b : boxes) each_cell(b, [&](std::size_t c) { ++count[c + 1]; });
+  for (std::uint32_t f = 0; f < boxes.size(); ++f) each_cell(f, [&](std::size_t c) { ++count[c + 1]; });
   for (std::size_t c = 1; c < count.size(); ++c) count[c] += count[c - 1];
   s.first = count;
   s.features.resize(count.back());
-  for (std::size_t f = 0; f < boxes.size(); ++f) {
-    each_cell(boxes[f], [&](std::size_t c) { s.features[count[c]++] = static_cast<std::uint32_t>(f); });
-  }
+  for (std::uint32_t f = 0; f < boxes.size(); ++f) each_cell(f, [&](std::size_t c) { s.features[count[c]++] = f; });
 }
 
 }  // namespace
@@ -133,32 +154,18 @@ void find_features(const Surface& s, Vec3 point, double distance, std::vector<Ne
   const int x = static_cast<int>(p.x / s.cell), y = static_cast<int>(p.y / s.cell), z = static_cast<int>(p.z / s.cell);
   if (x >= s.cells[0] || y >= s.cells[1] || z >= s.cells[2]) return;
   const std::size_t c = (static_cast<std::size_t>(x) * s.cells[1] + y) * s.cells[2] + z;
-  const std::size_t faces = s.faces.size(), edges = s.edges.size();
   for (std::uint32_t i = s.first[c]; i < s.first[c + 1]; ++i) {
-    const std::uint32_t feature = s.features[i];
-    double away = 0.0;  // a lower bound of the distance
-    if (feature < faces) {
-      const Face& f = s.faces[feature];
-      away = std::abs(dot(f.normal, point) - f.offset);
-      for (int k = 0; k < 3; ++k) away = std::max(away, dot(f.out[k], point) - f.bound[k]);
-    } else if (feature < faces + edges) {
-      const Edge& e = s.edges[feature - faces];
-      const Vec3 w = point - e.start;
-      const double u = dot(w, e.direction), beyond = std::max({0.0, -u, u - e.length});
-      const Vec3 across = w - u * e.direction;
-      away = std::sqrt(dot(across, across) + beyond * beyond);
-    } else {
-      away = length(point - s.vertices[feature - faces - edges].point);
-    }
-    if (away < distance) found.push_back({away, feature});
+    const double away = distance_at_least(s, s.features[i], point);
+    if (away < distance) found.push_back({away, s.features[i]});
   }
   std::sort(found.begin(), found.end(), [](const NearFeature& a, const NearFeature& b) {
     return a.distance < b.distance || (a.distance == b.distance && a.feature < b.feature);
   });
 }
 
-Touches find_touches(const Surface& s, std::span<const std::uint32_t> features, Vec3 point, double distance) {
-  Touches found;
+void find_touches(const Surface& s, std::span<const std::uint32_t> features, Vec3 point, double distance,
+                  Touches& found) {
+  found.count = 0;
   const double tolerance = border * distance;
   const auto add = [&](Vec3 normal, double gap) {
     for (int i = 0; i < found.count; ++i) {
@@ -172,7 +179,7 @@ Touches find_touches(const Surface& s, std::span<const std::uint32_t> features, 
       found.touch[found.count++] = {normal, gap};
       return;
     }
-    Touch* shallow = std::max_element(found.touch, found.touch + max_touches,
+    Touch* shallow = std::max_element(found.touch.begin(), found.touch.end(),
                                       [](const Touch& a, const Touch& b) { return a.distance < b.distance; });
     if (gap < shallow->distance) *shallow = {normal, gap};
   };
@@ -211,7 +218,6 @@ Touches find_touches(const Surface& s, std::span<const std::uint32_t> features, 
       if (nearest) add((1.0 / std::sqrt(d2)) * away, std::sqrt(d2));
     }
   }
-  return found;
 }
 
 }  // namespace dem

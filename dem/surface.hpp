@@ -10,6 +10,7 @@
 // normals within `merge_angle` of each other: the deepest is the contact, the others are the same one.
 //
 // All in the body's own frame: the grid is built once, and the mesh may move rigidly.
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -60,20 +61,22 @@ struct NearFeature {
 void find_features(const Surface& surface, Vec3 point, double distance, std::vector<NearFeature>& found);
 
 struct Touch {
-  Vec3 normal;            ///< unit, from the surface to the sphere's centre
-  double distance = 0.0;  ///< m, centre to foot
+  Vec3 normal;      ///< unit, from the surface to the sphere's centre
+  double distance;  ///< m, centre to foot
 };
 inline constexpr int max_touches = 4;  ///< contacts of one sphere with one body
 struct Touches {
   int count = 0;
-  Touch touch[max_touches];
+  std::array<Touch, max_touches> touch;  ///< the first `count`
 };
 
 /// Cosine of the angle between normals below which two feet are one contact (20 degrees: neighbouring facets, and an
 /// edge of the same plane up to an overlap of 6 % of the radius).
 inline constexpr double merge_cosine = 0.939692620785908;
 
-/// Contacts of the sphere at `point` with the features listed, those nearer than `distance` [m].
-Touches find_touches(const Surface& surface, std::span<const std::uint32_t> features, Vec3 point, double distance);
+/// Contacts of the sphere at `point` with the features listed, those nearer than `distance` [m], into `found`, whose
+/// memory is used again and again.
+void find_touches(const Surface& surface, std::span<const std::uint32_t> features, Vec3 point, double distance,
+                  Touches& found);
 
 }  // namespace dem

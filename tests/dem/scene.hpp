@@ -18,13 +18,11 @@ inline dem::Setup box(const dem::Case& c, std::vector<dem::Vec3> position, std::
   s.low = {-size, -size, -size};
   s.high = {size, size, size};
   s.periodic = {false, false, false};
-  s.spheres.radius = 0.5 * c.material.diameter;
-  s.spheres.density = c.material.density;
+  s.spheres.radius = {0.5 * c.material.diameter};
+  s.spheres.density = {c.material.density};
   s.spheres.position = std::move(position);
   s.spheres.velocity = std::move(velocity);
-  const dem::Laws laws = dem::make_laws(c);
-  s.grain = laws.grain;
-  s.wall = laws.wall;
+  s.laws = dem::make_force_pass(dem::make_bed(c, dem::max_bodies));
   s.gravity = {};
   s.time_step = d.time_step;
   s.skin = 0.1 * c.material.diameter;

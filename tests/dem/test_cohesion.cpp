@@ -1,6 +1,7 @@
 // The attraction of Tanaka et al., PARTICLES 2011, eq. (1) and the coarse-grain rule eq. (2).
 #include <catch2/catch.hpp>
 
+#include "dem/compose.hpp"
 #include "scene.hpp"
 
 TEST_CASE("the Bond number at 2.0e-18 J on 0.8 mm zirconia is 52, 8.3 and 0.5 for h_min 0.4, 1 and 4 nm") {
@@ -71,10 +72,12 @@ TEST_CASE("the adhesive load enters the Coulomb limit as the cap option says") {
     c.contact.friction = mu;
     c.contact.hamaker = 1e-18;
     c.contact.hamaker *= a / dem::derive(c).pull_off;
-    const dem::Laws laws = dem::make_laws(c);
-    const auto& law = std::get<dem::LinearLaw<false, dem::VanDerWaals>>(laws.grain);
-    const dem::Vec3 stretched{1e-3, 0.0, 0.0};  // far beyond any cap
-    return -law({0.0, 0.0, 1.0}, n / c.contact.stiffness, {}, stretched, 1e-6).tangential.x;
+    using Law = dem::ContactLaw<dem::LinearNormal, dem::LinearTangential, dem::NoResistance, dem::ShortRangeAttraction>;
+    const dem::Derived d = dem::derive(c);
+    const auto law = dem::make_law<Law>(dem::make_bed(c, 0).grain[0]).at(0.5 * d.mass, 0.25 * c.material.diameter);
+    dem::History<double> stretched;
+    stretched.slip.x = 1.0;  // N, far beyond any cap
+    return -law({.normal = {0.0, 0.0, 1.0}, .overlap = n / c.contact.stiffness}, stretched, 1e-6).tangential.x;
   };
   CHECK(friction(dem::FrictionCap::net) == Approx(mu * (n - a)));
   CHECK(friction(dem::FrictionCap::repulsion) == Approx(mu * n));

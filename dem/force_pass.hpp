@@ -1,0 +1,78 @@
+#pragma once
+// The forces of one step, chunk by chunk. A ForcePass knows the contact laws; it is called once per chunk and step.
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dem/contact_law.hpp"
+#include "dem/state.hpp"
+
+namespace dem {
+
+inline constexpr std::size_t max_bodies = 8;
+
+/// Load of the powder on a body.
+struct BodyLoad {
+  Vec3 force;   ///< N
+  Vec3 torque;  ///< N m about axis_point; arms from there to the contact point
+};
+
+/// Sums over one step's contacts.
+struct StepSums {
+  std::array<BodyLoad, max_bodies> body;
+  double virial = 0.0;         ///< J, sum over sphere contacts of push * distance of the centres
+  double dissipated = 0.0;     ///< J in this step, by dashpots, sliding and contacts that break
+  double tool_work = 0.0;      ///< J in this step, of the bodies on the spheres
+  std::uint64_t contacts = 0;  ///< pairs of spheres that touch
+  std::uint64_t wall_contacts = 0;
+  std::uint64_t deep = 0;    ///< contacts whose overlap is more than 10 % of a radius
+  double max_overlap = 0.0;  ///< of a radius
+};
+
+/// Where a body is and how it moves in this step.
+struct Frame {
+  bool turned = false;  ///< else the rotation is none
+  Rotation rotation;
+  Vec3 point, spin;
+  double moved = 0.0;  ///< m, how far any point of the body came since the rebuild, at most
+
+  Vec3 to_lab(Vec3 a) const { return turned ? rotate(rotation, a) : a; }
+  Vec3 to_body(Vec3 a) const { return turned ? rotate_back(rotation, a) : a; }
+};
+
+/// What the forces of a step need beside the state.
+struct Surroundings {
+  std::span<const Surface> surfaces;  ///< per body
+  std::span<const Frame> frames;
+  double time_step;  ///< s
+  double range;      ///< m
+};
+
+/// J, at the present positions.
+struct ContactEnergy {
+  double elastic = 0.0, attraction = 0.0;
+};
+
+class ForcePass {
+ public:
+  virtual ~ForcePass() = default;
+  /// m, how far beyond touching the laws reach for spheres up to this radius.
+  virtual double range(double largest_radius) const = 0;
+  virtual int history_rows() const = 0;
+  /// Adds the loads of the chunk's pairs and wall contacts.
+  virtual void chunk(State& state, const Surroundings& around, std::size_t chunk, StepSums& sums) const = 0;
+  virtual ContactEnergy energy(const State& state, const Surroundings& around) const = 0;
+};
+
+/// The laws of a bed: between materials, and of each material with each body's surface.
+template <class Law>
+struct LawTables {
+  std::vector<Law> grain;  ///< materials x materials, symmetric
+  std::vector<Law> wall;   ///< materials x bodies
+  int materials = 1;
+  double equal_mass = 0.0, equal_radius = 0.0;  ///< kg, m of every sphere; 0 where spheres differ
+};
+
+}  // namespace dem

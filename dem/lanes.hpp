@@ -1,0 +1,100 @@
+#pragma once
+// Several contacts at once: lanes of the widest registers that the instruction set of the build has, and the few
+// operations that the laws need, alike for one double and for lanes. Every operation is elementwise and exactly
+// rounded, so a contact's force does not depend on the width nor on its neighbours in the lanes.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <experimental/simd>
+
+#include "dem/vec3.hpp"
+
+namespace dem {
+
+namespace stdx = std::experimental;
+using Lane = stdx::native_simd<double>;
+inline constexpr int lanes = static_cast<int>(Lane::size());
+static_assert(lanes <= 8, "rows are transposed two, four or eight at a time");
+
+inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+inline Lane select(Lane::mask_type condition, Lane yes, Lane no) {
+  stdx::where(condition, no) = yes;
+  return no;
+}
+inline double square_root(double a) { return std::sqrt(a); }
+inline Lane square_root(Lane a) { return stdx::sqrt(a); }
+inline double cube_root(double a) { return std::cbrt(a); }
+inline Lane cube_root(Lane a) {
+  return Lane([&](auto k) { return std::cbrt(static_cast<double>(a[k])); });
+}
+inline double larger(double a, double b) { return a > b ? a : b; }
+inline Lane larger(Lane a, Lane b) { return stdx::max(a, b); }
+inline double smaller(double a, double b) { return a < b ? a : b; }
+inline Lane smaller(Lane a, Lane b) { return stdx::min(a, b); }
+template <class T>
+T norm(Vector3<T> a) {
+  return square_root(dot(a, a));
+}
+/// The same vector in every lane.
+inline Vector3<Lane> spread(Vec3 a) { return {Lane(a.x), Lane(a.y), Lane(a.z)}; }
+/// One bit per lane, the first lane lowest.
+inline unsigned bits(Lane::mask_type mask) { return static_cast<unsigned>(mask.__to_bitset().to_ulong()); }
+
+/// 1 in the first `used` lanes, 0 beyond.
+inline Lane first_lanes(int used) {
+  alignas(64) static constexpr double ones[16] = {1, 1, 1, 1, 1, 1, 1, 1};
+  return Lane(ones + 8 - used, stdx::element_aligned);
+}
+
+/// Four doubles moved and added as one; lowered to what the instruction set has.
+typedef double Four __attribute__((vector_size(32), may_alias));
+inline const Four& four(const double& first) { return reinterpret_cast<const Four&>(first); }
+inline Four& four(double& first) { return reinterpret_cast<Four&>(first); }
+
+/// A row of four doubles per lane, transposed.
+struct LaneRows {
+  Vector3<Lane> v;
+  Lane w;
+};
+
+namespace detail {
+struct Square {
+  Four row[4];
+};
+inline Square transpose(Four a, Four b, Four c, Four d) {
+  typedef long long Index __attribute__((vector_size(32)));
+  const Four ab0 = __builtin_shuffle(a, b, Index{0, 4, 2, 6}), ab1 = __builtin_shuffle(a, b, Index{1, 5, 3, 7});
+  const Four cd0 = __builtin_shuffle(c, d, Index{0, 4, 2, 6}), cd1 = __builtin_shuffle(c, d, Index{1, 5, 3, 7});
+  return {{__builtin_shuffle(ab0, cd0, Index{0, 1, 4, 5}), __builtin_shuffle(ab1, cd1, Index{0, 1, 4, 5}),
+           __builtin_shuffle(ab0, cd0, Index{2, 3, 6, 7}), __builtin_shuffle(ab1, cd1, Index{2, 3, 6, 7})}};
+}
+}  // namespace detail
+
+/// `row(k)` gives lane k's four doubles.
+template <class Row>
+LaneRows transposed(Row&& row) {
+  if constexpr (lanes == 4) {
+    const detail::Square s = detail::transpose(row(0), row(1), row(2), row(3));
+    return {{std::bit_cast<Lane>(s.row[0]), std::bit_cast<Lane>(s.row[1]), std::bit_cast<Lane>(s.row[2])},
+            std::bit_cast<Lane>(s.row[3])};
+  } else {
+    Four rows[lanes];
+    for (int k = 0; k < lanes; ++k) rows[k] = row(k);
+    const auto column = [&](int c) { return Lane([&](auto k) { return rows[k][c]; }); };
+    return {{column(0), column(1), column(2)}, column(3)};
+  }
+}
+
+/// Lane k's four doubles of `rows` into out[k].
+inline void untransposed(const LaneRows& rows, Four* out) {
+  if constexpr (lanes == 4) {
+    const detail::Square s = detail::transpose(std::bit_cast<Four>(rows.v.x), std::bit_cast<Four>(rows.v.y),
+                                               std::bit_cast<Four>(rows.v.z), std::bit_cast<Four>(rows.w));
+    for (int k = 0; k < 4; ++k) out[k] = s.row[k];
+  } else {
+    for (int k = 0; k < lanes; ++k) out[k] = Four{rows.v.x[k], rows.v.y[k], rows.v.z[k], rows.w[k]};
+  }
+}
+
+}  // namespace dem

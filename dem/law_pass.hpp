@@ -1,0 +1,243 @@
+#pragma once
+// The force pass of one composed law: pairs in lanes (pair_pass.hpp), then the walls.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dem/force_pass.hpp"
+#include "dem/pair_pass.hpp"
+
+namespace dem {
+
+inline History<double> history_of(const VectorRow& slip, const VectorRow& roll) {
+  return {slip.v, slip.w, roll.v, roll.w};
+}
+
+/// Features that the sphere may have reached since the rebuild: those are sorted by their gap then.
+inline std::uint32_t features_in_question(const State& s, const WallSlot& slot, const Frame& frame) {
+  const PositionRow& at = s.position[slot.particle];
+  const double moved = length(at.at - s.reference[slot.particle]) + frame.moved + 1e-9 * at.radius;
+  const double* gap = s.feature_gap.data() + slot.feature_first;
+  std::uint32_t asked = 0;
+  while (asked < slot.feature_count && gap[asked] <= moved) ++asked;
+  return asked;
+}
+
+/// The memory of the contact with this normal: that of the old contact whose normal is nearest.
+inline const WallMemory* remembered(const WallSlot& slot, Vec3 normal) {
+  const WallMemory* best = nullptr;
+  double cosine = merge_cosine;
+  for (std::uint32_t k = 0; k < slot.touching; ++k) {
+    const double c = dot(slot.contact[k].normal, normal);
+    if (c > cosine) {
+      cosine = c;
+      best = &slot.contact[k];
+    }
+  }
+  return best;
+}
+
+template <class Law>
+class LawPass final : public ForcePass {
+ public:
+  explicit LawPass(LawTables<Law> tables) : tables_(std::move(tables)) {}
+
+  double range(double largest_radius) const override {
+    double far = 0.0;
+    for (const Law& law : tables_.grain) far = std::max(far, law.range(0.5 * largest_radius));
+    for (const Law& law : tables_.wall) far = std::max(far, law.range(largest_radius));
+    return far;
+  }
+
+  int history_rows() const override { return Law::history_rows; }
+
+  void chunk(State& s, const Surroundings& around, std::size_t chunk, StepSums& sums) const override {
+    const PairView view{s.position.data(), s.motion.data(), s.pair.data(),    s.partner_load.data(), s.in_range.data(),
+                        s.history.data(),  s.load.data(),   around.time_step, around.range};
+    const std::uint32_t begin = s.chunk_pair[chunk], end = s.chunk_pair[chunk + 1];
+    PairSums pairs;
+    if (equal()) {
+      pair_pass(PairLaws<Law, true>{tables_.grain.data(), 1, 0.5 * tables_.equal_mass, 0.5 * tables_.equal_radius},
+                view, begin, end, pairs);
+    } else {
+      pair_pass(PairLaws<Law, false>{tables_.grain.data(), tables_.materials, 0.0, 0.0}, view, begin, end, pairs);
+    }
+    sums.virial += pairs.virial;
+    sums.dissipated += pairs.dissipated;
+    sums.contacts += pairs.contacts;
+    sums.deep += pairs.deep;
+    sums.max_overlap = std::max(sums.max_overlap, pairs.max_overlap);
+    const std::size_t bodies = around.frames.size();
+    for (std::size_t b = 0; b < bodies; ++b)
+      meet_body(s, around, s.chunk_wall[chunk * bodies + b], s.chunk_wall[chunk * bodies + b + 1], sums);
+  }
+
+  ContactEnergy energy(const State& s, const Surroundings& around) const override {
+    ContactEnergy total;
+    const auto add = [&](const auto& law, double overlap, const History<double>& h) {
+      total.elastic += law.elastic_energy(overlap, h);
+      total.attraction += law.attraction_energy(overlap);
+    };
+    for (std::uint32_t slot = 0; slot < s.chunk_pair.back(); ++slot) {
+      if (!s.in_range[slot]) continue;
+      const Pair p = s.pair[slot];
+      const PositionRow &a = s.position[p.i], &b = s.position[p.j];
+      const MotionRow &ma = s.motion[p.i], &mb = s.motion[p.j];
+      constexpr int rows = Law::history_rows;
+      const VectorRow roll = rows == 2 ? s.history[slot * rows + rows - 1] : VectorRow{};
+      add(grain(ma, mb).at(ma.mass * mb.mass / (ma.mass + mb.mass), a.radius * b.radius / (a.radius + b.radius)),
+          a.radius + b.radius - length(a.at - b.at), history_of(s.history[slot * rows], roll));
+    }
+    Touches touches;
+    for (const WallSlot& slot : s.wall) {
+      const PositionRow& at = s.position[slot.particle];
+      find(s, around, slot, touches);
+      for (int t = 0; t < touches.count; ++t) {
+        const WallMemory* memory = remembered(slot, touches.touch[t].normal);
+        const WallMemory none{};
+        const WallMemory& m = memory ? *memory : none;
+        add(wall(s.motion[slot.particle], slot.body).at(s.motion[slot.particle].mass, at.radius),
+            at.radius - touches.touch[t].distance, history_of(m.slip, m.roll));
+      }
+    }
+    return total;
+  }
+
+ private:
+  bool equal() const { return tables_.materials == 1 && tables_.equal_mass > 0.0; }
+  const Law& grain(const MotionRow& a, const MotionRow& b) const {
+    return tables_
+        .grain[static_cast<std::size_t>(a.material) * tables_.materials + static_cast<std::size_t>(b.material)];
+  }
+  const Law& wall(const MotionRow& a, std::size_t body) const {
+    const std::size_t bodies = tables_.wall.size() / static_cast<std::size_t>(tables_.materials);
+    return tables_.wall[static_cast<std::size_t>(a.material) * bodies + body];
+  }
+
+  void find(const State& s, const Surroundings& around, const WallSlot& slot, Touches& found) const {
+    const Frame& frame = around.frames[slot.body];
+    const std::uint32_t asked = features_in_question(s, slot, frame);
+    found.count = 0;
+    if (asked == 0) return;
+    const PositionRow& at = s.position[slot.particle];
+    find_touches(around.surfaces[slot.body], {s.features.data() + slot.feature_first, asked},
+                 frame.point + frame.to_body(at.at - frame.point), at.radius + around.range, found);
+  }
+
+  /// A contact found, waiting to be evaluated.
+  struct WallHit {
+    std::uint32_t slot, touch;
+    VectorRow normal;      ///< in the body's frame, and the distance [m]
+    VectorRow slip, roll;  ///< its history, in the body's frame
+  };
+
+  /// Contacts of the chunk's spheres with one body: found one by one, evaluated in lanes.
+  void meet_body(State& s, const Surroundings& around, std::uint32_t begin, std::uint32_t end, StepSums& sums) const {
+    constexpr std::size_t batch = 64;
+    WallHit hits[batch + max_touches + lanes];
+    std::size_t count = 0;
+    Touches touches;
+    for (std::uint32_t w = begin; w < end; ++w) {
+      WallSlot& slot = s.wall[w];
+      find(s, around, slot, touches);
+      const std::size_t first = count;
+      for (int t = 0; t < touches.count; ++t) {
+        const Touch& touch = touches.touch[t];
+        WallHit& hit = hits[count++];
+        hit = {w, static_cast<std::uint32_t>(t), {touch.normal, touch.distance}, {}, {}};
+        if (const WallMemory* m = remembered(slot, touch.normal)) {
+          hit.slip = m->slip;
+          hit.roll = m->roll;
+        }
+      }
+      for (std::size_t k = first; k < count; ++k) slot.contact[k - first].normal = hits[k].normal.v;
+      slot.touching = static_cast<std::uint32_t>(touches.count);
+      if (count >= batch) {
+        evaluate(s, around, hits, count, sums);
+        count = 0;
+      }
+    }
+    if (count > 0) evaluate(s, around, hits, count, sums);
+  }
+
+  [[gnu::flatten]] void evaluate(State& s, const Surroundings& around, WallHit* hits, std::size_t count,
+                                 StepSums& sums) const {
+    const std::size_t body = s.wall[hits[0].slot].body;
+    const Frame& frame = around.frames[body];
+    const auto one = wall(MotionRow{}, body).at(tables_.equal_mass, tables_.equal_radius);
+    for (int k = 0; k < lanes; ++k) hits[count + k] = hits[count - 1];
+    Vector3<Lane> body_force, body_torque;
+    Lane tool_work = 0.0, dissipated = 0.0, max_overlap = 0.0;
+    for (std::size_t base = 0; base < count; base += lanes) {
+      const WallHit* const hit = hits + base;
+      std::uint32_t particle[lanes];
+      for (int k = 0; k < lanes; ++k) particle[k] = s.wall[hit[k].slot].particle;
+      const auto turned = [&](const Vector3<Lane>& a) { return frame.turned ? rotate(frame.rotation, a) : a; };
+      const auto turned_back = [&](const Vector3<Lane>& a) {
+        return frame.turned ? rotate_back(frame.rotation, a) : a;
+      };
+      const LaneRows at = transposed([&](int k) -> Four { return four(s.position[particle[k]].at.x); });
+      const LaneRows velocity = transposed([&](int k) -> Four { return four(s.motion[particle[k]].velocity.x); });
+      const LaneRows spin = transposed([&](int k) -> Four { return four(s.motion[particle[k]].spin.x); });
+      const LaneRows normal = transposed([&](int k) -> Four { return four(hit[k].normal.v.x); });
+      const LaneRows slip = transposed([&](int k) -> Four { return four(hit[k].slip.v.x); });
+      History<Lane> history{turned(slip.v), slip.w, {}, Lane(0.0)};
+      if constexpr (Law::history_rows == 2) {
+        const LaneRows roll = transposed([&](int k) -> Four { return four(hit[k].roll.v.x); });
+        history.roll = turned(roll.v);
+        history.twist = roll.w;
+      }
+      const Vector3<Lane> n = turned(normal.v);
+      const Lane distance = normal.w, radius = at.w;
+      const Vector3<Lane> arm = at.v - spread(frame.point) - distance * n;  // from the axis point to the contact point
+      const Vector3<Lane> of_wall = cross(spread(frame.spin), arm);
+      const Meeting<Lane> m{n, radius - distance, velocity.v - distance * cross(spin.v, n) - of_wall,
+                            spin.v - spread(frame.spin)};
+      const auto react = [&]() -> Reaction<Lane> {
+        if (equal()) return one(m, history, around.time_step);
+        const auto law_of = [&](int k) { return &wall(s.motion[particle[k]], body); };
+        return Law::at_lanes(law_of, velocity.w, radius)(m, history, around.time_step);
+      };
+      const Reaction<Lane> r = react();
+
+      const Vector3<Lane> force = r.push * n + r.tangential;
+      const int used = static_cast<int>(std::min<std::size_t>(lanes, count - base));
+      Four forces[lanes], torques[lanes], slips[lanes], rolls[lanes];
+      untransposed({force, Lane(0.0)}, forces);
+      untransposed({r.couple - distance * cross(n, r.tangential), Lane(0.0)}, torques);
+      untransposed({turned_back(r.history.slip), r.history.radius}, slips);
+      if constexpr (Law::history_rows == 2) untransposed({turned_back(r.history.roll), r.history.twist}, rolls);
+      for (int k = 0; k < used; ++k) {
+        LoadRow& load = s.load[particle[k]];
+        four(load.force.x) += forces[k];
+        four(load.torque.x) += torques[k];
+        WallMemory& kept = s.wall[hit[k].slot].contact[hit[k].touch];
+        four(kept.slip.v.x) = slips[k];
+        if constexpr (Law::history_rows == 2) four(kept.roll.v.x) = rolls[k];
+      }
+
+      const Lane valid = first_lanes(used);
+      body_force -= valid * force;
+      body_torque -= valid * (cross(arm, force) + r.couple);
+      tool_work += valid * (dot(force, of_wall) + dot(r.couple, spread(frame.spin)));
+      dissipated += valid * r.dissipated;
+      const Lane relative = m.overlap / radius;
+      max_overlap = larger(max_overlap, relative);
+      const unsigned lane_mask = (1u << used) - 1u;
+      sums.wall_contacts += static_cast<unsigned>(std::popcount(bits(r.touch > 0.0) & lane_mask));
+      sums.deep += static_cast<unsigned>(std::popcount(bits(relative > 0.1) & lane_mask));
+    }
+    BodyLoad& load = sums.body[body];
+    for (int k = 0; k < lanes; ++k) {
+      load.force += Vec3{body_force.x[k], body_force.y[k], body_force.z[k]};
+      load.torque += Vec3{body_torque.x[k], body_torque.y[k], body_torque.z[k]};
+      sums.tool_work += around.time_step * tool_work[k];
+      sums.dissipated += dissipated[k];
+      sums.max_overlap = std::max(sums.max_overlap, static_cast<double>(max_overlap[k]));
+    }
+  }
+
+  LawTables<Law> tables_;
+};
+
+}  // namespace dem

@@ -1,0 +1,9 @@
+#include "dem/compose.hpp"
+
+namespace dem {
+
+std::shared_ptr<const ForcePass> compose_linear(const BedCoefficients& bed) {
+  return compose<LinearNormal, LinearTangential>(bed);
+}
+
+}  // namespace dem
