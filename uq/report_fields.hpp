@@ -31,6 +31,7 @@ void visit_fields(Visit&& visit, T& s) {
   visit("standardised", s.standardised);
   visit("observed_se", s.observed_se);
   visit("notes", s.notes);
+  visit("converged", s.converged);
   visit("low_runs", s.low_runs);
   visit("rho", s.rho);
   visit("rho_sd", s.rho_sd);

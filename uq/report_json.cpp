@@ -48,6 +48,7 @@ Json surrogate_json(const SurrogateReport& surrogate) {
           {"consequence", surrogate.consequence},
           {"remedy", surrogate.remedy},
           {"notes", surrogate.notes},
+          {"converged", surrogate.converged},
           {"low_runs", surrogate.low_runs},
           {"rho", surrogate.low_runs > 0 ? number(surrogate.rho) : Json(nullptr)},
           {"rho_sd", surrogate.low_runs > 0 ? number(surrogate.rho_sd) : Json(nullptr)}};

@@ -194,4 +194,22 @@ CalibrationReport load_results(const std::string& path) {
   }
 }
 
+std::string to_text(const SurrogateReport& report) {
+  return save(report).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+SurrogateReport surrogate_report_from(const std::string& text, const std::string& place) {
+  try {
+    SurrogateReport report;
+    load(Json::parse(text), "surrogate", report);
+    return report;
+  } catch (const Misfit& misfit) {
+    throw data::InputError(data::ExitStatus::bad_data,
+                           {place + ": " + misfit.where, misfit.what, "delete the file, it is made again"});
+  } catch (const Json::exception& damage) {
+    throw data::InputError(data::ExitStatus::bad_data,
+                           {place, fmt::format("is damaged: {}", damage.what()), "delete the file, it is made again"});
+  }
+}
+
 }  // namespace uq

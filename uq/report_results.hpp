@@ -17,4 +17,8 @@ void save_results(const CalibrationReport& report, const std::string& path);
 /// 65 not a results file, or damaged, with the place.
 CalibrationReport load_results(const std::string& path);
 
+/// One surrogate's part alone, as text, and back; `place` is where the text was found.
+std::string to_text(const SurrogateReport& report);
+SurrogateReport surrogate_report_from(const std::string& text, const std::string& place);
+
 }  // namespace uq

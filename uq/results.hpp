@@ -29,6 +29,7 @@ struct SurrogateReport {
   std::vector<double> observed, predicted, standardised;  ///< leave-one-out, per run
   std::vector<double> observed_se;
   std::vector<std::string> notes;  ///< hyper-parameter on its bound, jitter, multi-start outcomes
+  bool converged = true;           ///< the maximisation of the likelihood
   int low_runs = 0;                ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
   double rho = 0.0, rho_sd = 0.0;  ///< this level's output per the cheaper one's
 };

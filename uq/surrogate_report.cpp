@@ -41,6 +41,16 @@ void add_levels(SurrogateReport& report, const FittedSurrogate& fitted, const da
     report.notes.push_back("cheaper level: " + note);
 }
 
+/// "length scale of input 2" by the input's own name.
+void name_inputs(SurrogateReport& report) {
+  for (std::string& note : report.notes)
+    for (std::size_t k = 0; k < report.inputs.size(); ++k) {
+      const std::string number = fmt::format("of input {} ", k + 1);
+      if (const std::size_t at = note.find(number); at != std::string::npos)
+        note.replace(at, number.size(), "of " + report.inputs[k] + " ");
+    }
+}
+
 /// "friction 0.45, rpm 120 rpm": a point of the unit cube in the study's units.
 std::string point_text(const data::Study& study, const TrainingRows& rows, const Eigen::VectorXd& point) {
   std::string text;
@@ -110,12 +120,15 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
       report.remedy += fmt::format("{} {}", i > 0 ? ";" : "", point_text(study, rows, found.next_points.row(i)));
     report.remedy += ".";
   }
+  report.converged =
+      fitted.process->diagnostics().converged && (!fitted.two_level || fitted.two_level->high().diagnostics.converged);
   report.notes = found.notes;
   const auto& active = fitted.process->data();
   if (active.points.rows() < active.z.size())
     report.notes.push_back(fmt::format("{} runs at {} points: replicates are pooled with their own errors",
                                        active.z.size(), active.points.rows()));
   if (fitted.two_level) add_levels(report, fitted, output);
+  name_inputs(report);
   return report;
 }
 
