@@ -15,71 +15,6 @@
 namespace uq {
 namespace {
 
-std::uint64_t seed_of(const data::Study& study, const CalibrateOptions& options) {
-  return options.seed.value_or(study.seed);
-}
-
-/// Index of the unknown of this name in another case's model.
-int unknown_of(const CaseModel& model, const std::string& name) {
-  for (int k = 0; k < model.dimension(); ++k)
-    if (model.slots[static_cast<std::size_t>(k)].label == name) return k;
-  return -1;
-}
-
-/// The sampled case whose posterior an unknown has.
-const SampledCase& source_of(const SampledCase& sampled, const Slot& slot) {
-  const auto found = std::find_if(sampled.cut_sources.begin(), sampled.cut_sources.end(),
-                                  [&](const auto& source) { return source->model->name == slot.cut_from; });
-  return **found;
-}
-
-/// Draws of the cut unknowns, chain by chain, as their sources gave them.
-GivenDraws given_draws(const SampledCase& sampled) {
-  GivenDraws given;
-  const CaseModel& model = *sampled.model;
-  for (int k = 0; k < model.dimension(); ++k)
-    if (!model.slots[static_cast<std::size_t>(k)].cut_from.empty()) given.unknowns.push_back(k);
-  for (const int unknown : given.unknowns) {
-    const Slot& slot = model.slots[static_cast<std::size_t>(unknown)];
-    const SampledCase& source = source_of(sampled, slot);
-    const Eigen::MatrixXd column = source.draws.coordinate(unknown_of(*source.model, slot.label));
-    const Eigen::Index rows =
-        given.chains.empty() ? column.rows() : std::min(column.rows(), given.chains.front().rows());
-    given.chains.resize(static_cast<std::size_t>(column.cols()), Eigen::MatrixXd(rows, 0));
-    for (std::size_t c = 0; c < given.chains.size(); ++c) {
-      given.chains[c].conservativeResize(rows, given.chains[c].cols() + 1);
-      given.chains[c].rightCols(1) = column.col(static_cast<Eigen::Index>(c)).head(rows);
-    }
-  }
-  return given;
-}
-
-/// Draws of `model`, which is the sampled case's own or the same for other data; at least `draws` per chain.
-Draws draw(const data::Study& study, const SampledCase& sampled, std::shared_ptr<const CaseModel> model,
-           const std::pair<int, CalibrateOptions>& draws_and_options) {
-  const auto& [draws, options] = draws_and_options;
-  const Target target = posterior_target(std::move(model));
-  const std::uint64_t seed = seed_of(study, options);
-  if (!sampled.cut_sources.empty()) {
-    CutOptions cut = options.cut;
-    cut.seed = seed;
-    cut.threads = options.threads;
-    return sample_cut(target, given_draws(sampled), cut);
-  }
-  if (sampled.sampler == data::Sampler::nuts) {
-    NutsOptions nuts = options.nuts;
-    nuts.seed = seed;
-    nuts.threads = options.threads;
-    nuts.draws = draws;
-    return sample_nuts(target, nuts);
-  }
-  MixtureSamplerOptions mixture = options.mixture;
-  mixture.seed = seed;
-  mixture.threads = options.threads;
-  mixture.draws = draws;
-  return sample_mixture(target, mixture);
-}
-
 /// Convergence of each parameter, and the Monte Carlo error of its mean in the study's unit.
 void add_diagnostics(CaseReport& report, const SampledCase& sampled) {
   for (std::size_t k = 0; k < report.parameters.size(); ++k) {
@@ -230,37 +165,6 @@ void add_warnings(CaseReport& report, const SampledCase& sampled) {
 
 }  // namespace
 
-SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
-                        const CalibrateOptions& options) {
-  const data::CalibrationCase& item = study.cases.at(case_index);
-  SampledCase sampled{.model = nullptr, .draws = {}, .sampler = options.sampler.value_or(item.sampler)};
-  CaseModel model = build_case(study, emulators, case_index);
-  for (Slot& slot : model.slots) {
-    if (slot.cut_from.empty()) continue;
-    const auto known = std::find_if(sampled.cut_sources.begin(), sampled.cut_sources.end(),
-                                    [&](const auto& source) { return source->model->name == slot.cut_from; });
-    if (known == sampled.cut_sources.end()) {
-      const auto from = std::find_if(study.cases.begin(), study.cases.end(),
-                                     [&](const data::CalibrationCase& other) { return other.name == slot.cut_from; });
-      sampled.cut_sources.push_back(std::make_shared<const SampledCase>(
-          sample_case(study, emulators, static_cast<std::size_t>(from - study.cases.begin()), options)));
-    }
-    const SampledCase& source = source_of(sampled, slot);
-    if (source.draws.chains.empty()) {
-      sampled.model = std::make_shared<const CaseModel>(std::move(model));
-      sampled.draws.reason = fmt::format("case '{}', whose posterior it takes, has no draws", source.model->name);
-      return sampled;
-    }
-    const Eigen::VectorXd u = source.draws.pooled().col(unknown_of(*source.model, slot.label));
-    slot.cut = NormalLaw{.mean = u.mean(), .sd = std::sqrt((u.array() - u.mean()).square().mean())};
-  }
-  sampled.model = std::make_shared<const CaseModel>(std::move(model));
-  check_priors(study, *sampled.model);
-  const bool nuts = sampled.sampler == data::Sampler::nuts;
-  sampled.draws = draw(study, sampled, sampled.model, {nuts ? options.nuts.draws : options.mixture.draws, options});
-  return sampled;
-}
-
 CaseReport report_case(const data::Study& study, const SampledCase& sampled, const CalibrateOptions& options) {
   const CaseModel& model = *sampled.model;
   CaseReport report;
@@ -333,7 +237,7 @@ std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& 
     const Eigen::VectorXd sd = error * truth.cwiseAbs();
     const Eigen::VectorXd y = truth + sd.cwiseProduct(normal);
     const auto model = std::make_shared<const CaseModel>(with_data(*sampled.model, y, sd.cwiseAbs2()));
-    const Draws draws = draw(study, sampled, model, {500, options});
+    const Draws draws = sample_model(study, sampled, model, options, 500);
     ErrorScan scan;
     scan.case_name = model->name;
     scan.relative_error = error;
