@@ -9,6 +9,7 @@
 #include "data/progress.hpp"
 #include "data/provenance.hpp"
 #include "dem/slice.hpp"
+#include "dem/stl.hpp"
 
 namespace cli {
 namespace {

@@ -157,12 +157,12 @@ Setup make_slice(const Case& c, std::uint64_t seed, int threads) {
   s.spheres.position = std::move(packing.position);
   const Vec3 period{length, 0.0, 0.0};
   s.bodies.push_back({.name = "mixer",
-                      .mesh = with_copies(auger_mesh(rig), period),
+                      .mesh = with_copies(auger_mesh(rig), period, 1e-9 * length),
                       .axis_point = {},
                       .axis = {1.0, 0.0, 0.0},
                       .angular_velocity = 0.0});
   s.bodies.push_back({.name = "trough",
-                      .mesh = with_copies(trough_mesh(rig, top), period),
+                      .mesh = with_copies(trough_mesh(rig, top), period, 1e-9 * length),
                       .axis_point = {},
                       .axis = {1.0, 0.0, 0.0},
                       .angular_velocity = 0.0});

@@ -58,7 +58,7 @@ TEST_CASE("spheres start clear of each other and of the walls, as many as were a
 TEST_CASE("the meshes of mixer and trough share their seams with their periodic copies") {
   const dem::Rig rig;
   for (const dem::TriangleMesh& one : {dem::auger_mesh(rig), dem::trough_mesh(rig, 0.01)}) {
-    const dem::TriangleMesh three = dem::with_copies(one, {rig.pitch, 0.0, 0.0});
+    const dem::TriangleMesh three = dem::with_copies(one, {rig.pitch, 0.0, 0.0}, 1e-9 * rig.pitch);
     CHECK(three.triangles.size() == 3 * one.triangles.size());
     CHECK(three.vertices.size() < 3 * one.vertices.size());  // the copies share their seams
   }
