@@ -58,12 +58,15 @@ void append(TriangleMesh& mesh, const TriangleMesh& other) {
   for (const auto& t : other.triangles) mesh.triangles.push_back({base + t[0], base + t[1], base + t[2]});
 }
 
-TriangleMesh with_copies(const TriangleMesh& mesh, Vec3 period, double tolerance) {
+TriangleMesh with_copies(const TriangleMesh& mesh, const std::vector<Vec3>& periods, double tolerance) {
   TriangleMesh all = mesh;
-  for (const double sign : {-1.0, 1.0}) {
-    TriangleMesh copy = mesh;
-    for (Vec3& v : copy.vertices) v += sign * period;
-    append(all, copy);
+  for (const Vec3 period : periods) {
+    const TriangleMesh one = all;
+    for (const double sign : {-1.0, 1.0}) {
+      TriangleMesh copy = one;
+      for (Vec3& v : copy.vertices) v += sign * period;
+      append(all, copy);
+    }
   }
   return weld(all, tolerance);
 }

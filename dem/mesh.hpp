@@ -16,9 +16,9 @@ struct TriangleMesh {
 /// Merges vertices closer than `tolerance` [m] and drops triangles without area.
 TriangleMesh weld(const TriangleMesh& mesh, double tolerance);
 
-/// The mesh and its copies shifted by -period and +period, welded within `tolerance` [m]: what a sphere of a periodic
-/// box meets.
-TriangleMesh with_copies(const TriangleMesh& mesh, Vec3 period, double tolerance);
+/// The mesh, then its copies shifted by -1, 0 and +1 of each period in all combinations, welded within `tolerance` [m]:
+/// what a sphere of a periodic box meets.
+TriangleMesh with_copies(const TriangleMesh& mesh, const std::vector<Vec3>& periods, double tolerance);
 
 /// Appends one mesh to another (not welded).
 void append(TriangleMesh& mesh, const TriangleMesh& other);

@@ -166,18 +166,9 @@ Turned orient(TriangleMesh& mesh, const std::vector<Part>& parts) {
   return result;
 }
 
-bool on_seam(const Seams& seams, Vec3 p, double tolerance) {
-  const auto at = components(p), low = components(seams.low), high = components(seams.high);
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (seams.periodic[a] && (std::abs(at[a] - low[a]) <= tolerance || std::abs(at[a] - high[a]) <= tolerance))
-      return true;
-  }
-  return false;
-}
-
 }  // namespace
 
-CheckedMesh check_mesh(const TriangleMesh& given, const std::string& name, const Seams& seams) {
+CheckedMesh check_mesh(const TriangleMesh& given, const std::string& name, const std::vector<Vec3>& periods) {
   CheckedMesh checked;
   checked.tolerance = weld_tolerance(given);
   TriangleMesh& mesh = checked.mesh;
@@ -192,18 +183,17 @@ CheckedMesh check_mesh(const TriangleMesh& given, const std::string& name, const
                            data::Problem{name, "has no triangle with an area", "export the mesh again"});
   }
 
-  const Edges edges = edges_of(mesh);
-  const Turned turned = orient(mesh, parts_of(mesh, edges));
+  const Turned turned = orient(mesh, parts_of(mesh, edges_of(mesh)));
   warn(turned.against_neighbours, "triangles oriented against their neighbours, turned");
   warn(turned.inside_out, "triangles of closed surfaces oriented inwards, turned");
   warn(turned.one_sided, "parts without an orientation (one-sided), left as they are");
 
   std::size_t open = 0, crowded = 0;
-  for (const auto& [ends, sides] : edges) {
-    const bool seam = on_seam(seams, mesh.vertices[ends.first], checked.tolerance) &&
-                      on_seam(seams, mesh.vertices[ends.second], checked.tolerance);
-    open += sides.size() == 1 && !seam;
-    crowded += sides.size() > 2;
+  for (const auto& [ends, sides] : edges_of(with_copies(mesh, periods, checked.tolerance))) {
+    const bool own =
+        std::any_of(sides.begin(), sides.end(), [&](const Side& s) { return s.triangle < mesh.triangles.size(); });
+    open += own && sides.size() == 1;
+    crowded += own && sides.size() > 2;
   }
   warn(open, "open edges, allowed: spheres meet both sides");
   warn(crowded, "edges where more than two triangles meet, allowed");

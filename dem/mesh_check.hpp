@@ -8,7 +8,6 @@
 // connected part the smaller side is turned. A closed part of negative volume V = sum a.(b x c) / 6 is turned inside
 // out, unless it lies within the box of another closed part: that is a cavity.
 // Contacts see both sides of every triangle, so open edges and edges of more than two triangles are allowed.
-#include <array>
 #include <string>
 #include <vector>
 
@@ -16,19 +15,14 @@
 
 namespace dem {
 
-/// Planes on which a mesh may end openly, as its periodic copy goes on from there.
-struct Seams {
-  std::array<bool, 3> periodic{false, false, false};
-  Vec3 low, high;  ///< m, of the box
-};
-
 struct CheckedMesh {
   TriangleMesh mesh;
   double tolerance = 0.0;             ///< m, of the welding
   std::vector<std::string> warnings;  ///< "auger: 3 triangles ...", one per kind of finding
 };
 
-/// `name` is how the warnings call the mesh. Throws data::InputError (65) when no triangle is left.
-CheckedMesh check_mesh(const TriangleMesh& mesh, const std::string& name, const Seams& seams = {});
+/// `name` is how the warnings call the mesh; an edge where an image of the mesh, shifted along `periods` [m], goes on
+/// is not open. Throws data::InputError (65) when no triangle is left.
+CheckedMesh check_mesh(const TriangleMesh& mesh, const std::string& name, const std::vector<Vec3>& periods = {});
 
 }  // namespace dem

@@ -14,14 +14,14 @@ namespace {
 
 std::size_t blocks_of(std::size_t particles) { return (particles + block_size - 1) / block_size; }
 
+/// A body as this step sees it.
 struct Frame {
-  bool turned = false;  ///< else the rotation is none
-  Rotation rotation;
-  Vec3 point, spin;
+  Pose now;
+  Vec3 point;          ///< m, the motion's point in the body's frame
   double moved = 0.0;  ///< m, how far any point of the body came since the rebuild, at most
 
-  Vec3 to_lab(Vec3 a) const { return turned ? rotate(rotation, a) : a; }
-  Vec3 to_body(Vec3 a) const { return turned ? rotate_back(rotation, a) : a; }
+  Vec3 to_lab(Vec3 a) const { return now.turned ? rotate(now.rotation, a) : a; }
+  Vec3 to_body(Vec3 a) const { return now.turned ? rotate_back(now.rotation, a) : a; }
 };
 
 /// Contacts of one sphere with one body: finds them, carries their springs over, returns the load on the sphere.
@@ -40,7 +40,7 @@ LoadRow wall_contact(const Law& law, const Surface& surface, const Frame& frame,
     slot.touching = 0;
     return load;
   }
-  const Vec3 arm_of_body = at.at - frame.point;
+  const Vec3 arm_of_body = at.at - frame.now.point;
   const Vec3 in_body = frame.point + frame.to_body(arm_of_body);
   const Touches touches =
       find_touches(surface, {s.features.data() + slot.feature_first, asked}, in_body, at.radius + law.range());
@@ -63,9 +63,10 @@ LoadRow wall_contact(const Law& law, const Surface& surface, const Frame& frame,
       }
     }
     const Vec3 n = frame.to_lab(touch.normal);
-    const Vec3 arm = arm_of_body - touch.distance * n;  // from the axis point to the contact point
+    const Vec3 arm = arm_of_body - touch.distance * n;  // from the motion's point to the contact point
     const double overlap = at.radius - touch.distance;
-    const Vec3 surface_velocity = motion.velocity - touch.distance * cross(motion.spin, n) - cross(frame.spin, arm);
+    const Vec3 surface_velocity =
+        motion.velocity - touch.distance * cross(motion.spin, n) - cross(frame.now.spin, arm) - frame.now.velocity;
     const ContactForce c = law(n, overlap, surface_velocity, frame.to_lab(spring), time_step);
     const Vec3 force = c.push * n + c.tangential;
     load.force += force;
@@ -110,10 +111,12 @@ Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.thr
   for (int k = 0; k < 27; ++k) image_[k].v = {(k % 3 - 1) * size.x, (k / 3 % 3 - 1) * size.y, (k / 9 - 1) * size.z};
   for (const Body& b : setup_.bodies) {
     surface_.push_back(make_surface(b.mesh, r + range_ + setup_.skin));
-    double far = 0.0;
-    for (const Vec3 v : b.mesh.vertices) far = std::max(far, length(cross(b.axis, v - b.axis_point)));
-    body_radius_.push_back(far + r);
-    state_.turning.push_back({.angular_velocity = b.angular_velocity});
+    Reach reach;
+    for (const Vec3 v : b.mesh.vertices) {
+      reach.from_axis = std::max(reach.from_axis, length(cross(b.motion.axis, v - b.motion.point)));
+      reach.from_point = std::max(reach.from_point, length(v - b.motion.point));
+    }
+    body_reach_.push_back({reach.from_axis + r, reach.from_point + r});
   }
 
   const std::size_t n = given.position.size();
@@ -144,13 +147,8 @@ void Simulation::restore(State state) {
   index_partners();
 }
 
-double Simulation::angle(std::size_t body) const {
-  const Turning& t = state_.turning[body];
-  return t.angle_then + t.angular_velocity * (static_cast<double>(state_.step - t.step_then) * setup_.time_step);
-}
-
-void Simulation::turn(std::size_t body, double angular_velocity) {
-  state_.turning[body] = {angular_velocity, angle(body), state_.step};
+double Simulation::motion_time(std::uint64_t step) const {
+  return step > setup_.rest_steps ? static_cast<double>(step - setup_.rest_steps) * setup_.time_step : 0.0;
 }
 
 template <class Law>
@@ -159,15 +157,9 @@ void Simulation::contacts(const Law& grain, const Law& wall) {
   const std::size_t n = s.position.size(), blocks = blocks_of(n);
   std::array<Frame, max_bodies> frames;
   for (std::size_t b = 0; b < setup_.bodies.size(); ++b) {
-    const Body& body = setup_.bodies[b];
-    const double turned = angle(b);
-    if (turned != 0.0) {
-      frames[b].turned = true;
-      frames[b].rotation = rotation_about(body.axis, turned);
-    }
-    frames[b].moved = std::abs(turned - s.angle_at_rebuild[b]) * body_radius_[b];
-    frames[b].point = body.axis_point;
-    frames[b].spin = s.turning[b].angular_velocity * body.axis;
+    const Motion& motion = setup_.bodies[b].motion;
+    const double now = motion_time(s.step);
+    frames[b] = {pose(motion, now), motion.point, travelled(motion, motion_time(s.rebuild_step), now, body_reach_[b])};
   }
   const PairView view{s.position.data(), s.motion.data(), s.first.data(),   s.partner.data(), s.in_range.data(),
                       s.spring.data(),   image_.data(),   setup_.time_step, grain.range()};
@@ -287,7 +279,9 @@ bool Simulation::list_is_stale() const {
   const double moved = std::sqrt(max_displacement2_);
   if (!(moved < 0.5 * setup_.skin)) return true;
   for (std::size_t b = 0; b < setup_.bodies.size(); ++b) {
-    if (!(moved + std::abs(angle(b) - state_.angle_at_rebuild[b]) * body_radius_[b] < setup_.skin)) return true;
+    const double came =
+        travelled(setup_.bodies[b].motion, motion_time(state_.rebuild_step), motion_time(state_.step), body_reach_[b]);
+    if (!(moved + came < setup_.skin)) return true;
   }
   return false;
 }

@@ -13,18 +13,17 @@
 
 #include "dem/contact_law.hpp"
 #include "dem/mesh.hpp"
+#include "dem/motion.hpp"
 #include "dem/state.hpp"
 #include "dem/team.hpp"
 
 namespace dem {
 
-/// A rigid body whose surface the spheres meet; the mesh is given at angle 0.
+/// A rigid body whose surface the spheres meet; the mesh is given before the motion.
 struct Body {
   std::string name;
-  TriangleMesh mesh;              ///< m, welded; with its periodic copies where the box is periodic
-  Vec3 axis_point;                ///< m
-  Vec3 axis{1.0, 0.0, 0.0};       ///< unit
-  double angular_velocity = 0.0;  ///< rad/s about axis
+  TriangleMesh mesh;  ///< m, welded; with its periodic copies where the box is periodic
+  Motion motion;
 };
 
 struct Spheres {
@@ -48,13 +47,14 @@ struct Setup {
   Vec3 gravity{0.0, 0.0, -9.81};  ///< m/s2
   double time_step = 0.0;         ///< s
   double skin = 0.0;              ///< m
+  std::uint64_t rest_steps = 0;   ///< before the bodies' motions begin
   int threads = 1;
 };
 
 /// Load of the powder on a body.
 struct BodyLoad {
   Vec3 force;   ///< N
-  Vec3 torque;  ///< N m about axis_point; arms from there to the contact point
+  Vec3 torque;  ///< N m about the motion's point, where it is now; arms from there to the contact point
 };
 inline constexpr std::size_t max_bodies = 4;
 
@@ -79,8 +79,6 @@ class Simulation {
 
   /// One time step. Throws Fault.
   void step();
-  /// From now on the body turns at this speed [rad/s].
-  void turn(std::size_t body, double angular_velocity);
 
   const Setup& setup() const { return setup_; }
   const State& state() const { return state_; }
@@ -89,9 +87,8 @@ class Simulation {
   double mass() const { return mass_; }                                                ///< kg, of one sphere
   double inertia() const { return inertia_; }                                          ///< kg m2
   const StepSums& sums() const { return sums_; }
-  double angle(std::size_t body) const;  ///< rad
-  double kinetic_energy() const;         ///< J, translation and rotation
-  Vec3 momentum() const;                 ///< kg m/s
+  double kinetic_energy() const;  ///< J, translation and rotation
+  Vec3 momentum() const;          ///< kg m/s
   /// Velocities at the time of the positions, exact to the integrator's order.
   MotionRow motion(std::size_t particle) const;
 
@@ -100,6 +97,7 @@ class Simulation {
   void contacts(const Law& grain, const Law& wall);
   void compute_forces();
   void integrate();
+  double motion_time(std::uint64_t step) const;  ///< s since the motions began
   bool list_is_stale() const;
   void rebuild();
   void wrap();
@@ -109,7 +107,7 @@ class Simulation {
   Setup setup_;
   State state_;
   std::vector<Surface> surface_;
-  std::vector<double> body_radius_;  ///< m, largest distance from the axis
+  std::vector<Reach> body_reach_;  ///< of its surface and a sphere's radius
   double mass_ = 0.0, inertia_ = 0.0, range_ = 0.0;
   std::array<VectorRow, 27> image_;  ///< m, added to the partner's position
   double max_displacement2_ = 0.0;   ///< m2

@@ -47,17 +47,10 @@ struct WallSlot {
   WallSpring contact[max_touches];
 };
 
-/// How a body turns: angle = angle_then + angular_velocity (step - step_then) dt.
-struct Turning {
-  double angular_velocity = 0.0;  ///< rad/s
-  double angle_then = 0.0;        ///< rad
-  std::uint64_t step_then = 0;
-};
-
 struct State {
   std::uint64_t step = 0;
   std::uint64_t rebuilds = 0;
-  std::vector<Turning> turning;  ///< per body
+  std::uint64_t rebuild_step = 0;  ///< of the last one
   std::vector<PositionRow> position;
   std::vector<MotionRow> motion;  ///< at the time of `position`: what contacts see
   std::vector<MotionRow> half;    ///< half a step earlier: what is integrated
@@ -73,7 +66,6 @@ struct State {
   std::vector<std::uint32_t> wall_first;  ///< per block of particles
   std::vector<std::uint32_t> features;    ///< of each slot, nearest first
   std::vector<double> feature_gap;        ///< m, from the sphere to the feature at the rebuild, at least
-  std::vector<double> angle_at_rebuild;   ///< per body [rad]
 };
 
 inline constexpr std::uint32_t image_shift = 27;
