@@ -1,7 +1,8 @@
 // demcal check: reads everything, reports every problem at once, simulates nothing.
 #include <fmt/core.h>
 
-#include "cli/command.hpp"
+#include "cli/point.hpp"
+#include "dem/rig.hpp"
 
 namespace cli {
 
@@ -16,6 +17,12 @@ Action add_check(CLI::App& program) {
     std::vector<std::string> warnings = rows.notes;
     for (const data::Problem& problem : data::outside_training_range(study))
       warnings.push_back(data::describe({problem}));
+    for (const auto& [material, unused] : workspace.cases) {
+      const dem::Case c = case_at(workspace, parse_point(workspace, material, {}));
+      dem::build_rig(c, study.seed);  // whether the spheres fit
+      const std::vector<std::string> broken = dem::rig_warnings(c);
+      if (material == workspace.cases.begin()->first) warnings.insert(warnings.end(), broken.begin(), broken.end());
+    }
     if (study.cases.empty())
       warnings.push_back("there is no [[calibrate]] case yet: the study can train, not calibrate");
     for (const std::string& warning : warnings) say(*common, "warning: " + warning);

@@ -32,6 +32,9 @@ trough_radius = "7.1 mm"
 pitch = "12 mm"
 fill = 2400                    # spheres in the box, or their mass: "4 g"
 
+# Your own machine: kind = "stl", [rig.box] low, high, periodic = ["x"], and for each STL file from CAD a table
+# [[rig.mesh]]: name, file, unit = "mm", and for what the study's rpm turns axis = [1, 0, 0], point, speed_ratio = 1.
+
 [materials.powder]
 density = "6090 kg/m3"
 diameter = "0.8 mm"            # of the simulated spheres

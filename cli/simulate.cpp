@@ -8,7 +8,8 @@
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
 #include "data/provenance.hpp"
-#include "dem/slice.hpp"
+#include "dem/rig.hpp"
+#include "dem/stl.hpp"
 
 namespace cli {
 namespace {
@@ -83,13 +84,13 @@ Action add_simulate(CLI::App& program) {
     const std::filesystem::path out = workspace.out;
     const std::string path = (out / "run.h5").string();
     if (options->stl) {
-      const dem::Rig rig = case_at(workspace, point).rig;
-      dem::write_stl(dem::auger_mesh(rig), (out / "mixer.stl").string());
-      dem::write_stl(dem::trough_mesh(rig, 2.0 * rig.blade_radius), (out / "trough.stl").string());
+      for (const dem::NamedMesh& mesh : dem::rig_meshes(case_at(workspace, point)))
+        dem::write_stl(mesh.mesh, (out / (mesh.name + ".stl")).string());
     }
     say(common,
         fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point)));
 
+    for (const std::string& warning : dem::rig_warnings(case_at(workspace, point))) say(common, "warning: " + warning);
     dem::RunResult result;
     {
       data::Progress progress("simulating (at most)", 1000,

@@ -1,15 +1,19 @@
 #pragma once
 // One DEM case as plain data: the rig, the material, the contact law and how long to run. SI units throughout.
 // Everything a study may calibrate or control is reached by name (dem/target.hpp).
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "dem/laws.hpp"
+#include "dem/stl_rig.hpp"
 
 namespace dem {
 
-/// The horizontal auger slice: shaft and helical blade, turning about +x in an open U-trough; periodic along x.
+/// The horizontal auger slice: shaft and helical blade, turning about +x in an open U-trough; periodic along x. Or,
+/// when `stl` is set, the user's meshes; then only fill and angular velocity are used here.
 struct Rig {
+  std::shared_ptr<const StlRig> stl;
   double shaft_radius = 2.5e-3;                  ///< m
   double blade_radius = 6.0e-3;                  ///< m
   double blade_thickness = 1.0e-3;               ///< m, along the axis
@@ -18,7 +22,7 @@ struct Rig {
   int pitches = 1;                               ///< periods of the helix in the box
   double fill = 2400.0;                          ///< number of spheres in the box, rounded
   std::optional<double> fill_mass;               ///< kg in the box; when set, the number follows from it
-  double angular_velocity = 15.707963267948966;  ///< rad/s about +x (150 rpm)
+  double angular_velocity = 15.707963267948966;  ///< rad/s about +x (150 rpm), or the meshes' axes
 };
 
 struct Material {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dem/contact_law.hpp"
+#include "dem/motion.hpp"
 #include "dem/state.hpp"
 
 namespace dem {
@@ -16,7 +17,7 @@ inline constexpr std::size_t max_bodies = 8;
 /// Load of the powder on a body.
 struct BodyLoad {
   Vec3 force;   ///< N
-  Vec3 torque;  ///< N m about axis_point; arms from there to the contact point
+  Vec3 torque;  ///< N m about the motion's point, where it is now; arms from there to the contact point
 };
 
 /// Sums over one step's contacts.
@@ -31,15 +32,11 @@ struct StepSums {
   double max_overlap = 0.0;  ///< of a radius
 };
 
-/// Where a body is and how it moves in this step.
+/// A body as this step sees it.
 struct Frame {
-  bool turned = false;  ///< else the rotation is none
-  Rotation rotation;
-  Vec3 point, spin;
+  Pose now;
+  Vec3 point;          ///< m, the motion's point in the body's frame
   double moved = 0.0;  ///< m, how far any point of the body came since the rebuild, at most
-
-  Vec3 to_lab(Vec3 a) const { return turned ? rotate(rotation, a) : a; }
-  Vec3 to_body(Vec3 a) const { return turned ? rotate_back(rotation, a) : a; }
 };
 
 /// What the forces of a step need beside the state.

@@ -121,7 +121,9 @@ class LawPass final : public ForcePass {
     if (asked == 0) return;
     const PositionRow& at = s.position[slot.particle];
     find_touches(around.surfaces[slot.body], {s.features.data() + slot.feature_first, asked},
-                 frame.point + frame.to_body(at.at - frame.point), at.radius + around.range, found);
+                 frame.point + (frame.now.turned ? rotate_back(frame.now.rotation, at.at - frame.now.point)
+                                                 : at.at - frame.now.point),
+                 at.radius + around.range, found);
   }
 
   /// A contact found, waiting to be evaluated.
@@ -172,9 +174,9 @@ class LawPass final : public ForcePass {
       const WallHit* const hit = hits + base;
       std::uint32_t particle[lanes];
       for (int k = 0; k < lanes; ++k) particle[k] = s.wall[hit[k].slot].particle;
-      const auto turned = [&](const Vector3<Lane>& a) { return frame.turned ? rotate(frame.rotation, a) : a; };
+      const auto turned = [&](const Vector3<Lane>& a) { return frame.now.turned ? rotate(frame.now.rotation, a) : a; };
       const auto turned_back = [&](const Vector3<Lane>& a) {
-        return frame.turned ? rotate_back(frame.rotation, a) : a;
+        return frame.now.turned ? rotate_back(frame.now.rotation, a) : a;
       };
       const LaneRows at = transposed([&](int k) -> Four { return four(s.position[particle[k]].at.x); });
       const LaneRows velocity = transposed([&](int k) -> Four { return four(s.motion[particle[k]].velocity.x); });
@@ -189,10 +191,11 @@ class LawPass final : public ForcePass {
       }
       const Vector3<Lane> n = turned(normal.v);
       const Lane distance = normal.w, radius = at.w;
-      const Vector3<Lane> arm = at.v - spread(frame.point) - distance * n;  // from the axis point to the contact point
-      const Vector3<Lane> of_wall = cross(spread(frame.spin), arm);
+      const Vector3<Lane> arm =
+          at.v - spread(frame.now.point) - distance * n;  // from the motion's point to the contact point
+      const Vector3<Lane> of_wall = spread(frame.now.velocity) + cross(spread(frame.now.spin), arm);
       const Meeting<Lane> m{n, radius - distance, velocity.v - distance * cross(spin.v, n) - of_wall,
-                            spin.v - spread(frame.spin)};
+                            spin.v - spread(frame.now.spin)};
       const auto react = [&]() -> Reaction<Lane> {
         if (equal()) return one(m, history, around.time_step);
         const auto law_of = [&](int k) { return &wall(s.motion[particle[k]], body); };
@@ -219,7 +222,7 @@ class LawPass final : public ForcePass {
       const Lane valid = first_lanes(used);
       body_force -= valid * force;
       body_torque -= valid * (cross(arm, force) + r.couple);
-      tool_work += valid * (dot(force, of_wall) + dot(r.couple, spread(frame.spin)));
+      tool_work += valid * (dot(force, of_wall) + dot(r.couple, spread(frame.now.spin)));
       dissipated += valid * r.dissipated;
       const Lane relative = m.overlap / radius;
       max_overlap = larger(max_overlap, relative);

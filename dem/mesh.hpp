@@ -1,8 +1,7 @@
 #pragma once
-// Triangle meshes: vertices shared by index, welded, written to and read from STL.
+// Triangle meshes: vertices shared by index, welded, repeated along periodic axes.
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "dem/vec3.hpp"
@@ -17,13 +16,11 @@ struct TriangleMesh {
 /// Merges vertices closer than `tolerance` [m] and drops triangles without area.
 TriangleMesh weld(const TriangleMesh& mesh, double tolerance);
 
-/// The mesh and its copies shifted by -period and +period, welded: what a sphere of a periodic box meets.
-TriangleMesh with_copies(const TriangleMesh& mesh, Vec3 period);
+/// The mesh, then its copies shifted by -1, 0 and +1 of each period in all combinations, welded within `tolerance` [m]:
+/// what a sphere of a periodic box meets.
+TriangleMesh with_copies(const TriangleMesh& mesh, const std::vector<Vec3>& periods, double tolerance);
 
 /// Appends one mesh to another (not welded).
 void append(TriangleMesh& mesh, const TriangleMesh& other);
-
-/// Binary STL (single precision, by that format). Throws data::InputError when the file cannot be written.
-void write_stl(const TriangleMesh& mesh, const std::string& path);
 
 }  // namespace dem

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "dem/read_stl_rig.hpp"
 #include "dem/target.hpp"
 
 namespace dem {
@@ -47,11 +48,16 @@ void read_fill(const Section& s, Case& c) {
   }
 }
 
-void read_rig(const Section& s, Case& c) {
-  s.choice("kind", {"slice"}, "slice");
-  for (const char* key : {"shaft_radius", "blade_radius", "blade_thickness", "pitch", "trough_radius", "rpm"})
-    read(s, "rig", key, c);
-  c.rig.pitches = static_cast<int>(s.integer("pitches", {.low = 1, .high = 1000}, c.rig.pitches));
+void read_rig(const Section& s, const std::string& folder, Case& c) {
+  if (s.choice("kind", {"slice", "stl"}, "slice") == "stl") {
+    c.rig.stl = read_stl_rig(s, folder);
+    if (!c.rig.stl->packing.empty()) c.rig.fill = static_cast<double>(c.rig.stl->packing.size());
+    read(s, "rig", "rpm", c);
+  } else {
+    for (const char* key : {"shaft_radius", "blade_radius", "blade_thickness", "pitch", "trough_radius", "rpm"})
+      read(s, "rig", key, c);
+    c.rig.pitches = static_cast<int>(s.integer("pitches", {.low = 1, .high = 1000}, c.rig.pitches));
+  }
   read_fill(s, c);
 }
 
@@ -91,7 +97,7 @@ void read_material(const Section& s, Case& c) {
 Case read_case(const data::StudyFile& study, std::string_view material) {
   const Section root = study.root();
   Case c;
-  read_rig(root.child("rig"), c);
+  read_rig(root.child("rig"), study.folder(), c);
   read_contact(root.child("contact"), c);
   read_run(root.child("run"), c.run);
   c.run.standard_error =

@@ -3,7 +3,8 @@
 //
 // [rig]      kind = "slice"; shaft_radius, blade_radius, blade_thickness, pitch, trough_radius (lengths), pitches
 // (count),
-//            fill (number of spheres, or a mass with its unit), rpm (angular speed, for `simulate` without a control)
+//            fill (number of spheres, or a mass with its unit), rpm (angular speed, for `simulate` without a control);
+//            kind = "stl": dem/read_stl_rig.hpp
 // [materials.NAME]  density, diameter, fill (instead of the rig's), coarse_graining, and any key of [contact] in a
 //            sub-table [materials.NAME.contact] that differs for this material
 // [contact]  stiffness, wall_stiffness, restitution, tangential_ratio, tangential_damping, friction, wall_friction,

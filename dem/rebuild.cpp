@@ -73,6 +73,7 @@ void Simulation::rebuild() {
   cut_chunks();
   list_walls();
   max_displacement2_ = 0.0;
+  state_.rebuild_step = state_.step;
   ++state_.rebuilds;
 }
 
@@ -293,12 +294,8 @@ void Simulation::list_walls() {
   std::vector<std::uint32_t> old(n * bodies, none);
   for (std::size_t w = 0; w < s.wall.size(); ++w)
     old[place_[s.wall[w].particle] * bodies + s.wall[w].body] = static_cast<std::uint32_t>(w);
-  std::vector<Rotation> rotation(bodies);
-  s.angle_at_rebuild.resize(bodies);
-  for (std::size_t b = 0; b < bodies; ++b) {
-    s.angle_at_rebuild[b] = angle(b);
-    rotation[b] = rotation_about(setup_.bodies[b].axis, angle(b));
-  }
+  std::vector<Pose> now;
+  for (const Body& body : setup_.bodies) now.push_back(pose(body.motion, motion_time(s.step)));
   std::vector<WallSlot> wall;
   std::vector<NearFeature> near;
   s.features.clear();
@@ -306,9 +303,9 @@ void Simulation::list_walls() {
   s.chunk_wall.assign(1, 0);
   for (std::size_t c = 0; c < s.chunks(); ++c) {
     for (std::size_t b = 0; b < bodies; ++b) {
-      const Vec3 point = setup_.bodies[b].axis_point;
+      const Vec3 point = setup_.bodies[b].motion.point;
       for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
-        const Vec3 in_body = point + rotate_back(rotation[b], s.position[i].at - point);
+        const Vec3 in_body = point + rotate_back(now[b].rotation, s.position[i].at - now[b].point);
         const std::size_t before = s.features.size();
         const double touching = s.position[i].radius + range_;
         find_features(surface_[b], in_body, touching + setup_.skin, near);

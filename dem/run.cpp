@@ -6,11 +6,10 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <numbers>
 #include <stdexcept>
 
 #include "data/error.hpp"
-#include "dem/slice.hpp"
+#include "dem/rig.hpp"
 #include "dem/target.hpp"
 
 namespace dem {
@@ -33,16 +32,15 @@ struct Plan {
   std::uint64_t settle, sample, start_up, shortest, longest, check;  ///< steps; start_up and on count from turning
 };
 
-Plan make_plan(const Case& c, const Derived& d) {
+Plan make_plan(const Case& c, const Derived& d, const Sensor& sensor) {
   const RunControl& r = c.run;
   const double dt = d.time_step;
   Plan p{};
   p.sample = std::max<std::uint64_t>(1, steps_in(r.sample_interval, dt));
   p.settle = steps_in(r.settle, dt);
   p.start_up = steps_in(r.start_up, dt);
-  const double turn = 2.0 * std::numbers::pi / std::abs(c.rig.angular_velocity);
   p.longest = std::max(steps_in(r.longest, dt), p.start_up + p.sample);
-  p.shortest = std::min(p.longest, p.start_up + steps_in(std::max(r.shortest, r.shortest_turns * turn), dt));
+  p.shortest = std::min(p.longest, p.start_up + steps_in(std::max(r.shortest, r.shortest_turns * sensor.period), dt));
   p.check = std::max<std::uint64_t>(1, steps_in(check_interval, dt) / p.sample) * p.sample;
   return p;
 }
@@ -92,15 +90,15 @@ Summary summarise(const Case& c, const Series& s) {
   return summary;
 }
 
-void take_sample(const Case& c, const Derived& d, const Simulation& simulation, std::uint64_t turning_steps,
+void take_sample(const Case& c, const Sensor& sensor, const Simulation& simulation, std::uint64_t turning_steps,
                  Checkpoint& now) {
+  const Derived d = derive(c);
   const double n = static_cast<double>(now.under_way.steps), spheres = static_cast<double>(d.spheres);
-  const double way = c.rig.angular_velocity > 0.0 ? -1.0 : 1.0;
-  const double momentum = simulation.momentum().x;
+  const double momentum = dot(sensor.flow_axis, simulation.momentum());
   Series& s = now.series;
   s.time.push_back(static_cast<double>(turning_steps) * d.time_step);
-  s.torque.push_back(way * now.under_way.torque / n);
-  s.axial_flow.push_back(way * momentum / (c.rig.pitches * c.rig.pitch));
+  s.torque.push_back(now.under_way.torque / n);
+  s.axial_flow.push_back(momentum / sensor.flow_length);
   s.coordination.push_back(2.0 * now.under_way.contacts / n / spheres);
   s.kinetic_energy.push_back(simulation.kinetic_energy());
   const double volume = spheres * d.mass / c.material.density;
@@ -142,7 +140,9 @@ const data::SeriesMean& output(const RunResult& result, std::string_view name) {
 RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   if (auto found = problems(c); !found.empty()) throw data::InputError(data::ExitStatus::bad_study, std::move(found));
   const Derived d = derive(c);
-  const Plan plan = make_plan(c, d);
+  BuiltRig rig = build_rig(c, seed);
+  const Sensor sensor = rig.sensor;
+  const Plan plan = make_plan(c, d, sensor);
   RunResult result;
   result.seed = seed;
   result.diagnostics.derived = d;
@@ -154,7 +154,7 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   double cpu_earlier = 0.0;
 
   try {
-    Simulation simulation(make_slice(c, seed, options.threads));
+    Simulation simulation(make_setup(c, std::move(rig), plan.settle, options.threads));
     if (options.resume != nullptr) {
       now = *options.resume;
       cpu_earlier = now.under_way.cpu_seconds;
@@ -167,7 +167,6 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
     bool done = false;
     try {
       for (std::uint64_t look = 0; !done; ++look) {
-        if (simulation.state().step == plan.settle) simulation.turn(mixer, c.rig.angular_velocity);
         simulation.step();
         if (look % 256 == 0 && options.stop.stop_requested()) {
           result.status = RunStatus::interrupted;
@@ -177,12 +176,12 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
         const std::uint64_t turning = simulation.state().step - plan.settle;
         const StepSums& sums = simulation.sums();
         ++now.under_way.steps;
-        now.under_way.torque += sums.body[mixer].torque.x;
+        now.under_way.torque += dot(sensor.torque_axis, sums.body[sensor.body].torque);
         now.under_way.contacts += static_cast<double>(sums.contacts);
         now.under_way.virial += sums.virial;
         now.under_way.deep_contacts += sums.deep;
         now.under_way.max_overlap = std::max(now.under_way.max_overlap, sums.max_overlap);
-        if (turning % plan.sample == 0) take_sample(c, d, simulation, turning, now);
+        if (turning % plan.sample == 0) take_sample(c, sensor, simulation, turning, now);
         if (turning % plan.check == 0 || turning >= plan.longest) {
           double torque = 0.0, error = 1.0;
           if (turning > plan.start_up) {

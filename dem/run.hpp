@@ -3,11 +3,11 @@
 //
 // Samples are means over the steps since the last one, so that nothing aliases; those of the settling are not kept.
 //   torque              N m, what the drive must supply: minus the powder's moment on the mixer about its axis,
-//   positive
-//                       when the powder resists
+//                       positive when the powder resists (a rig from STL says which mesh: dem/stl_rig.hpp)
 //   torque_fluctuation  N m, standard deviation of the torque averaged over windows of RunControl::window; its error is
 //                       that of n independent windows, sd / sqrt(2 (n - 1))
-//   axial_flow          kg/s, sum of m v_x over the box / its length, positive the way the helix conveys
+//   axial_flow          kg/s, sum of m v_x over the box / its length, positive the way the helix conveys (a rig
+//                       from STL: along the axis)
 //   coordination        touching spheres per sphere, walls not counted
 //   kinetic_energy      J, translation and rotation, of the whole box
 //   normal_stress       Pa, sum over sphere contacts of normal force * distance of the centres / (3 * volume of the

@@ -19,7 +19,6 @@ constexpr std::int64_t format = 2;
 /// Calls visit(name, vector) for each vector of the state; rows are plain data.
 template <class AnyState, class Visit>
 void each_vector(AnyState& s, Visit&& visit) {
-  visit("turning", s.turning);
   visit("position", s.position);
   visit("motion", s.motion);
   visit("half", s.half);
@@ -40,7 +39,6 @@ void each_vector(AnyState& s, Visit&& visit) {
   visit("wall", s.wall);
   visit("features", s.features);
   visit("feature_gap", s.feature_gap);
-  visit("angle_at_rebuild", s.angle_at_rebuild);
 }
 
 template <class AnySeries, class Visit>
@@ -57,6 +55,7 @@ void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
   group.set("step", static_cast<std::int64_t>(now.state.step));
   group.set("rebuilds", static_cast<std::int64_t>(now.state.rebuilds));
   group.set("dissipated_J", now.state.dissipated);
+  group.set("rebuild_step", static_cast<std::int64_t>(now.state.rebuild_step));
   each_vector(now.state, [&](const char* name, const auto& rows) {
     const std::size_t row = sizeof(rows[0]);
     std::vector<std::uint8_t> bytes(rows.size() * row);
@@ -73,6 +72,7 @@ Checkpoint read_checkpoint(const data::Hdf5Group& group) {
   now.state.step = static_cast<std::uint64_t>(group.integer("step"));
   now.state.rebuilds = static_cast<std::uint64_t>(group.integer("rebuilds"));
   now.state.dissipated = group.number("dissipated_J");
+  now.state.rebuild_step = static_cast<std::uint64_t>(group.integer("rebuild_step"));
   each_vector(now.state, [&](const char* name, auto& rows) {
     const auto bytes = group.read<std::uint8_t>(name);
     const std::size_t row = sizeof(rows[0]);

@@ -41,10 +41,12 @@ Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.thr
   if (setup_.bodies.size() > max_bodies) throw Fault(fmt::format("more than {} bodies", max_bodies));
   for (const Body& b : setup_.bodies) {
     surface_.push_back(make_surface(b.mesh, largest_radius_ + range_ + setup_.skin));
-    double far = 0.0;
-    for (const Vec3 v : b.mesh.vertices) far = std::max(far, length(cross(b.axis, v - b.axis_point)));
-    body_radius_.push_back(far + largest_radius_);
-    state_.turning.push_back({.angular_velocity = b.angular_velocity});
+    Reach reach;
+    for (const Vec3 v : b.mesh.vertices) {
+      reach.from_axis = std::max(reach.from_axis, length(cross(b.motion.axis, v - b.motion.point)));
+      reach.from_point = std::max(reach.from_point, length(v - b.motion.point));
+    }
+    body_reach_.push_back({reach.from_axis + largest_radius_, reach.from_point + largest_radius_});
   }
 
   for (std::size_t i = 0; i < n; ++i) {
@@ -81,27 +83,16 @@ void Simulation::restore(State state) {
   max_displacement2_ = 0.0;
 }
 
-double Simulation::angle(std::size_t body) const {
-  const Turning& t = state_.turning[body];
-  return t.angle_then + t.angular_velocity * (static_cast<double>(state_.step - t.step_then) * setup_.time_step);
-}
-
-void Simulation::turn(std::size_t body, double angular_velocity) {
-  state_.turning[body] = {angular_velocity, angle(body), state_.step};
+double Simulation::motion_time(std::uint64_t step) const {
+  return step > setup_.rest_steps ? static_cast<double>(step - setup_.rest_steps) * setup_.time_step : 0.0;
 }
 
 std::vector<Frame> Simulation::frames() const {
-  std::vector<Frame> frames(setup_.bodies.size());
-  for (std::size_t b = 0; b < frames.size(); ++b) {
-    const Body& body = setup_.bodies[b];
-    const double turned = angle(b);
-    if (turned != 0.0) {
-      frames[b].turned = true;
-      frames[b].rotation = rotation_about(body.axis, turned);
-    }
-    frames[b].moved = std::abs(turned - state_.angle_at_rebuild[b]) * body_radius_[b];
-    frames[b].point = body.axis_point;
-    frames[b].spin = state_.turning[b].angular_velocity * body.axis;
+  std::vector<Frame> frames;
+  const double now = motion_time(state_.step), then = motion_time(state_.rebuild_step);
+  for (std::size_t b = 0; b < setup_.bodies.size(); ++b) {
+    const Motion& motion = setup_.bodies[b].motion;
+    frames.push_back({pose(motion, now), motion.point, travelled(motion, then, now, body_reach_[b])});
   }
   return frames;
 }
@@ -191,7 +182,9 @@ bool Simulation::list_is_stale() const {
   const double moved = std::sqrt(max_displacement2_);
   if (!(moved < 0.5 * setup_.skin)) return true;
   for (std::size_t b = 0; b < setup_.bodies.size(); ++b) {
-    if (!(moved + std::abs(angle(b) - state_.angle_at_rebuild[b]) * body_radius_[b] < setup_.skin)) return true;
+    const double came =
+        travelled(setup_.bodies[b].motion, motion_time(state_.rebuild_step), motion_time(state_.step), body_reach_[b]);
+    if (!(moved + came < setup_.skin)) return true;
   }
   return false;
 }

@@ -13,18 +13,17 @@
 
 #include "dem/force_pass.hpp"
 #include "dem/mesh.hpp"
+#include "dem/motion.hpp"
 #include "dem/state.hpp"
 #include "dem/team.hpp"
 
 namespace dem {
 
-/// A rigid body whose surface the spheres meet; the mesh is given at angle 0.
+/// A rigid body whose surface the spheres meet; the mesh is given before the motion.
 struct Body {
   std::string name;
-  TriangleMesh mesh;              ///< m, welded; with its periodic copies where the box is periodic
-  Vec3 axis_point;                ///< m
-  Vec3 axis{1.0, 0.0, 0.0};       ///< unit
-  double angular_velocity = 0.0;  ///< rad/s about axis
+  TriangleMesh mesh;  ///< m, welded; with its periodic copies where the box is periodic
+  Motion motion;
 };
 
 struct Spheres {
@@ -46,6 +45,7 @@ struct Setup {
   Vec3 gravity{0.0, 0.0, -9.81};  ///< m/s2
   double time_step = 0.0;         ///< s
   double skin = 0.0;              ///< m
+  std::uint64_t rest_steps = 0;   ///< before the bodies' motions begin
   int threads = 1;
 };
 
@@ -66,16 +66,13 @@ class Simulation {
 
   /// One time step. Throws Fault.
   void step();
-  /// From now on the body turns at this speed [rad/s].
-  void turn(std::size_t body, double angular_velocity);
 
   const Setup& setup() const { return setup_; }
   const State& state() const { return state_; }
   void restore(State state);
   double time() const { return static_cast<double>(state_.step) * setup_.time_step; }  ///< s
   const StepSums& sums() const { return sums_; }
-  double angle(std::size_t body) const;  ///< rad
-  double kinetic_energy() const;         ///< J, translation and rotation
+  double kinetic_energy() const;  ///< J, translation and rotation
   Energy energy() const;
   Vec3 momentum() const;  ///< kg m/s
   /// Velocities at the time of the positions, exact to the integrator's order.
@@ -87,6 +84,7 @@ class Simulation {
   void add_halos();
   void integrate();
   void follow_owners();
+  double motion_time(std::uint64_t step) const;  ///< s since the motions began
   bool list_is_stale() const;
   void rebuild();
   void wrap();
@@ -102,10 +100,10 @@ class Simulation {
   Setup setup_;
   State state_;
   std::vector<Surface> surface_;
-  std::vector<double> body_radius_;  ///< m, largest distance from the axis
-  double largest_radius_ = 0.0;      ///< m
-  double range_ = 0.0;               ///< m, of the laws beyond touching
-  double max_displacement2_ = 0.0;   ///< m2
+  std::vector<Reach> body_reach_;   ///< of its surface and a sphere's radius
+  double largest_radius_ = 0.0;     ///< m
+  double range_ = 0.0;              ///< m, of the laws beyond touching
+  double max_displacement2_ = 0.0;  ///< m2
   StepSums sums_;
   std::vector<StepSums> chunk_sums_;
   std::vector<double> chunk_displacement2_;

@@ -1,5 +1,7 @@
 #include "dem/slice.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -141,10 +143,9 @@ Packing pack(const Case& c, std::uint64_t seed) {
   return packing;
 }
 
-Setup make_slice(const Case& c, std::uint64_t seed, int threads) {
-  const Derived d = derive(c);
+BuiltRig build_slice(const Case& c, std::uint64_t seed) {
   const Rig& rig = c.rig;
-  Setup s;
+  BuiltRig s;
   Packing packing = pack(c, seed);
   // High enough that a grain which the blade pinches against the trough and lets go does not fly over the rim.
   const double top = std::max(packing.top, rig.blade_radius) + 8.0 * rig.blade_radius;
@@ -152,26 +153,38 @@ Setup make_slice(const Case& c, std::uint64_t seed, int threads) {
   s.low = {0.0, -side, -side};
   s.high = {length, side, top};
   s.periodic = {true, false, false};
-  s.spheres.radius = {0.5 * c.material.diameter};
-  s.spheres.density = {c.material.density};
-  s.spheres.position = std::move(packing.position);
-  const Vec3 period{length, 0.0, 0.0};
-  s.bodies.push_back({.name = "mixer",
-                      .mesh = with_copies(auger_mesh(rig), period),
-                      .axis_point = {},
-                      .axis = {1.0, 0.0, 0.0},
-                      .angular_velocity = 0.0});
-  s.bodies.push_back({.name = "trough",
-                      .mesh = with_copies(trough_mesh(rig, top), period),
-                      .axis_point = {},
-                      .axis = {1.0, 0.0, 0.0},
-                      .angular_velocity = 0.0});
-  s.laws = make_force_pass(make_bed(c, s.bodies.size()));
-  s.gravity = {0.0, 0.0, -c.run.gravity};
-  s.time_step = d.time_step;
-  s.skin = d.skin;
-  s.threads = threads;
+  s.position = std::move(packing.position);
+  const Vec3 shift{length, 0.0, 0.0};
+  s.bodies.push_back({"mixer", with_copies(auger_mesh(rig), {shift}, 1e-9 * length), {}});
+  s.bodies[mixer].motion.programme = {{0.0, rig.angular_velocity}};
+  s.bodies.push_back({"trough", with_copies(trough_mesh(rig, top), {shift}, 1e-9 * length), {}});
+  const double way = rig.angular_velocity > 0.0 ? -1.0 : 1.0;
+  const Vec3 axis{way, 0.0, 0.0};
+  s.sensor = {mixer, axis, axis, length, period(s.bodies[mixer].motion)};
   return s;
+}
+
+std::vector<data::Problem> slice_problems(const Case& c) {
+  std::vector<data::Problem> found;
+  const Rig& rig = c.rig;
+  const double size = c.material.diameter, length = rig.pitches * rig.pitch;
+  if (!(rig.shaft_radius < rig.blade_radius && rig.blade_radius < rig.trough_radius)) {
+    found.push_back({"rig",
+                     fmt::format("has radii of shaft {:g}, blade {:g} and trough {:g} m, which must grow in this order",
+                                 rig.shaft_radius, rig.blade_radius, rig.trough_radius),
+                     "correct the radii"});
+  }
+  if (!(rig.blade_thickness < rig.pitch - 2.0 * size)) {
+    found.push_back({"rig.blade_thickness", "leaves no room for two spheres between the flights",
+                     "make the blade thinner or the pitch longer"});
+  }
+  if (!(length >= 4.0 * (1.0 + c.run.skin) * size)) {
+    found.push_back({"rig.pitch", fmt::format("gives a periodic box of {:g} m, shorter than four spheres", length),
+                     "raise pitches"});
+  }
+  if (rig.angular_velocity == 0.0)
+    found.push_back({"rig.rpm", "is zero: a mixer at rest has no torque to measure", "give a speed"});
+  return found;
 }
 
 }  // namespace dem

@@ -10,7 +10,7 @@
 
 #include "dem/case.hpp"
 #include "dem/mesh.hpp"
-#include "dem/simulation.hpp"
+#include "dem/rig.hpp"
 
 namespace dem {
 
@@ -27,10 +27,13 @@ struct Packing {
 };
 Packing pack(const Case& c, std::uint64_t seed);
 
-/// Indices of the bodies in the setup made by make_slice.
+/// Indices of the bodies in the rig made by build_slice.
 inline constexpr std::size_t mixer = 0, trough = 1;
 
-/// The whole case, mixer at rest.
-Setup make_slice(const Case& c, std::uint64_t seed, int threads);
+/// The torque is minus the powder's moment on the mixer: positive when the powder resists. The flow is positive the way
+/// the helix conveys.
+BuiltRig build_slice(const Case& c, std::uint64_t seed);
+
+std::vector<data::Problem> slice_problems(const Case& c);
 
 }  // namespace dem

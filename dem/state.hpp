@@ -57,13 +57,6 @@ struct WallSlot {
   WallMemory contact[max_touches];
 };
 
-/// How a body turns: angle = angle_then + angular_velocity (step - step_then) dt.
-struct Turning {
-  double angular_velocity = 0.0;  ///< rad/s
-  double angle_then = 0.0;        ///< rad
-  std::uint64_t step_then = 0;
-};
-
 /// A ghost row is its owner's, shifted.
 struct Ghost {
   std::uint32_t owner = 0;
@@ -73,8 +66,8 @@ struct Ghost {
 struct State {
   std::uint64_t step = 0;
   std::uint64_t rebuilds = 0;
-  double dissipated = 0.0;       ///< J, since the start
-  std::vector<Turning> turning;  ///< per body
+  std::uint64_t rebuild_step = 0;  ///< of the last one
+  double dissipated = 0.0;         ///< J, since the start
   // particles, then ghosts
   std::vector<PositionRow> position;
   std::vector<MotionRow> motion;  ///< at the time of `position`: what contacts see
@@ -96,10 +89,9 @@ struct State {
   std::vector<std::uint32_t> halo_owner;               ///< particle of each halo entry
   std::vector<std::uint32_t> halo_part;  ///< first entry for chunk d in chunk c's halo, at c * chunks + d; one more
   // walls
-  std::vector<WallSlot> wall;            ///< sorted by chunk, body, particle
-  std::vector<std::uint32_t> features;   ///< of each slot, nearest first
-  std::vector<double> feature_gap;       ///< m, from the sphere to the feature at the rebuild, at least
-  std::vector<double> angle_at_rebuild;  ///< per body [rad]
+  std::vector<WallSlot> wall;           ///< sorted by chunk, body, particle
+  std::vector<std::uint32_t> features;  ///< of each slot, nearest first
+  std::vector<double> feature_gap;      ///< m, from the sphere to the feature at the rebuild, at least
 
   std::size_t particles() const { return half.size(); }
   std::size_t chunks() const { return chunk_first.size() - 1; }

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "dem/derived.hpp"
+#include "dem/rig.hpp"
 
 namespace dem {
 namespace {
@@ -139,6 +140,10 @@ void set_target(Case& c, std::string_view name, double si) {
                            {t.name, fmt::format("is {:g} {}, but must lie in [{:g}, {:g}]", si, t.unit, t.low, t.high),
                             "choose a value inside it"});
   }
+  if (!rig_has(c, t.name)) {
+    throw data::InputError(data::ExitStatus::bad_study, {t.name, "is a dimension of the slice, and this rig has none",
+                                                         "choose another target, or kind = \"slice\""});
+  }
   b->set(c, si);
 }
 
@@ -147,6 +152,7 @@ double get_target(const Case& c, std::string_view name) { return binding(name).g
 std::vector<data::Problem> problems(const Case& c) {
   std::vector<data::Problem> found;
   for (const Binding& b : bindings()) {
+    if (!rig_has(c, b.target.name)) continue;
     const double x = b.get(c);
     const Target& t = b.target;
     if (!(x >= t.low && x <= t.high)) {
@@ -156,28 +162,14 @@ std::vector<data::Problem> problems(const Case& c) {
   }
   if (!found.empty()) return found;
   const Derived d = derive(c);
-  const Rig& rig = c.rig;
-  const double size = c.material.diameter, length = rig.pitches * rig.pitch;
+  const double size = c.material.diameter;
   const auto add = [&](std::string place, std::string what, std::string remedy) {
     found.push_back({std::move(place), std::move(what), std::move(remedy)});
   };
   if (d.spheres == 0) add("rig.fill", "leaves no sphere in the box", "give a larger fill");
-  if (!(rig.shaft_radius < rig.blade_radius && rig.blade_radius < rig.trough_radius)) {
-    add("rig",
-        fmt::format("has radii of shaft {:g}, blade {:g} and trough {:g} m, which must grow in this order",
-                    rig.shaft_radius, rig.blade_radius, rig.trough_radius),
-        "correct the radii");
-  }
-  if (!(rig.blade_thickness < rig.pitch - 2.0 * size)) {
-    add("rig.blade_thickness", "leaves no room for two spheres between the flights",
-        "make the blade thinner or the pitch longer");
-  }
-  if (!(length >= 4.0 * (1.0 + c.run.skin) * size)) {
-    add("rig.pitch", fmt::format("gives a periodic box of {:g} m, shorter than four spheres", length), "raise pitches");
-  }
+  for (data::Problem& p : rig_problems(c)) found.push_back(std::move(p));
   // What rests on one sphere at the bottom of the fill must not press it flat.
-  const double depth = static_cast<double>(d.spheres) * size * size * size / (length * 2.0 * rig.trough_radius);
-  const double rest = d.weight * depth / size / c.contact.stiffness;
+  const double rest = d.weight * fill_depth(c) / size / c.contact.stiffness;
   const double pulled = (d.pull_off + rest * c.contact.stiffness) / c.contact.stiffness;
   if (pulled > 0.05 * size) {
     add("contact.stiffness",
@@ -190,7 +182,6 @@ std::vector<data::Problem> problems(const Case& c) {
     add("contact.cut_off", "is shorter than the minimum separation",
         "make it longer, or the minimum separation shorter");
   }
-  if (rig.angular_velocity == 0.0) add("rig.rpm", "is zero: a mixer at rest has no torque to measure", "give a speed");
   if (!(c.run.longest > c.run.start_up))
     add("run.longest", "leaves nothing to measure after the start-up", "make it longer");
   if (!(c.run.steps_per_contact >= 15.0)) {
@@ -202,14 +193,15 @@ std::vector<data::Problem> problems(const Case& c) {
 }
 
 std::string settings_text(const Case& c) {
-  std::string text = "rig.kind = slice\n";
+  std::string text = fmt::format("rig.kind = {}\n", c.rig.stl ? "stl" : "slice");
   const auto line = [&](std::string_view name, double value, std::string_view unit) {
     text += fmt::format("{} = {:.17g}{}{}\n", name, value, unit == "1" ? "" : " ", unit == "1" ? "" : unit);
   };
-  for (const Binding& b : bindings()) line(b.target.name, b.get(c), b.target.unit);
+  for (const Binding& b : bindings())
+    if (rig_has(c, b.target.name)) line(b.target.name, b.get(c), b.target.unit);
   const Contact& k = c.contact;
   const RunControl& r = c.run;
-  line("rig.pitches", c.rig.pitches, "1");
+  text += rig_settings(c);
   text += fmt::format("contact.tension = {}\n", k.tension == DashpotTension::allowed ? "allowed" : "clamped");
   text += fmt::format("contact.cap = {}\n", k.cap == FrictionCap::net         ? "net"
                                             : k.cap == FrictionCap::repulsion ? "repulsion"

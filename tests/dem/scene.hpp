@@ -6,6 +6,7 @@
 
 #include "dem/derived.hpp"
 #include "dem/mesh.hpp"
+#include "dem/rig.hpp"
 #include "dem/simulation.hpp"
 
 namespace scene {
@@ -46,9 +47,13 @@ inline dem::TriangleMesh plane(double half, int nx, int ny) {
   return mesh;
 }
 
-inline dem::Body floor(double half, int nx = 1, int ny = 1) {
-  return {
-      .name = "floor", .mesh = plane(half, nx, ny), .axis_point = {}, .axis = {1.0, 0.0, 0.0}, .angular_velocity = 0.0};
+inline dem::Body floor(double half, int nx = 1, int ny = 1) { return {"floor", plane(half, nx, ny), {}}; }
+
+inline constexpr std::uint64_t at_rest = ~std::uint64_t{0};
+
+/// The case's rig and filling; its bodies move from the first step, or are at rest.
+inline dem::Setup rig(const dem::Case& c, std::uint64_t seed, std::uint64_t rest_steps = 0, int threads = 1) {
+  return dem::make_setup(c, dem::build_rig(c, seed), rest_steps, threads);
 }
 
 /// Row of the particle that was given first, second, ...: particles are sorted as they move.

@@ -102,8 +102,7 @@ TEST_CASE("an edge or a vertex of a box pushes a sphere like a point, once, and 
   for (std::size_t k = 0; k < feet.size(); ++k) {
     const dem::Vec3 n = dem::unit(directions[k]);
     dem::Setup setup = scene::box(c, {feet[k] + away * n}, {});
-    setup.bodies.push_back(
-        {.name = "cube", .mesh = cube, .axis_point = {}, .axis = {1.0, 0.0, 0.0}, .angular_velocity = 0.0});
+    setup.bodies.push_back({"cube", cube, {}});
     const dem::Simulation s(std::move(setup));
     CHECK(s.sums().wall_contacts == 1);
     const dem::Vec3 miss = s.state().load[0].force - c.contact.stiffness * overlap * n;

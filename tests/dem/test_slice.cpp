@@ -48,7 +48,7 @@ TEST_CASE("spheres start clear of each other and of the walls, as many as were a
   dem::Case c;
   const dem::Packing packing = dem::pack(c, 3);
   REQUIRE(packing.position.size() == 2400);
-  const dem::Simulation s(dem::make_slice(c, 3, 1));
+  const dem::Simulation s(scene::rig(c, 3));
   CHECK(s.sums().contacts == 0);
   CHECK(s.sums().wall_contacts == 0);
   CHECK(dem::pack(c, 3).position[17].x == packing.position[17].x);
@@ -58,7 +58,7 @@ TEST_CASE("spheres start clear of each other and of the walls, as many as were a
 TEST_CASE("the meshes of mixer and trough share their seams with their periodic copies") {
   const dem::Rig rig;
   for (const dem::TriangleMesh& one : {dem::auger_mesh(rig), dem::trough_mesh(rig, 0.01)}) {
-    const dem::TriangleMesh three = dem::with_copies(one, {rig.pitch, 0.0, 0.0});
+    const dem::TriangleMesh three = dem::with_copies(one, {{rig.pitch, 0.0, 0.0}}, 1e-9 * rig.pitch);
     CHECK(three.triangles.size() == 3 * one.triangles.size());
     CHECK(three.vertices.size() < 3 * one.vertices.size());  // the copies share their seams
   }
@@ -97,8 +97,8 @@ TEST_CASE("the slice has the same bits with 1, 2 and 4 threads") {
     c.contact.hamaker = hamaker;
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 2, 4}) {
-      dem::Simulation s(dem::make_slice(c, 1, threads));
-      s.turn(dem::mixer, 100.0);
+      c.rig.angular_velocity = 100.0;
+      dem::Simulation s(scene::rig(c, 1, 0, threads));
       for (int k = 0; k < 800; ++k) s.step();
       CHECK(s.state().rebuilds > 3);
       hashes.push_back(hash(s.state()));
@@ -142,7 +142,7 @@ TEST_CASE("a stop request ends a run early with a checkpoint to go on from") {
 
 TEST_CASE("a sphere that leaves the rig ends the run with who, where and when") {
   dem::Case c = small_case();
-  dem::Setup setup = dem::make_slice(c, 1, 1);
+  dem::Setup setup = scene::rig(c, 1, scene::at_rest);
   setup.bodies.pop_back();  // no trough
   dem::Simulation s(std::move(setup));
   CHECK_THROWS_WITH(
@@ -204,9 +204,8 @@ TEST_CASE("what cannot be simulated is named before it is tried") {
 TEST_CASE("in steady state the torques of mixer and trough and the weight's moment balance", "[slow]") {
   // T_mixer + T_trough + sum m g y = rate of change of the angular momentum, which averages out.
   dem::Case c;
-  dem::Simulation s(dem::make_slice(c, 2, 1));
+  dem::Simulation s(scene::rig(c, 2, std::llround(0.06 / dem::derive(c).time_step)));
   while (s.time() < 0.06) s.step();
-  s.turn(dem::mixer, c.rig.angular_velocity);
   const double start = s.time() + 0.15;
   while (s.time() < start) s.step();
   double mixer = 0.0, trough = 0.0, weight = 0.0;
@@ -239,7 +238,7 @@ TEST_CASE("in steady state the torques of mixer and trough and the weight's mome
 
 TEST_CASE("powder in a mixer at rest comes to rest", "[slow]") {
   dem::Case c = small_case();
-  dem::Simulation s(dem::make_slice(c, 1, 1));
+  dem::Simulation s(scene::rig(c, 1, scene::at_rest));
   while (s.time() < 0.5) s.step();
   const double d = dem::derive(c).weight * c.material.diameter;
   CHECK(s.kinetic_energy() < 1e-4 * 350.0 * d);

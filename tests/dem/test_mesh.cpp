@@ -1,0 +1,176 @@
+// Meshes from STL, round trips, and the repair of broken ones.
+#include <catch2/catch.hpp>
+
+#include <cstring>
+#include <filesystem>
+
+#include "data/error.hpp"
+#include "dem/mesh_check.hpp"
+#include "dem/slice.hpp"
+#include "dem/stl.hpp"
+
+namespace {
+
+/// A unit cube's twelve triangles, outward, corners shared.
+dem::TriangleMesh cube(double size = 1.0, dem::Vec3 at = {}) {
+  dem::TriangleMesh mesh;
+  for (int k = 0; k < 8; ++k) mesh.vertices.push_back(at + size * dem::Vec3{k % 2 * 1.0, k / 2 % 2 * 1.0, k / 4 * 1.0});
+  const std::uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& f : faces) {
+    mesh.triangles.push_back({f[0], f[1], f[2]});
+    mesh.triangles.push_back({f[0], f[2], f[3]});
+  }
+  return mesh;
+}
+
+double volume(const dem::TriangleMesh& mesh) {
+  double sum = 0.0;
+  for (const auto& t : mesh.triangles)
+    sum += dot(mesh.vertices[t[0]], cross(mesh.vertices[t[1]], mesh.vertices[t[2]])) / 6.0;
+  return sum;
+}
+
+std::string ascii(const dem::TriangleMesh& mesh) {
+  std::string text = "solid a part of\n";
+  const auto numbers = [](dem::Vec3 v) {
+    return std::to_string(v.x) + " " + std::to_string(v.y) + " " + std::to_string(v.z) + "\n";
+  };
+  for (const auto& t : mesh.triangles) {
+    text += " facet normal 0 0 nan\n  OUTER loop\n";
+    for (const auto v : t) text += "   vertex " + numbers(mesh.vertices[v]);
+    text += "  endloop\n endfacet\n";
+  }
+  return text + "endsolid a part of\n";
+}
+
+std::string binary(const dem::TriangleMesh& mesh) {
+  std::string bytes = "solid, though binary";
+  bytes.resize(80, ' ');
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  bytes.append(reinterpret_cast<const char*>(&count), 4);
+  for (const auto& t : mesh.triangles) {
+    float row[12] = {};
+    for (int k = 0; k < 3; ++k) {
+      const dem::Vec3 v = mesh.vertices[t[k]];
+      row[3 + 3 * k] = static_cast<float>(v.x);
+      row[4 + 3 * k] = static_cast<float>(v.y);
+      row[5 + 3 * k] = static_cast<float>(v.z);
+    }
+    bytes.append(reinterpret_cast<const char*>(row), sizeof row);
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+std::string refusal(const std::string& bytes) {
+  try {
+    dem::parse_stl(bytes, "part.stl", 1.0);
+  } catch (const data::InputError& error) {
+    CHECK(error.status == data::ExitStatus::bad_data);
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a mesh written as STL is read back with the same triangles, to single precision") {
+  const dem::TriangleMesh mesh = dem::auger_mesh({});
+  const std::string path = (std::filesystem::temp_directory_path() / "demcal-test-mesh.stl").string();
+  dem::write_stl(mesh, path);
+  const dem::CheckedMesh back = dem::check_mesh(dem::read_stl(path, 1.0), "auger");
+  std::filesystem::remove(path);
+  CHECK(back.mesh.vertices.size() == mesh.vertices.size());
+  REQUIRE(back.mesh.triangles.size() == mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const dem::Vec3 a = mesh.vertices[mesh.triangles[t][k]], b = back.mesh.vertices[back.mesh.triangles[t][k]];
+      REQUIRE(length(a - b) < 1e-6 * 12e-3);
+    }
+  }
+}
+
+TEST_CASE("ASCII and binary give the same mesh, also when a binary file begins with 'solid', in the unit asked for") {
+  for (const std::string& bytes : {ascii(cube(2.0)), binary(cube(2.0))}) {
+    const dem::CheckedMesh checked = dem::check_mesh(dem::parse_stl(bytes, "part.stl", 1e-3), "part");
+    CHECK(checked.warnings.empty());
+    CHECK(checked.mesh.vertices.size() == 8);
+    CHECK(volume(checked.mesh) == Approx(8e-9));
+  }
+}
+
+TEST_CASE("a file that is cut, not finite, empty or not STL is refused by file and line or triangle") {
+  using Catch::Contains;
+  const std::string text = ascii(cube()), bytes = binary(cube());
+  CHECK_THAT(refusal(text.substr(0, text.find("endloop"))), Contains("part.stl:7") && Contains("truncated"));
+  CHECK_THAT(refusal(text.substr(0, text.find("endsolid"))), Contains("truncated"));
+  CHECK_THAT(refusal(bytes.substr(0, 400)), Contains("400 bytes") && Contains("684"));
+  CHECK_THAT(refusal(bytes + "more"), Contains("688 bytes"));
+  CHECK_THAT(refusal(""), Contains("is empty"));
+  CHECK_THAT(refusal("solid nothing\nendsolid nothing\n"), Contains("no triangle"));
+  CHECK_THAT(refusal(std::string(84, '\0')), Contains("no triangle"));
+  CHECK_THAT(refusal("ply\nformat ascii 1.0\n"), Contains("not STL"));
+  CHECK_THAT(refusal(std::string("\x89PNG\r\n\x1a\n\0\0\0", 11)), Contains("not STL"));
+  std::string broken = text;
+  broken.replace(broken.find("vertex 1.000000"), 15, "vertex inf     ");
+  CHECK_THAT(refusal(broken), Contains("'inf'") && Contains("not finite") && Contains("part.stl:"));
+  broken = text;
+  broken.replace(broken.find("vertex 1.000000"), 15, "vertex 1,000000");
+  CHECK_THAT(refusal(broken), Contains("1,000000") && Contains("coordinate"));
+  broken = bytes;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::memcpy(broken.data() + 84 + 2 * 50 + 12, &nan, sizeof nan);
+  CHECK_THAT(refusal(broken), Contains("triangle 3") && Contains("not finite"));
+}
+
+TEST_CASE("triangles without area and triangles given twice are left out with their count") {
+  dem::TriangleMesh mesh = cube();
+  mesh.triangles.push_back({0, 1, 1});
+  mesh.vertices.push_back({0.5, 0.0, 0.0});
+  mesh.triangles.push_back({0, 8, 1});  // on a line
+  mesh.triangles.push_back({5, 7, 4});  // given before, in another order
+  const dem::CheckedMesh checked = dem::check_mesh(mesh, "part");
+  CHECK(checked.mesh.triangles.size() == 12);
+  REQUIRE(checked.warnings.size() == 2);
+  CHECK_THAT(checked.warnings[0], Catch::Contains("part: 2 triangles without area"));
+  CHECK_THAT(checked.warnings[1], Catch::Contains("part: 1 triangles given twice"));
+  mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 12);
+  mesh.triangles.pop_back();
+  CHECK_THROWS_AS(dem::check_mesh(mesh, "part"), data::InputError);
+}
+
+TEST_CASE("inverted surfaces and single triangles are turned outwards; a cavity stays a cavity") {
+  const auto inverted = [](dem::TriangleMesh mesh, std::size_t count) {
+    for (std::size_t t = 0; t < count; ++t) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+    return mesh;
+  };
+  const dem::CheckedMesh whole = dem::check_mesh(inverted(cube(), 12), "part");
+  CHECK(volume(whole.mesh) == Approx(1.0));
+  REQUIRE(whole.warnings.size() == 1);
+  CHECK_THAT(whole.warnings[0], Catch::Contains("12 triangles of closed surfaces"));
+  for (const std::size_t few : {1, 5, 7, 11}) {
+    const dem::CheckedMesh some = dem::check_mesh(inverted(cube(), few), "part");
+    CHECK(volume(some.mesh) == Approx(1.0));
+    CHECK_THAT(some.warnings.at(0), Catch::Contains(std::to_string(std::min(few, 12 - few)) + " triangles oriented"));
+  }
+  dem::TriangleMesh hollow = cube(3.0);
+  dem::append(hollow, inverted(cube(1.0, {1.0, 1.0, 1.0}), 12));
+  const dem::CheckedMesh kept = dem::check_mesh(hollow, "part");
+  CHECK(kept.warnings.empty());
+  CHECK(volume(kept.mesh) == Approx(26.0));
+}
+
+TEST_CASE("open edges are counted except where a periodic copy goes on, and so are edges of three triangles") {
+  dem::TriangleMesh mesh = cube();
+  mesh.triangles.erase(mesh.triangles.begin() + 8, mesh.triangles.end());  // no walls across x: a tube along x
+  const dem::CheckedMesh tube = dem::check_mesh(mesh, "tube");
+  REQUIRE(tube.warnings.size() == 1);
+  CHECK_THAT(tube.warnings[0], Catch::Contains("8 open edges"));
+  CHECK(dem::check_mesh(mesh, "tube", {{1.0, 0.0, 0.0}}).warnings.empty());
+  CHECK_THAT(dem::check_mesh(mesh, "tube", {{0.0, 1.0, 0.0}}).warnings.at(0), Catch::Contains("open edges"));
+  mesh = cube();
+  mesh.vertices.push_back({2.0, 2.0, 2.0});
+  mesh.triangles.push_back({6, 7, 8});
+  CHECK_THAT(dem::check_mesh(mesh, "fin").warnings.back(), Catch::Contains("1 edges where more than two"));
+}

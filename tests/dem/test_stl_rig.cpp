@@ -1,0 +1,232 @@
+// Rigs of the user's own meshes: what a study says reaches the run, packings keep clear, mistakes are named.
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+#include "data/error.hpp"
+#include "dem/read_case.hpp"
+#include "dem/run.hpp"
+#include "dem/slice.hpp"
+#include "dem/stl.hpp"
+#include "dem/stl_rig.hpp"
+#include "dem/target.hpp"
+#include "scene.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A folder with the default slice's mixer and trough as STL.
+struct SliceFolder {
+  fs::path path;
+  SliceFolder()
+      : path(fs::temp_directory_path() /
+             ("demcal-test-rig-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)))) {
+    fs::create_directories(path);
+    dem::write_stl(dem::auger_mesh({}), (path / "mixer.stl").string());
+    dem::write_stl(dem::trough_mesh({}, 0.06), (path / "trough.stl").string());
+  }
+  ~SliceFolder() { fs::remove_all(path); }
+  data::StudyFile study(const std::string& text) const {
+    std::ofstream(path / "study.toml") << text;
+    return data::StudyFile::open(path.string());
+  }
+};
+
+const std::string rig = R"(
+[rig]
+kind = "stl"
+rpm = "150 rpm"
+fill = 400
+[rig.box]
+low = ["0 mm", "-7.1 mm", "-7.1 mm"]
+high = ["12 mm", "7.1 mm", "60 mm"]
+periodic = ["x"]
+[rig.region]
+low = ["0 mm", "-7.1 mm", "-7.1 mm"]
+high = ["12 mm", "7.1 mm", "30 mm"]
+[[rig.mesh]]
+name = "mixer"
+file = "mixer.stl"
+unit = "m"
+speed_ratio = 1
+[[rig.mesh]]
+name = "trough"
+file = "trough.stl"
+unit = "m"
+)";
+const std::string rest = R"(
+[materials.steel]
+density = "7800 kg/m3"
+diameter = "1.4 mm"
+[run]
+settle = "20 ms"
+start_up = "10 ms"
+shortest = "10 ms"
+longest = "30 ms"
+)";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+std::string said(const SliceFolder& folder, const std::string& text) {
+  const data::StudyFile file = folder.study(text);
+  dem::read_case(file, "steel");
+  try {
+    file.finish();
+  } catch (const data::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a slice given as STL runs like the slice itself: same steps, same torque within its error") {
+  const SliceFolder folder;
+  const data::StudyFile file = folder.study(rig + rest);
+  dem::Case c = dem::read_case(file, "steel");
+  CHECK_NOTHROW(file.finish());
+  c.run.settle = 0.05;
+  c.run.start_up = 0.05;
+  c.run.shortest = c.run.longest = 0.25;
+  const dem::RunResult stl = dem::run(c, 1);
+  REQUIRE(stl.status == dem::RunStatus::done);
+  dem::Case slice = c;
+  slice.rig.stl.reset();
+  const dem::RunResult own = dem::run(slice, 1);
+  CHECK(stl.diagnostics.steps == own.diagnostics.steps);
+  const auto &a = stl.summary.mean[0], &b = own.summary.mean[0];
+  INFO("torque " << 1e6 * a.mean << " +- " << 1e6 * a.standard_error << " and " << 1e6 * b.mean << " +- "
+                 << 1e6 * b.standard_error << " uN m");
+  CHECK(a.mean > 0.0);
+  CHECK(std::abs(a.mean - b.mean) < 4.0 * std::hypot(a.standard_error, b.standard_error));
+  // Positive along the axis, and the helix conveys against it.
+  CHECK(dem::output(stl, "axial_flow").mean < 0.0);
+}
+
+TEST_CASE(
+    "spheres fill a region of meshes from the bottom, clear of them and of each other, and never inside a shaft") {
+  const SliceFolder folder;
+  const data::StudyFile file = folder.study(rig + rest);
+  dem::Case c = dem::read_case(file, "steel");
+  c.material.diameter = 0.4e-3;  // small enough to find room inside shaft and blade
+  c.rig.fill = 12000.0;
+  const dem::BuiltRig built = dem::build_rig(c, 3);
+  REQUIRE(built.position.size() == 12000);
+  const dem::Simulation s(dem::make_setup(c, built, 0, 1));
+  CHECK(s.sums().contacts + s.sums().wall_contacts == 0);
+  const dem::Rig slice;
+  for (const dem::Vec3 p : built.position) {
+    const double rho = std::hypot(p.y, p.z);
+    CHECK(rho > slice.shaft_radius);
+    const double off = std::remainder(p.x - std::atan2(p.z, p.y) / (2.0 * M_PI) * slice.pitch, slice.pitch);
+    CHECK((rho > slice.blade_radius || std::abs(off) > 0.5 * slice.blade_thickness));
+  }
+  c.rig.fill = 1e6;
+  CHECK_THROWS_WITH(dem::build_rig(c, 3), Catch::Contains("1000000 spheres") && Catch::Contains("has room for"));
+}
+
+TEST_CASE("spheres start where a CSV says, and one outside the box or inside a mesh is named") {
+  const SliceFolder folder;
+  const auto write = [&](const char* rows) { std::ofstream(folder.path / "at.csv") << "x,y,z\n" << rows; };
+  const std::string text = replaced(rig, "fill = 400", "packing = \"at.csv\"\npacking_unit = \"mm\"") + rest;
+  const auto build = [&] { return dem::build_rig(dem::read_case(folder.study(text), "steel"), 1); };
+  write("6,5.5,2\n3,-5.5,3\n");
+  const dem::BuiltRig built = build();
+  REQUIRE(built.position.size() == 2);
+  CHECK(built.position[1].y == Approx(-5.5e-3));
+  CHECK(dem::derive(dem::read_case(folder.study(text), "steel")).spheres == 2);
+  write("6,5.5,2\n3,-9,3\n");
+  CHECK_THROWS_WITH(build(), Catch::Contains("sphere 2") && Catch::Contains("outside the box"));
+  write("6,5.5,2\n3,6.9,3\n");
+  CHECK_THROWS_WITH(build(), Catch::Contains("sphere 2") && Catch::Contains("inside a mesh"));
+  write("6,5.5\n");
+  CHECK_THAT(said(folder, text), Catch::Contains("at.csv"));
+}
+
+TEST_CASE("the rig's speed drives its meshes, its dimensions do not exist, and its settings name all that it is") {
+  const SliceFolder folder;
+  dem::Case c = dem::read_case(folder.study(rig + rest), "steel");
+  dem::set_target(c, "rig.rpm", -3.0);
+  const dem::BuiltRig built = dem::build_rig(c, 1);
+  CHECK(dem::programme_speed(built.bodies[0].motion, 1.0) == -3.0);
+  CHECK(dem::programme_speed(built.bodies[1].motion, 1.0) == 0.0);
+  CHECK(built.sensor.torque_axis.x == 1.0);
+  CHECK_THROWS_WITH(dem::set_target(c, "rig.pitch", 0.01), Catch::Contains("dimension of the slice"));
+  const std::string before = dem::settings_text(c);
+  const std::vector<std::pair<std::string, std::string>> changes{
+      {"speed_ratio = 1", "speed_ratio = 2"},
+      {"\"12 mm\", \"7.1 mm\", \"60 mm\"", "\"12 mm\", \"7.1 mm\", \"61 mm\""},
+      {"file = \"trough.stl\"", "file = \"mixer.stl\""},
+      {"high = [\"12 mm\", \"7.1 mm\", \"30 mm\"]",
+       "from = [\"0 mm\", \"0 mm\", \"0 mm\"]\nto = [\"12 mm\", \"0 mm\", \"9 mm\"]\nradius = \"7 mm\""},
+      {"speed_ratio = 1",
+       "speed_ratio = 1\n[[rig.mesh.oscillation]]\nalong = [0, 0, 1]\namplitude = \"1 mm\"\nfrequency "
+       "= \"20 Hz\""},
+      {"rpm = \"150 rpm\"", "rpm = \"150 rpm\"\ndown = [0, 1, -1]"},
+      {"rpm = \"150 rpm\"", "rpm = \"150 rpm\"\ntorque_of = \"trough\""}};
+  for (const auto& [from, to] : changes) {
+    dem::Case other = dem::read_case(folder.study(replaced(rig, from, to) + rest), "steel");
+    dem::set_target(other, "rig.rpm", -3.0);
+    INFO(to);
+    CHECK(dem::settings_text(other) != before);
+  }
+}
+
+TEST_CASE("a programme and oscillations are read with their units") {
+  const SliceFolder folder;
+  const std::string text = replaced(rig, "speed_ratio = 1", R"(
+axis = [2, 0, 0]
+point = ["0 mm", "1 mm", "0 mm"]
+programme = { time = ["0 s", "500 ms"], speed = ["0 rpm", "60 rpm"] }
+[[rig.mesh.oscillation]]
+about = [1, 0, 0]
+amplitude = "90 degree"
+frequency = "20 Hz"
+phase = "180 degree"
+)") + rest;
+  const dem::Case c = dem::read_case(folder.study(text), "steel");
+  REQUIRE(c.rig.stl->meshes.size() == 2);
+  const dem::Motion& m = c.rig.stl->meshes[0].motion;
+  CHECK(m.axis.x == 1.0);
+  CHECK(m.point.y == Approx(1e-3));
+  CHECK(dem::programme_speed(m, 0.25) == Approx(M_PI));
+  REQUIRE(m.oscillations.size() == 1);
+  CHECK(m.oscillations[0].kind == dem::OscillationKind::about);
+  CHECK(m.oscillations[0].amplitude == Approx(0.5 * M_PI));
+  CHECK(m.oscillations[0].frequency == Approx(20.0));
+  CHECK(said(folder, text) == "");
+}
+
+TEST_CASE("what is wrong with a rig from STL is named with its place, value and remedy, all at once") {
+  using Catch::Contains;
+  const SliceFolder folder;
+  const auto with = [&](const std::string& from, const std::string& to) {
+    return said(folder, replaced(rig, from, to) + rest);
+  };
+  CHECK(said(folder, rig + rest) == "");
+  CHECK_THAT(with("mixer.stl", "shaft.stl"), Contains("shaft.stl") && Contains("no such file"));
+  CHECK_THAT(with("unit = \"m\"", "unit = \"mm\""), Contains("rig.mesh mixer") && Contains("smaller than a sphere"));
+  CHECK_THAT(with("unit = \"m\"", "unit = \"kg\""), Contains("'kg' is not a length"));
+  CHECK_THAT(with("unit = \"m\"", ""), Contains("unit") && Contains("missing"));
+  CHECK_THAT(with("\"12 mm\", \"7.1 mm\", \"60 mm\"", "\"6.5 mm\", \"7.1 mm\", \"60 mm\""),
+             Contains("rig.mesh mixer") && Contains("along x") && Contains("beyond the box"));
+  CHECK_THAT(with("speed_ratio = 1", "speed_ratio = 1\naxis = [0, 0, 1]"), Contains("periodic"));
+  CHECK_THAT(with("speed_ratio = 1", "speed_ratio = 1\nrpm = \"3 rpm\""), Contains("more than one"));
+  CHECK_THAT(with("speed_ratio = 1", "axis = [0, 0, 0]"), Contains("is no direction"));
+  CHECK_THAT(with("rpm = \"150 rpm\"", "torque_of = \"auger\""),
+             Contains("no mesh 'auger'") && Contains("mixer, trough"));
+  CHECK_THAT(with("rpm = \"150 rpm\"", "rpm = \"0 rpm\""), Contains("rig.rpm"));
+  CHECK_THAT(with("\"trough\"", "\"mixer\""), Contains("taken by another mesh"));
+  CHECK_THAT(with("periodic = [\"x\"]", "periodic = [\"w\"]"), Contains("'w' is no axis"));
+  CHECK_THAT(with("low = [\"0 mm\", \"-7.1 mm\", \"-7.1 mm\"]", "low = [\"0 mm\", \"-7.1 mm\"]"),
+             Contains("has 2 numbers"));
+  std::ofstream(folder.path / "mixer.stl") << "solid broken\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n";
+  const std::string both = with("periodic = [\"x\"]", "periodic = [\"w\"]");
+  CHECK_THAT(both, Contains("mixer.stl:4") && Contains("'w' is no axis"));
+}
