@@ -177,7 +177,7 @@ TEST_CASE("verdicts are the same words for 95 of 100 data sets where no threshol
   const Formula nearly_alike = [](const Eigen::VectorXd& p, double x) { return 1.0 + p[0] + p[1] * (1.0 + 0.05 * x); };
   const Formula sum = [](const Eigen::VectorXd& p, double x) { return (p[0] + p[1]) * (1.0 + x); };
   const Formula one_hidden = [](const Eigen::VectorXd& p, double x) {
-    return 1.0 + p[0] * x + 0.01 * p[1] * (1.0 - x);
+    return 1.0 + p[0] * x + 0.002 * p[1] * (1.0 - x);
   };
   const std::vector<Setting> settings = {
       {told_apart, 0.01, {Verdict::identified, Verdict::identified}},
