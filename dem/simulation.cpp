@@ -253,9 +253,15 @@ void Simulation::integrate() {
   const double dt = setup_.time_step, per_mass = dt / mass_, per_inertia = dt / inertia_;
   const Vec3 fall = dt * setup_.gravity;
   block_displacement2_.assign(blocks, 0.0);
+  const std::vector<std::uint8_t>& frozen = setup_.spheres.frozen;
   team_.for_each(blocks, [&](std::size_t block) {
     double farthest = 0.0;
     for (std::size_t i = block * block_size; i < std::min(n, (block + 1) * block_size); ++i) {
+      if (!frozen.empty() && frozen[s.id[i]] != 0) {
+        s.load[i].force = s.load[i].torque = Vec3{};
+        s.half[i] = s.motion[i] = {};
+        continue;
+      }
       const Vec3 kick = per_mass * s.load[i].force + fall, twist = per_inertia * s.load[i].torque;
       MotionRow& half = s.half[i];
       half.velocity += kick;

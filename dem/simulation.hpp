@@ -27,11 +27,12 @@ struct Body {
 };
 
 struct Spheres {
-  double radius = 0.0;         ///< m
-  double density = 0.0;        ///< kg/m3
-  std::vector<Vec3> position;  ///< m
-  std::vector<Vec3> velocity;  ///< m/s, empty: at rest
-  std::vector<Vec3> spin;      ///< rad/s, empty: none
+  double radius = 0.0;               ///< m
+  double density = 0.0;              ///< kg/m3
+  std::vector<std::uint8_t> frozen;  ///< 1: does not move, keeping its mass in contacts; empty: none
+  std::vector<Vec3> position;        ///< m
+  std::vector<Vec3> velocity;        ///< m/s, empty: at rest
+  std::vector<Vec3> spin;            ///< rad/s, empty: none
 };
 
 using AnyLaw = std::variant<LinearLaw<false, NoAttraction>, LinearLaw<false, VanDerWaals>,
