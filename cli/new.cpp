@@ -28,7 +28,7 @@ kind = "slice"
 shaft_radius = "2.5 mm"
 blade_radius = "6 mm"
 blade_thickness = "1 mm"
-trough_radius = "7.1 mm"
+trough_radius = "8.4 mm"        # grains pass between blade and trough uncrushed: three diameters clear
 pitch = "12 mm"
 fill = 2400                    # spheres in the box, or their mass: "4 g"
 
@@ -41,7 +41,7 @@ diameter = "0.8 mm"            # of the simulated spheres
 coarse_graining = 1            # their diameter over that of the real grains
 
 [contact]
-stiffness = "100 N/m"
+stiffness = "300 N/m"
 restitution = 0.7
 minimum_separation = "1.5 nm"  # only hamaker / minimum_separation^2 matters
 # wall_friction = 0.3          # follows friction unless given
