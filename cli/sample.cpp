@@ -58,6 +58,7 @@ data::ExitStatus check_width(const Common& common, const Workspace& workspace,
 Action add_sample(CLI::App& program) {
   const auto common = std::make_shared<Common>();
   const auto replicates = std::make_shared<int>(0);
+  const auto csv = std::make_shared<bool>(false);
   CLI::App* command = add_study_command(program, "sample", "draw from the posterior of every case (posterior-CASE.nc)",
                                         "demcal sample data/developer", *common);
   const auto sampler = add_sampler_option(*command);
@@ -66,7 +67,8 @@ Action add_sample(CLI::App& program) {
                    "instead: simulation-based calibration of every case with N synthetic data sets (sbc-CASE.json)")
       ->check(CLI::Range(20, 100000))
       ->type_name("N");
-  return [common, sampler, replicates] {
+  command->add_flag("--csv", *csv, "the draws as posterior-CASE.csv, too");
+  return [common, sampler, replicates, csv] {
     const Workspace workspace = open_workspace(*common);
     const data::Study& study = workspace.study;
     const TrainingRows rows = rows_to_learn_from(*common, workspace);
@@ -84,6 +86,8 @@ Action add_sample(CLI::App& program) {
       const uq::Draws& draws = sampled.draws;
       converged = converged && draws.converged;
       if (!draws.chains.empty()) uq::write_posterior(path, study, sampled, study.seed);
+      if (!draws.chains.empty() && *csv)
+        data::write_atomically(std::filesystem::path(path).replace_extension(".csv"), uq::draws_csv(sampled));
       const std::string found =
           draws.chains.empty()
               ? draws.reason

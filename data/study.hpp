@@ -151,6 +151,7 @@ struct CalibrationCase {
   std::vector<std::string> observe;
   std::vector<std::string> free;
   std::map<std::string, double> fixed;  ///< SI
+  std::map<std::string, double> held;   ///< SI: the case is compared with itself with these free parameters held
   std::map<std::string, Prior> priors;  ///< instead of the parameters' own
   std::vector<Nuisance> nuisances;
   Sampler sampler = Sampler::mixture;

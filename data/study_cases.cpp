@@ -81,6 +81,24 @@ void check_roles(const Section& section, const CalibrationCase& item, const Stud
   }
 }
 
+/// What the case is compared with must be the case with fewer free parameters, inside their ranges.
+void check_comparison(const Section& section, const CalibrationCase& item, const Study& study) {
+  for (const auto& [name, value] : item.held) {
+    const Parameter& parameter = study.parameters[*study.parameter_index(name)];
+    if (!contains(item.free, name))
+      section.problem("compare", fmt::format("holds {}, which the case does not free", name),
+                      "compare with a free parameter held at a value");
+    if (value < parameter.low || value > parameter.high)
+      section.problem("compare",
+                      fmt::format("{} = {:.10g} {} is outside its range, {:.10g} to {:.10g}", name,
+                                  parameter.unit.from_si(value), parameter.unit.symbol,
+                                  parameter.unit.from_si(parameter.low), parameter.unit.from_si(parameter.high)),
+                      "choose a value inside, where there are runs");
+  }
+  if (!item.held.empty() && item.held.size() >= item.free.size())
+    section.problem("compare", "leaves no parameter free", "leave at least one out");
+}
+
 /// What a nuisance acts on must be measured, and its name must not be a parameter's.
 void check_nuisances(const Section& section, const CalibrationCase& item, const Study& study) {
   for (const Nuisance& nuisance : item.nuisances) {
@@ -152,6 +170,7 @@ void read_cases(const Section& root, Study& study) {
     item.observe = section.texts("observe", true);
     item.free = section.texts("free", true);
     item.fixed = read_fixed(section.child("fixed"), study);
+    item.held = read_fixed(section.child("compare"), study);
     check_names(section, "observe", item.observe, {"the name of an [[observe]]", observations});
     check_names(section, "free", item.free, {"a parameter", parameters});
     const Section priors = section.child("priors");
@@ -164,6 +183,7 @@ void read_cases(const Section& root, Study& study) {
       }
     }
     item.nuisances = read_nuisances(section, study);
+    check_comparison(section, item, study);
     check_nuisances(section, item, study);
     if (section.choice("sampler", {"mixture", "nuts"}, "mixture") == "nuts") item.sampler = Sampler::nuts;
     for (const CalibrationCase& other : study.cases) {

@@ -207,6 +207,11 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.fisher_condition = found.fisher.condition;
   report.collinearity = found.fisher.collinearity;
   report.traded = found.traded;
+  for (TradedPair& pair : report.traded)
+    for (const std::vector<double>& u : pair.equivalent_u)
+      for (PredictiveCurve& curve :
+           mean_curves(study, model, Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()))))
+        pair.curves.push_back(std::move(curve));
   add_diagnostics(report, sampled);
   add_nuisances(report, sampled);
   add_draws(report, model, draws);
@@ -298,6 +303,7 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
     tell("case " + study.cases[index].name);
     result.cases.push_back(sample_case(study, emulators, index, options));
     report.cases.push_back(report_case(study, result.cases.back(), options));
+    report.cases.back().comparisons = compare_models(study, emulators, result.cases.back(), index, options);
     const CaseReport& made = report.cases.back();
     report.warnings.insert(report.warnings.end(), made.warnings.begin(), made.warnings.end());
     if (options.error_scan.empty()) continue;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "data/atomic_file.hpp"
+#include "data/csv.hpp"
 #include "data/error.hpp"
 #include "data/provenance.hpp"
 #include "uq/posterior.hpp"
@@ -167,6 +168,13 @@ void chain_dimensions(Group& group, const Draws& draws) {
   group.index_dimension("draw", static_cast<std::size_t>(draws.chains.front().x.rows()));
 }
 
+/// "zirconia-800: friction" is no name of a variable.
+std::string variable_name(const Slot& slot) {
+  std::string name = slot.label;
+  if (const auto colon = name.find(": "); colon != std::string::npos) name.replace(colon, 2, "__");
+  return name;
+}
+
 void write_unknowns(const File& file, const SampledCase& sampled) {
   Group group(file, "posterior");
   chain_dimensions(group, sampled.draws);
@@ -176,9 +184,7 @@ void write_unknowns(const File& file, const SampledCase& sampled) {
     std::vector<double> values;
     for (const auto& chain : sampled.draws.chains)
       for (const double u : chain.x.col(k)) values.push_back(parameter.unit.from_si(from_scaled(parameter, u)));
-    std::string name = slot.label;
-    if (const auto colon = name.find(": "); colon != std::string::npos) name.replace(colon, 2, "__");
-    group.doubles(name, {"chain", "draw"}, values, parameter.unit.symbol);
+    group.doubles(variable_name(slot), {"chain", "draw"}, values, parameter.unit.symbol);
   }
 }
 
@@ -263,6 +269,27 @@ void write_file(const std::string& path, const data::Study& study, const Sampled
 void write_posterior(const std::string& path, const data::Study& study, const SampledCase& sampled,
                      std::uint64_t seed) {
   data::write_atomically(path, [&](const std::string& temporary) { write_file(temporary, study, sampled, seed); });
+}
+
+std::string draws_csv(const SampledCase& sampled) {
+  std::string units = "# units:", head = "chain,draw", rows;
+  for (const Slot& slot : sampled.model->slots) {
+    const std::string& unit = slot.prior.parameter().unit.symbol;
+    units += fmt::format("{} {} [{}]", head == "chain,draw" ? "" : ",", variable_name(slot), unit.empty() ? "1" : unit);
+    head += "," + data::csv_field(variable_name(slot));
+  }
+  for (std::size_t c = 0; c < sampled.draws.chains.size(); ++c) {
+    const auto& chain = sampled.draws.chains[c];
+    for (Eigen::Index i = 0; i < chain.x.rows(); ++i) {
+      rows += fmt::format("{},{}", c, i);
+      for (int k = 0; k < sampled.model->dimension(); ++k) {
+        const Slot& slot = sampled.model->slots[static_cast<std::size_t>(k)];
+        rows += fmt::format(",{:.10g}", slot.prior.parameter().unit.from_si(slot.value(chain.x(i, k))));
+      }
+      rows += fmt::format(",{:.10g}\n", chain.log_density[i]);
+    }
+  }
+  return units + "\n" + head + ",lp\n" + rows;
 }
 
 }  // namespace uq

@@ -29,14 +29,67 @@ CurveRows curve_rows(const data::Study& study, const RowGroup& group, std::size_
   const std::size_t control_index = group.emulator.inputs[control_column].index;
   const data::Control& control = study.controls[control_index];
   const auto range = group.emulator.control_range.find(control_index);
-  const auto [low, high] =
-      range == group.emulator.control_range.end() ? std::pair{control.low, control.high} : range->second;
+  auto [low, high] = range == group.emulator.control_range.end() ? std::pair{control.low, control.high} : range->second;
+  for (const data::Observation& point : study.observations[group.origin[row].set].points) {
+    low = std::min(low, point.controls[control_index]);
+    high = std::max(high, point.controls[control_index]);
+  }
   CurveRows rows{.base = group.base.row(static_cast<Eigen::Index>(row)).replicate(points, 1),
                  .slot = group.slot.row(static_cast<Eigen::Index>(row)).transpose(),
                  .x = Eigen::VectorXd::LinSpaced(points, low, high)};
   rows.base.col(static_cast<Eigen::Index>(control_column)) =
       (rows.x.array() - control.low) / (control.high - control.low);
   return rows;
+}
+
+/// Mean and quantiles of the model over `draws` against the first control of each own set; the surrogate's error moves
+/// the curve of draw i by normal[i] of its standard deviations.
+std::vector<PredictiveCurve> curves_of(const data::Study& study, const CaseModel& model, const Eigen::MatrixXd& used,
+                                       const Eigen::VectorXd& normal) {
+  std::vector<PredictiveCurve> curves;
+  for (const auto& group : model.groups) {
+    const auto control = std::find_if(group.emulator.inputs.begin(), group.emulator.inputs.end(),
+                                      [](const EmulatorInput& input) { return input.kind == InputKind::control; });
+    if (control == group.emulator.inputs.end()) continue;
+    const auto control_column = static_cast<std::size_t>(control - group.emulator.inputs.begin());
+    for (std::size_t row = 0; row < group.origin.size(); ++row) {
+      const bool first_of_set = row == 0 || group.origin[row].set != group.origin[row - 1].set;
+      if (!first_of_set || !is_own_set(study, model, group.origin[row].set)) continue;
+      const CurveRows rows = curve_rows(study, group, row, control_column);
+      Eigen::MatrixXd values(used.rows(), rows.x.size());
+      for (Eigen::Index i = 0; i < used.rows(); ++i) {
+        Eigen::MatrixXd points = rows.base;
+        for (Eigen::Index k = 0; k < points.cols(); ++k)
+          if (rows.slot[k] >= 0) points.col(k).setConstant(used(i, rows.slot[k]));
+        const surrogate::Prediction prediction = group.emulator.predict(points);
+        const Meter meter =
+            meter_at(group.measurement, model.slots, used.row(i).transpose(), static_cast<Eigen::Index>(row));
+        for (Eigen::Index j = 0; j < rows.x.size(); ++j)
+          values(i, j) =
+              meter.offset +
+              meter.factor * (prediction.mean[j] + std::sqrt(std::max(prediction.covariance(j, j), 0.0)) * normal[i]);
+      }
+      const data::Control& x = study.controls[control->index];
+      const data::Output& output = study.outputs[group.origin[row].output];
+      PredictiveCurve curve{.output = output.name,
+                            .unit = output.unit.symbol,
+                            .control = x.name,
+                            .control_unit = x.unit.symbol,
+                            .observation_set = study.observations[group.origin[row].set].name,
+                            .x = {},
+                            .mean = {},
+                            .q05 = {},
+                            .q95 = {}};
+      for (Eigen::Index j = 0; j < rows.x.size(); ++j) {
+        curve.x.push_back(x.unit.from_si(rows.x[j]));
+        curve.mean.push_back(output.unit.from_si(values.col(j).mean()));
+        curve.q05.push_back(output.unit.from_si(quantile(values.col(j), 0.05)));
+        curve.q95.push_back(output.unit.from_si(quantile(values.col(j), 0.95)));
+      }
+      curves.push_back(std::move(curve));
+    }
+  }
+  return curves;
 }
 
 }  // namespace
@@ -119,52 +172,16 @@ std::vector<PredictivePoint> predictive_points(const data::Study& study, const C
 std::vector<PredictiveCurve> predictive_curves(const data::Study& study, const CaseModel& model,
                                                const Eigen::MatrixXd& draws, std::uint64_t seed) {
   const Eigen::MatrixXd used = thinned(draws, predictive_draws);
-  std::vector<PredictiveCurve> curves;
+  // One normal number per draw moves its whole curve: the bands are pointwise, so the covariance between points does
+  // not enter, and the quantiles come out as smooth as the curves.
   data::RandomStream random(seed, data::Purpose::posterior_predictive, 1);
-  for (const auto& group : model.groups) {
-    const auto control = std::find_if(group.emulator.inputs.begin(), group.emulator.inputs.end(),
-                                      [](const EmulatorInput& input) { return input.kind == InputKind::control; });
-    if (control == group.emulator.inputs.end()) continue;
-    const auto control_column = static_cast<std::size_t>(control - group.emulator.inputs.begin());
-    for (std::size_t row = 0; row < group.origin.size(); ++row) {
-      const bool first_of_set = row == 0 || group.origin[row].set != group.origin[row - 1].set;
-      if (!first_of_set || !is_own_set(study, model, group.origin[row].set)) continue;
-      const CurveRows rows = curve_rows(study, group, row, control_column);
-      Eigen::MatrixXd values(used.rows(), rows.x.size());
-      for (Eigen::Index i = 0; i < used.rows(); ++i) {
-        Eigen::MatrixXd points = rows.base;
-        for (Eigen::Index k = 0; k < points.cols(); ++k)
-          if (rows.slot[k] >= 0) points.col(k).setConstant(used(i, rows.slot[k]));
-        const surrogate::Prediction prediction = group.emulator.predict(points);
-        const Meter meter =
-            meter_at(group.measurement, model.slots, used.row(i).transpose(), static_cast<Eigen::Index>(row));
-        // Each point's own law; the bands are pointwise, so the covariance between points does not enter.
-        for (Eigen::Index j = 0; j < rows.x.size(); ++j)
-          values(i, j) =
-              meter.offset + meter.factor * (prediction.mean[j] +
-                                             std::sqrt(std::max(prediction.covariance(j, j), 0.0)) * random.normal());
-      }
-      const data::Control& x = study.controls[control->index];
-      const data::Output& output = study.outputs[group.origin[row].output];
-      PredictiveCurve curve{.output = output.name,
-                            .unit = output.unit.symbol,
-                            .control = x.name,
-                            .control_unit = x.unit.symbol,
-                            .observation_set = study.observations[group.origin[row].set].name,
-                            .x = {},
-                            .mean = {},
-                            .q05 = {},
-                            .q95 = {}};
-      for (Eigen::Index j = 0; j < rows.x.size(); ++j) {
-        curve.x.push_back(x.unit.from_si(rows.x[j]));
-        curve.mean.push_back(output.unit.from_si(values.col(j).mean()));
-        curve.q05.push_back(output.unit.from_si(quantile(values.col(j), 0.05)));
-        curve.q95.push_back(output.unit.from_si(quantile(values.col(j), 0.95)));
-      }
-      curves.push_back(std::move(curve));
-    }
-  }
-  return curves;
+  Eigen::VectorXd normal(used.rows());
+  for (double& value : normal) value = random.normal();
+  return curves_of(study, model, used, normal);
+}
+
+std::vector<PredictiveCurve> mean_curves(const data::Study& study, const CaseModel& model, const Eigen::VectorXd& u) {
+  return curves_of(study, model, u.transpose(), Eigen::VectorXd::Zero(1));
 }
 
 void check_priors(const data::Study& study, const CaseModel& model) {

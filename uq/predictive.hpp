@@ -34,6 +34,9 @@ std::vector<PredictivePoint> predictive_points(const data::Study& study, const C
 std::vector<PredictiveCurve> predictive_curves(const data::Study& study, const CaseModel& model,
                                                const Eigen::MatrixXd& draws, std::uint64_t seed);
 
+/// The same curves at one point (all unknowns, u): the model's mean, without a band.
+std::vector<PredictiveCurve> mean_curves(const data::Study& study, const CaseModel& model, const Eigen::VectorXd& u);
+
 /// Replicate data of each draw (rows: draws, columns: the model's rows), SI.
 Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws, std::uint64_t seed);
 

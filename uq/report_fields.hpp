@@ -26,6 +26,10 @@ void visit_fields(Visit&& visit, T& s) {
   visit("remedy", s.remedy);
   visit("inputs", s.inputs);
   visit("length_scales", s.length_scales);
+  visit("first_order", s.first_order);
+  visit("first_order_sd", s.first_order_sd);
+  visit("total_order", s.total_order);
+  visit("total_order_sd", s.total_order_sd);
   visit("observed", s.observed);
   visit("predicted", s.predicted);
   visit("standardised", s.standardised);
@@ -105,6 +109,16 @@ void visit_fields(Visit&& visit, T& t) {
   visit("combination", t.combination);
   visit("correlation", t.correlation);
   visit("equivalent", t.equivalent);
+  visit("equivalent_u", t.equivalent_u);
+  visit("curves", t.curves);
+}
+
+template <class Visit, SameAs<ModelComparison> T>
+void visit_fields(Visit&& visit, T& m) {
+  visit("held", m.held);
+  visit("log_bayes_factor", m.log_bayes_factor);
+  visit("error", m.error);
+  visit("sentence", m.sentence);
 }
 
 template <class Visit, SameAs<PredictivePoint> T>
@@ -147,6 +161,7 @@ void visit_fields(Visit&& visit, T& c) {
   visit("correlation", c.correlation);
   visit("log_evidence", c.log_evidence);
   visit("log_evidence_error", c.log_evidence_error);
+  visit("comparisons", c.comparisons);
   visit("divergences", c.divergences);
   visit("chains", c.chains);
   visit("draws", c.draws);

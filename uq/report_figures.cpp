@@ -36,6 +36,53 @@ std::string varying_control(const std::vector<const PredictivePoint*>& points) {
   return most == values.end() ? std::string() : most->first;
 }
 
+/// The observed points of a curve's set and output.
+struct Observed {
+  std::vector<double> x, value, error;
+};
+
+Observed observed_beside(const CaseReport& result, const PredictiveCurve& curve) {
+  Observed observed;
+  for (const PredictivePoint& point : result.predictive) {
+    if (!belongs(point, curve)) continue;
+    observed.x.push_back(point.controls.at(curve.control));
+    observed.value.push_back(point.observed);
+    observed.error.push_back(std::isfinite(point.standard_error) ? point.standard_error : 0.0);
+  }
+  return observed;
+}
+
+/// Axes, labels and ranges around observed points and some curves against the same control.
+std::string frame(const Observed& observed, const std::vector<const PredictiveCurve*>& curves) {
+  Extent across, up;
+  for (std::size_t i = 0; i < observed.x.size(); ++i) {
+    across.include(observed.x[i]);
+    up.include(observed.value[i] - observed.error[i]);
+    up.include(observed.value[i] + observed.error[i]);
+  }
+  for (const PredictiveCurve* curve : curves) {
+    for (const double value : curve->x) across.include(value);
+    for (const auto* column : {&curve->mean, &curve->q05, &curve->q95})
+      for (const double value : *column) up.include(value);
+  }
+  const PredictiveCurve& one = *curves.front();
+  const Axis horizontal = plot::axis_for(one.control, one.control_unit, across.largest());
+  const Axis vertical = plot::axis_for(one.output, one.unit, up.largest());
+  const Extent x_range = across.padded(0.04);
+  const Extent y_range = up.padded(0.12);
+  return plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
+         fmt::format("sx = {:.0e}\nsy = {:.0e}\n", horizontal.scale, vertical.scale) +
+         fmt::format("set xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}*sy:{:.10g}*sy]\n", x_range.low,
+                     x_range.high, y_range.low, y_range.high);
+}
+
+std::string observed_marks() {
+  return fmt::format(
+      "'' index 'observed' using ($1*sx):($2*sy):($3*sy) with yerrorbars linecolor rgb '{}' linewidth 1.3 pointtype 7 "
+      "pointsize 0.6 title 'observed, ±1 standard error'",
+      plot::vermillion);
+}
+
 }  // namespace
 
 std::vector<PredictiveCurve> curves_to_draw(const CaseReport& result) {
@@ -75,43 +122,43 @@ std::vector<PredictiveCurve> curves_to_draw(const CaseReport& result) {
 }
 
 Figure predictive_figure(const CaseReport& result, const PredictiveCurve& curve, const std::string& stem) {
-  std::vector<double> x, observed, error;
-  Extent across, up;
-  for (const PredictivePoint& point : result.predictive) {
-    if (!belongs(point, curve)) continue;
-    x.push_back(point.controls.at(curve.control));
-    observed.push_back(point.observed);
-    error.push_back(std::isfinite(point.standard_error) ? point.standard_error : 0.0);
-    across.include(x.back());
-    up.include(observed.back() - error.back());
-    up.include(observed.back() + error.back());
-  }
-  for (std::size_t i = 0; i < curve.x.size(); ++i) across.include(curve.x[i]);
-  for (const auto* column : {&curve.mean, &curve.q05, &curve.q95}) {
-    for (const double value : *column) up.include(value);
-  }
-  const Axis horizontal = plot::axis_for(curve.control, curve.control_unit, across.largest());
-  const Axis vertical = plot::axis_for(curve.output, curve.unit, up.largest());
-  const Extent x_range = across.padded(0.04);
-  const Extent y_range = up.padded(0.12);
-
+  const Observed observed = observed_beside(result, curve);
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}};
-  figure.data =
-      plot::block("band", {curve.x, curve.mean, curve.q05, curve.q95}) + plot::block("observed", {x, observed, error});
-  figure.script = plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
-                  fmt::format("sx = {:.0e}\nsy = {:.0e}\n", horizontal.scale, vertical.scale) +
-                  fmt::format("set xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}*sy:{:.10g}*sy]\n", x_range.low,
-                              x_range.high, y_range.low, y_range.high) +
+  figure.data = plot::block("band", {curve.x, curve.mean, curve.q05, curve.q95}) +
+                plot::block("observed", {observed.x, observed.value, observed.error});
+  figure.script = frame(observed, {&curve}) +
                   fmt::format(
                       "plot '{0}.dat' index 'band' using ($1*sx):($3*sy):($4*sy) with filledcurves "
                       "linecolor rgb '{1}' title 'model, 90 %', \\\n"
                       "  '' index 'band' using ($1*sx):($2*sy) with lines linecolor rgb '{2}' linewidth 2 "
-                      "title 'model, mean', \\\n"
-                      "  '' index 'observed' using ($1*sx):($2*sy):($3*sy) with yerrorbars linecolor rgb '{3}' "
-                      "linewidth 1.3 pointtype 7 pointsize 0.6 title 'observed, ±1 standard error'",
-                      stem, plot::pale, plot::blue, plot::vermillion);
+                      "title 'model, mean', \\\n  ",
+                      stem, plot::pale, plot::blue) +
+                  observed_marks();
   figure.alt = fmt::format("{} against {} in case {}: observed points with their errors and the model's 90 % band",
                            curve.output, curve.control, result.name);
+  return figure;
+}
+
+Figure equivalent_figure(const CaseReport& result, const TradedPair& traded, const PredictiveCurve& like,
+                         const std::string& stem) {
+  static constexpr const char* colours[] = {plot::blue, plot::green, plot::ink, plot::sky, plot::grey};
+  const Observed observed = observed_beside(result, like);
+  std::vector<const PredictiveCurve*> curves;
+  for (const PredictiveCurve& curve : traded.curves)
+    if (curve.observation_set == like.observation_set && curve.output == like.output) curves.push_back(&curve);
+  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}};
+  figure.data = plot::block("observed", {observed.x, observed.value, observed.error});
+  figure.script = frame(observed, curves) + "plot ";
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    figure.data += plot::block(fmt::format("point{}", i + 1), {curves[i]->x, curves[i]->mean});
+    figure.script += fmt::format(
+        "'{}.dat' index 'point{}' using ($1*sx):($2*sy) with lines linecolor rgb '{}' linewidth 1.8 dashtype {} title "
+        "'point {}', \\\n  ",
+        stem, i + 1, colours[i % std::size(colours)], i + 1, i + 1);
+  }
+  figure.script += observed_marks();
+  figure.alt = fmt::format("{} against {} in case {} at {} equivalent points, with the observed points", like.output,
+                           like.control, result.name, curves.size());
   return figure;
 }
 

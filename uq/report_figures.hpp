@@ -17,6 +17,11 @@ std::vector<PredictiveCurve> curves_to_draw(const CaseReport& result);
 /// Observed points with their errors and the posterior predictive band against one control.
 Figure predictive_figure(const CaseReport& result, const PredictiveCurve& curve, const std::string& stem);
 
+/// The model's mean at the equivalent points of a traded pair, and the observed points, for the set and output of
+/// `like`.
+Figure equivalent_figure(const CaseReport& result, const TradedPair& traded, const PredictiveCurve& like,
+                         const std::string& stem);
+
 /// The band of a case's discrepancy against one control, with the line 0.
 Figure discrepancy_figure(const CaseReport& result, const DiscrepancyBand& band, const std::string& stem);
 

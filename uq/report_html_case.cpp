@@ -194,6 +194,33 @@ std::string discrepancy_part(const CaseReport& result, const std::string& id, co
   return out;
 }
 
+std::string comparison_part(const CaseReport& result) {
+  std::string out;
+  for (const ModelComparison& comparison : result.comparisons)
+    out += fmt::format("<p><strong>With and without.</strong> {}</p>\n", text(comparison.sentence));
+  return out;
+}
+
+/// The model's mean at each equivalent point, set by set.
+std::string equivalent_figures(const CaseReport& result, const TradedPair& traded, const std::string& stem,
+                               const Context& context) {
+  std::vector<const PredictiveCurve*> drawn;
+  std::string out;
+  for (const PredictiveCurve& curve : traded.curves) {
+    const bool known = std::any_of(drawn.begin(), drawn.end(), [&](const PredictiveCurve* other) {
+      return other->observation_set == curve.observation_set && other->output == curve.output;
+    });
+    if (known) continue;
+    drawn.push_back(&curve);
+    out += figure(equivalent_figure(result, traded, curve, fmt::format("{}-{}", stem, drawn.size())),
+                  fmt::format("{} at the equivalent points ({}): where the curves part, a measurement would tell them "
+                              "apart.",
+                              text(curve.output), text(curve.observation_set)),
+                  context);
+  }
+  return out;
+}
+
 std::string equivalent_table(const CaseReport& result, const TradedPair& traded) {
   if (traded.equivalent.empty()) return {};
   Table table{
@@ -257,7 +284,9 @@ std::string joint_part(const CaseReport& result, const std::string& id, const Co
     }
     if (!small.empty()) out += "<div class=\"pair\">\n" + small + "</div>\n";
   }
-  for (const TradedPair& traded : result.traded) out += equivalent_table(result, traded);
+  for (std::size_t i = 0; i < result.traded.size(); ++i)
+    out += equivalent_table(result, result.traded[i]) +
+           equivalent_figures(result, result.traded[i], fmt::format("{}-equivalent-{}", id, i + 1), context);
   if (result.correlation.size() == result.parameters.size()) {
     Table table{.caption = "Posterior correlation.", .head = {{""}}, .rows = {}};
     for (std::size_t i = 0; i < result.parameters.size(); ++i) {
@@ -298,7 +327,7 @@ std::string profile_part(const CaseReport& result, const std::string& id, const 
 std::string case_section(const CaseReport& result, std::size_t index, const Context& context) {
   const std::string id = case_id(index, result);
   return fmt::format("<section id=\"{}\">\n<h2>Case {}</h2>\n", id, text(result.name)) + verdict_words(result) +
-         parameter_table(result) + nuisance_table(result) + fit_and_data(result) +
+         parameter_table(result) + comparison_part(result) + nuisance_table(result) + fit_and_data(result) +
          predictive_part(result, id, context) + discrepancy_part(result, id, context) +
          joint_part(result, id, context) + profile_part(result, id, context) + "</section>\n";
 }

@@ -44,11 +44,25 @@ std::string one_surrogate(const SurrogateReport& surrogate, std::size_t index, c
   }
   if (!figures.empty()) out += "<div class=\"pair\">\n" + figures + "</div>\n";
   if (!surrogate.inputs.empty() && surrogate.inputs.size() == surrogate.length_scales.size()) {
+    const bool shares = surrogate.first_order.size() == surrogate.inputs.size();
     Table table{.caption = "Length scales, in units of each input's range: the shorter, the faster the output changes.",
                 .head = {{"Input"}, number("Length scale")},
                 .rows = {}};
+    if (shares) {
+      table.caption +=
+          " Sobol indices: the share of the output's variance over the ranges that an input makes on its own (first "
+          "order), and alone or together with others (total), with their uncertainty from the surrogate.";
+      table.head.push_back(number("First order"));
+      table.head.push_back(number("Total"));
+    }
     for (std::size_t i = 0; i < surrogate.inputs.size(); ++i) {
       table.rows.push_back({{text(surrogate.inputs[i])}, number(significant(surrogate.length_scales[i], 3, pretty))});
+      if (!shares) continue;
+      const auto share = [&](double value, double sd) {
+        return number(text(format_with_error(value, std::max(sd, 0.001), "", pretty)));
+      };
+      table.rows.back().push_back(share(surrogate.first_order[i], surrogate.first_order_sd[i]));
+      table.rows.back().push_back(share(surrogate.total_order[i], surrogate.total_order_sd[i]));
     }
     out += html(table);
   }

@@ -44,6 +44,11 @@ Json surrogate_json(const SurrogateReport& surrogate) {
           {"unit", surrogate.unit},
           {"inputs", surrogate.inputs},
           {"length_scales", numbers(surrogate.length_scales)},
+          {"sobol",
+           {{"first", numbers(surrogate.first_order)},
+            {"first_sd", numbers(surrogate.first_order_sd)},
+            {"total", numbers(surrogate.total_order)},
+            {"total_sd", numbers(surrogate.total_order_sd)}}},
           {"finding", surrogate.finding},
           {"consequence", surrogate.consequence},
           {"remedy", surrogate.remedy},
@@ -111,10 +116,27 @@ Json discrepancy_json(const DiscrepancyBand& band) {
 Json traded_json(const TradedPair& traded) {
   Json points = Json::array();
   for (const auto& point : traded.equivalent) points.push_back(numbers(point));
+  Json curves = Json::array();
+  for (const auto& curve : traded.curves)
+    curves.push_back({{"observation_set", curve.observation_set},
+                      {"output", curve.output},
+                      {"unit", curve.unit},
+                      {"control", curve.control},
+                      {"control_unit", curve.control_unit},
+                      {"x", numbers(curve.x)},
+                      {"mean", numbers(curve.mean)}});
   return {{"pair", Json::array({traded.first, traded.second})},
           {"combination", traded.combination},
           {"equivalent", std::move(points)},
+          {"equivalent_curves", std::move(curves)},
           {"correlation", number(traded.correlation)}};
+}
+
+Json comparison_json(const ModelComparison& comparison) {
+  return {{"held", comparison.held},
+          {"log_bayes_factor", number(comparison.log_bayes_factor)},
+          {"error", number(comparison.error)},
+          {"sentence", comparison.sentence}};
 }
 
 Json predictive_json(const PredictivePoint& point) {
@@ -137,6 +159,7 @@ Json case_json(const CaseReport& result) {
       {"correlation", Json::array()},
       {"log_evidence", number(result.log_evidence)},
       {"log_evidence_error", number(result.log_evidence_error)},
+      {"comparisons", Json::array()},
       {"divergences", result.divergences},
       {"traded", Json::array()},
       {"predictive", Json::array()},
@@ -158,6 +181,7 @@ Json case_json(const CaseReport& result) {
       {"sampler", result.sampler},
       {"energy_fraction", number(result.energy_fraction)}};
   for (const auto& parameter : result.parameters) json["parameters"].push_back(parameter_json(result, parameter));
+  for (const auto& one : result.comparisons) json["comparisons"].push_back(comparison_json(one));
   for (const auto& nuisance : result.nuisances) json["nuisances"].push_back(nuisance_json(nuisance));
   for (const auto& band : result.discrepancies) json["discrepancies"].push_back(discrepancy_json(band));
   for (const auto& row : result.correlation) json["correlation"].push_back(numbers(row));

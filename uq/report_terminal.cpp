@@ -107,6 +107,7 @@ std::string case_text(const CaseReport& result, int columns) {
                              traded.combination, traded.correlation),
                  columns);
   }
+  for (const ModelComparison& comparison : result.comparisons) text += fold("  ", comparison.sentence, columns);
   text += fold("  ", result.finding, columns);
   text += fold("  ", result.consequence, columns);
   text += fold("  -> ", result.remedy, columns);

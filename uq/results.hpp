@@ -26,6 +26,8 @@ struct SurrogateReport {
   std::string finding, consequence, remedy;
   std::vector<std::string> inputs;                        ///< names of the active inputs
   std::vector<double> length_scales;                      ///< in units of the input's range
+  std::vector<double> first_order, first_order_sd;        ///< Sobol indices of the inputs (uq/sensitivity.hpp)
+  std::vector<double> total_order, total_order_sd;        ///< with their sd from the surrogate's uncertainty
   std::vector<double> observed, predicted, standardised;  ///< leave-one-out, per run
   std::vector<double> observed_se;
   std::vector<std::string> notes;  ///< hyper-parameter on its bound, jitter, multi-start outcomes
@@ -65,14 +67,6 @@ struct DiscrepancyBand {
   std::vector<double> x, mean, q05, q95;
 };
 
-/// A pair whose values are traded against each other.
-struct TradedPair {
-  std::string first, second;
-  std::string combination;  ///< "friction^0.9 * hamaker^1" or a direction, in the reader's symbols
-  double correlation = 0.0;
-  std::vector<std::map<std::string, double>> equivalent;  ///< points along the ridge, each with every free parameter
-};
-
 /// The posterior predictive of a measurement at an observed point, its error included.
 struct PredictivePoint {
   std::map<std::string, double> controls;
@@ -87,6 +81,24 @@ struct PredictiveCurve {
   std::vector<double> x, mean, q05, q95;
 };
 
+/// A pair whose values are traded against each other.
+struct TradedPair {
+  std::string first, second;
+  std::string combination;  ///< "friction^0.9 * hamaker^1" or a direction, in the reader's symbols
+  double correlation = 0.0;
+  std::vector<std::map<std::string, double>> equivalent;  ///< points along the ridge, each with every free parameter
+  std::vector<std::vector<double>> equivalent_u;          ///< the same with every unknown, scaled (uq/prior.hpp's u)
+  std::vector<PredictiveCurve> curves;                    ///< what the model's mean is at them, point by point; no band
+};
+
+/// The case again with some free parameters held, beside the case itself.
+struct ModelComparison {
+  std::string held;               ///< "hamaker = 0 J"
+  double log_bayes_factor = 0.0;  ///< natural log of evidence(free) / evidence(held)
+  double error = 0.0;             ///< its standard error
+  std::string sentence;           ///< the finding in words
+};
+
 struct CaseReport {
   std::string name;
   std::vector<std::string> observed_sets;  ///< names, with what the file's header says of each in observed_notes
@@ -99,6 +111,7 @@ struct CaseReport {
   std::vector<ParameterReport> parameters;
   std::vector<std::vector<double>> correlation;
   double log_evidence = 0.0, log_evidence_error = 0.0;
+  std::vector<ModelComparison> comparisons;
   int divergences = 0;
   int chains = 0, draws = 0;  ///< per chain
   std::optional<double>

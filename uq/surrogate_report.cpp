@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "uq/prior.hpp"
+#include "uq/sensitivity.hpp"
 
 namespace uq {
 namespace {
@@ -127,6 +128,13 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   if (active.points.rows() < active.z.size())
     report.notes.push_back(fmt::format("{} runs at {} points: replicates are pooled with their own errors",
                                        active.z.size(), active.points.rows()));
+  for (const SobolIndex& index :
+       sobol_indices(emulator_of(fitted).predict, static_cast<int>(rows.inputs.size()), {.seed = options.fit.seed})) {
+    report.first_order.push_back(index.first);
+    report.first_order_sd.push_back(index.first_sd);
+    report.total_order.push_back(index.total);
+    report.total_order_sd.push_back(index.total_sd);
+  }
   if (fitted.two_level) add_levels(report, fitted, output);
   name_inputs(report);
   return report;

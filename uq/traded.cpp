@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace uq {
@@ -58,8 +59,13 @@ Eigen::MatrixXd ridge_points(const std::vector<const Profile*>& profiles, double
 
 }  // namespace
 
-Combination find_combination(const std::string& first, const std::string& second, const Eigen::MatrixXd& points,
-                             const Eigen::Vector2d& ranges) {
+namespace {
+
+/// A ridge whose rms distance from the best form is more than this share of its extent is bent.
+constexpr double bent_share = 0.05;
+
+Combination best_form(const std::string& first, const std::string& second, const Eigen::MatrixXd& points,
+                      const Eigen::Vector2d& ranges) {
   // Linear, in scaled coordinates, then in the study's units.
   const Eigen::MatrixXd scaled = points.array().rowwise() / ranges.transpose().array();
   const Eigen::Vector2d normal = least_varying(scaled);
@@ -98,6 +104,21 @@ Combination find_combination(const std::string& first, const std::string& second
   return law.misfit <= linear.misfit ? law : linear;
 }
 
+}  // namespace
+
+/// The best form, or, where the ridge bends away from it, only that there is a relation.
+Combination find_combination(const std::string& first, const std::string& second, const Eigen::MatrixXd& points,
+                             const Eigen::Vector2d& ranges) {
+  Combination best = best_form(first, second, points, ranges);
+  const Eigen::MatrixXd scaled = points.array().rowwise() / ranges.transpose().array();
+  const double extent = (scaled.colwise().maxCoeff() - scaled.colwise().minCoeff()).norm();
+  if (best.misfit > bent_share * extent) {
+    best.text = fmt::format("a curved relation of {} and {}", first, second);
+    best.coefficient = std::numeric_limits<double>::quiet_NaN();
+  }
+  return best;
+}
+
 std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::MatrixXd& draws,
                                           const std::vector<Profile>& profiles, const std::vector<bool>& identified,
                                           const VerdictThresholds& thresholds) {
@@ -134,7 +155,9 @@ std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::M
                       .second = pb.name,
                       .combination = find_combination(pa.name, pb.name, values, ranges).text,
                       .correlation = strongest,
-                      .equivalent = {}};
+                      .equivalent = {},
+                      .equivalent_u = {},
+                      .curves = {}};
 
       // Equivalent points: five along the parameter whose interval spans more, nearly as good as the best.
       auto span = [&](const Profile& profile, double drop) {
@@ -168,6 +191,8 @@ std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::M
         for (int k = 0; k < own; ++k)
           point[model.slots[static_cast<std::size_t>(k)].label] = shown(model, k, along.path(i, k));
         pair.equivalent.push_back(std::move(point));
+        const Eigen::VectorXd u = along.path.row(i).transpose();
+        pair.equivalent_u.emplace_back(u.begin(), u.end());
       }
       pairs.push_back(std::move(pair));
     }

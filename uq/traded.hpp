@@ -6,7 +6,8 @@
 // least squares:
 //   power law   a * b^q = const:  log a + q log b constant
 //   linear      a + c b = const
-// and the one that keeps nearer to the ridge, in the scaled coordinates, is named. Values are in the study's units.
+// and the one that keeps nearer to the ridge, in the scaled coordinates, is named; a ridge that bends away from both is
+// only called a curved relation. Values are in the study's units.
 #include <Eigen/Dense>
 #include <string>
 #include <vector>
@@ -22,7 +23,7 @@ namespace uq {
 struct Combination {
   std::string text;  ///< "friction * hamaker^0.9" or "friction + 0.03 * cohesion"
   bool power_law = false;
-  double coefficient = 0.0;  ///< q or c, with the first parameter's taken as one
+  double coefficient = 0.0;  ///< q or c, with the first parameter's taken as one; NaN of a curved relation
   double misfit = 0.0;       ///< rms distance of the ridge from the form, in scaled coordinates
 };
 

@@ -8,9 +8,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "data/csv.hpp"
 #include "data/error.hpp"
 #include "uq/diagnostics.hpp"
 #include "uq/posterior_nc.hpp"
+#include "uq/prior.hpp"
 
 using namespace uq;
 
@@ -291,4 +293,61 @@ TEST_CASE("a discrepancy takes what the model cannot explain, says how much, and
   REQUIRE(fine.discrepancies.size() == 1);
   CHECK(fine.discrepancies[0].share < on.discrepancies[0].share);
   for (std::size_t k = 0; k < 2; ++k) CHECK(fine.parameters[k].sd >= 0.95 * plain.parameters[k].sd);
+}
+
+TEST_CASE("the Bayes factor of a parameter held is that of the density ratio of Savage and Dickey", "[uq][slow]") {
+  // J. M. Dickey, Ann. Math. Stat. 42 (1971) 204: with the other priors the same, evidence(held) / evidence(free) is
+  // posterior density over prior density at the held value.
+  Input input = other_code();
+  const auto index = input.study.parameter_index("cohesion");
+  REQUIRE(index);
+  const data::Parameter& cohesion = input.study.parameters[*index];
+  for (const double u : {0.3, 0.5}) {
+    input.study.cases[0].held = {{"cohesion", from_scaled(cohesion, u)}};
+    const Calibration found = calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false});
+    const SampledCase& sampled = found.cases[0];
+    int column = 0;
+    while (sampled.model->slots[static_cast<std::size_t>(column)].label != "cohesion") ++column;
+    const Eigen::MatrixXd draws = sampled.draws.coordinate(column);
+    constexpr double half = 0.03;
+    const double inside = static_cast<double>(((draws.array() - u).abs() < half).count());
+    const double density = inside / static_cast<double>(draws.size()) / (2.0 * half);  // the prior's is one
+    CAPTURE(u, density, inside);
+    REQUIRE(found.report.cases[0].comparisons.size() == 1);
+    const ModelComparison& comparison = found.report.cases[0].comparisons[0];
+    CHECK(comparison.log_bayes_factor == Approx(-std::log(density)).margin(0.03 + 3.0 / std::sqrt(inside)));
+    CHECK(comparison.error < 0.1);
+    CHECK_FALSE(comparison.sentence.empty());
+  }
+}
+
+TEST_CASE("equivalent points come with the curves that the model predicts there", "[uq]") {
+  const Input input = other_code();
+  const CalibrationReport report = calibrate(input.study, input.table, {.error_scan = {}, .quadrature = false});
+  const CaseReport& powder = report.cases.at(0);
+  REQUIRE_FALSE(powder.traded.empty());
+  const TradedPair& traded = powder.traded[0];
+  REQUIRE(traded.curves.size() == traded.equivalent.size() * powder.curves.size());
+  // They fit alike, so they lie in the band about the observed points.
+  for (const PredictiveCurve& curve : traded.curves)
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      CHECK(curve.q05[i] == curve.mean[i]);
+      const PredictiveCurve& band = powder.curves[0];
+      CHECK(std::abs(curve.mean[i] - band.mean[i]) < 1.5 * (band.q95[i] - band.q05[i]));
+    }
+}
+
+TEST_CASE("the draws as a CSV are those of the posterior, row by row", "[uq]") {
+  const Input input = other_code();
+  const Calibration found = calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false});
+  const SampledCase& sampled = found.cases[0];
+  const data::Csv csv = data::parse_csv(draws_csv(sampled), "draws.csv");
+  const auto& chains = sampled.draws.chains;
+  REQUIRE(csv.rows.size() == chains.size() * static_cast<std::size_t>(chains[0].x.rows()));
+  const Slot& slot = sampled.model->slots[0];
+  const std::size_t column = csv.column(slot.label);
+  const double last = csv.number(csv.rows.back(), column);
+  const Eigen::Index row = chains.back().x.rows() - 1;
+  CHECK(last == Approx(slot.prior.parameter().unit.from_si(slot.value(chains.back().x(row, 0)))));
+  CHECK(csv.number(csv.rows.back(), csv.column("lp")) == Approx(chains.back().log_density[row]));
 }

@@ -234,3 +234,13 @@ TEST_CASE("the combination that points share is named by the form that keeps nea
   CHECK(uq::find_combination("friction", "hamaker", line, Eigen::Vector2d(1.0, 2.0)).text ==
         "friction + 0.667 * hamaker");
 }
+
+TEST_CASE("a ridge that bends away from every simple form is not given one", "[uq]") {
+  Eigen::MatrixXd bent(21, 2);  // falls, then rises
+  for (Eigen::Index i = 0; i < 21; ++i) {
+    const double a = 0.1 + 0.035 * static_cast<double>(i);
+    bent.row(i) << a, 0.6 + 4.0 * (a - 0.35) * (a - 0.35);
+  }
+  const uq::Combination found = uq::find_combination("friction", "hamaker", bent, Eigen::Vector2d(0.7, 1.5));
+  CHECK(found.text == "a curved relation of friction and hamaker");
+}
