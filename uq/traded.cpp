@@ -184,7 +184,11 @@ std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::M
             distance = std::abs(along.u[i] - wanted);
             nearest = i;
           }
-        if (std::find(chosen.begin(), chosen.end(), nearest) == chosen.end()) chosen.push_back(nearest);
+        // Where the ridge is broken, several wanted values have the same neighbour.
+        const bool taken = std::any_of(chosen.begin(), chosen.end(), [&](Eigen::Index other) {
+          return std::abs(along.u[other] - along.u[nearest]) < 0.1 * (high - low);
+        });
+        if (!taken) chosen.push_back(nearest);
       }
       for (const Eigen::Index i : chosen) {
         std::map<std::string, double> point;
