@@ -116,7 +116,7 @@ struct RunControl {
   double steps_per_contact = 30.0;  ///< shortest contact duration / time step
   std::optional<double> time_step;  ///< s, instead; at most a fifteenth of that duration
   double overlap_limit = 0.1;       ///< of a radius; a deeper contact ends the run, half as deep is counted
-  double skin = 0.10;               ///< of the neighbour list, in diameters
+  double skin = 0.12;               ///< of the neighbour list, in diameters
   double settle = 0.08;             ///< s, filling comes to rest before the tool turns
   double start_up = 0.2;            ///< s of turning dropped at least, before means are taken
   double sample_interval = 0.2e-3;  ///< s between samples; each is the mean over the steps since the last

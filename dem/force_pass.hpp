@@ -53,6 +53,15 @@ struct ContactEnergy {
   double elastic = 0.0, attraction = 0.0;
 };
 
+/// Who meets in a contact that is looked at alone, and so by which law.
+enum class Partner { sphere, body };
+struct Who {
+  Partner partner = Partner::sphere;
+  std::size_t material = 0;         ///< of the sphere
+  std::size_t other = 0;            ///< material of the partner, or the body
+  double mass = 0.0, radius = 0.0;  ///< kg, m, reduced
+};
+
 class ForcePass {
  public:
   virtual ~ForcePass() = default;
@@ -62,6 +71,11 @@ class ForcePass {
   /// Adds the loads of the chunk's pairs and wall contacts.
   virtual void chunk(State& state, const Surroundings& around, std::size_t chunk, StepSums& sums) const = 0;
   virtual ContactEnergy energy(const State& state, const Surroundings& around) const = 0;
+  /// One contact by itself.
+  virtual Reaction<double> react(const Who& who, const Meeting<double>& meeting, const History<double>& before,
+                                 double time_step) const = 0;
+  /// m, how far apart a contact, once made, still holds.
+  virtual double holds(const Who& who) const = 0;
 };
 
 /// The laws of a bed: between materials, and of each material with each body's surface.

@@ -16,7 +16,7 @@ inline History<double> history_of(const VectorRow& slip, const VectorRow& roll) 
 /// Features that the sphere may have reached since the rebuild: those are sorted by their gap then.
 inline std::uint32_t features_in_question(const State& s, const WallSlot& slot, const Frame& frame) {
   const PositionRow& at = s.position[slot.particle];
-  const double moved = length(at.at - s.reference[slot.particle]) + frame.moved + 1e-9 * at.radius;
+  const double moved = length(at.at - s.reference[slot.particle].at) + frame.moved + 1e-9 * at.radius;
   const double* gap = s.feature_gap.data() + slot.feature_first;
   std::uint32_t asked = 0;
   while (asked < slot.feature_count && gap[asked] <= moved) ++asked;
@@ -103,6 +103,12 @@ class LawPass final : public ForcePass {
     return total;
   }
 
+  Reaction<double> react(const Who& who, const Meeting<double>& meeting, const History<double>& before,
+                         double time_step) const override {
+    return law_of(who).at(who.mass, who.radius)(meeting, before, time_step);
+  }
+  double holds(const Who& who) const override { return law_of(who).normal.range(who.radius); }
+
  private:
   bool equal() const { return tables_.materials == 1 && tables_.equal_mass > 0.0; }
   const Law& grain(const MotionRow& a, const MotionRow& b) const {
@@ -112,6 +118,12 @@ class LawPass final : public ForcePass {
   const Law& wall(const MotionRow& a, std::size_t body) const {
     const std::size_t bodies = tables_.wall.size() / static_cast<std::size_t>(tables_.materials);
     return tables_.wall[static_cast<std::size_t>(a.material) * bodies + body];
+  }
+  const Law& law_of(const Who& who) const {
+    MotionRow a, b;
+    a.material = static_cast<double>(who.material);
+    b.material = static_cast<double>(who.other);
+    return who.partner == Partner::sphere ? grain(a, b) : wall(a, who.other);
   }
 
   void find(const State& s, const Surroundings& around, const WallSlot& slot, Touches& found) const {

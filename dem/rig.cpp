@@ -40,6 +40,8 @@ Setup make_setup(const Case& c, BuiltRig rig, std::uint64_t rest_steps, int thre
   s.spheres.density = std::move(rig.grains.density);
   s.spheres.material = std::move(rig.grains.material);
   s.spheres.position = std::move(rig.position);
+  s.spheres.velocity = std::move(rig.velocity);
+  s.spheres.frozen = std::move(rig.frozen);
   s.bodies = std::move(rig.bodies);
   s.laws = make_force_pass(make_bed(c, body_labels(c)));
   s.gravity = c.run.gravity * rig.down;

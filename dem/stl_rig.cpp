@@ -170,6 +170,8 @@ BuiltRig build_stl_rig(const Case& c, std::uint64_t seed) {
     built.grains = draw_grains(c, seed);
     check_packing(rig, built.bodies, built.grains.radius[0]);
     built.position = rig.packing;
+    built.velocity = rig.velocity;
+    built.frozen = rig.frozen;
   }
   const Motion measured = built.bodies.empty() ? Motion{} : built.bodies[rig.measured].motion;
   const Vec3 axis = measured.axis, size = rig.high - rig.low;
