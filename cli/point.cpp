@@ -122,6 +122,8 @@ std::string settings_hash(const Workspace& workspace, const std::string& materia
   settings.run.shortest = usual.shortest;
   settings.run.shortest_turns = usual.shortest_turns;
   settings.run.longest = usual.longest;
+  // Whether a run is stopped, not what it gives.
+  settings.run.overlap_limit = usual.overlap_limit;
   return data::hash_text(dem::settings_text(settings));
 }
 

@@ -100,10 +100,11 @@ PairCoefficients coefficients(const Case& c, const PairContact& its, const Meets
     p.pull_off = 2.0 * pi * p.adhesion;
   } else {
     const double h = k.minimum_separation;
-    // L per metre of reduced radius; at a wall eq. (1) is used with the L of the sphere, or twice that.
-    const double length = (m.wall ? 1.0 : 2.0) * (k.length_scale == LengthScale::diameter ? 2.0 : 1.0) *
-                          (m.wall && k.wall_attraction == WallAttraction::derjaguin ? 2.0 : 1.0);
-    p.pull_off = scaling * hamaker_in_use(c, choose(its.hamaker, k.wall_hamaker, k.hamaker)) * length / (12.0 * h * h);
+    // L of mean spheres, 4 R* or 2 R* between them; at a wall eq. (1) is used with the L of the sphere, or twice that.
+    const double length = (m.wall ? 1.0 : 2.0) * (k.length_scale == LengthScale::diameter ? 2.0 : 1.0) * m.radius;
+    const double twice = m.wall && k.wall_attraction == WallAttraction::derjaguin ? 2.0 : 1.0;
+    const double hamaker = hamaker_in_use(c, choose(its.hamaker, k.wall_hamaker, k.hamaker));
+    p.pull_off = scaling * twice * hamaker * (length / (12.0 * h * h)) / m.radius;
     p.minimum_separation = h;
     p.cut_off = k.cut_off;
   }
@@ -138,8 +139,9 @@ BedCoefficients make_bed(const Case& c, const std::vector<BodyLabel>& bodies) {
         return (p.first == one.name && p.second == other.name) || (p.second == one.name && p.first == other.name);
       };
       const double ra = radius(one), rb = radius(other);
+      const double reduced = ra == rb ? 0.5 * ra : ra * rb / (ra + rb);
       bed.grain.push_back(coefficients(c, own(c, concerns),
-                                       {elastic(c, one), elastic(c, other), ra * rb / (ra + rb), std::min(ra, rb),
+                                       {elastic(c, one), elastic(c, other), reduced, std::min(ra, rb),
                                         std::min(weight(one), weight(other)), false}));
     }
     for (const BodyLabel& body : bodies) {

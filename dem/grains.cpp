@@ -73,6 +73,12 @@ std::vector<std::string> grain_names(const Case& c) {
   return names;
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
 double smallest_diameter(const Material& m) {
   if (m.log_normal) return m.log_normal->low;
   double smallest = m.sizes.empty() ? m.diameter : m.sizes[0].diameter;
@@ -171,7 +177,8 @@ Grains draw_grains(const Case& c, std::uint64_t seed) {
 }
 
 double solid_volume(const Grains& grains, std::size_t count) {
-  if (grains.radius.size() == 1) return static_cast<double>(count) * ball(2.0 * grains.radius[0]);
+  if (grains.radius.size() == 1)
+    return static_cast<double>(count) * sphere_mass(grains.density[0], 2.0 * grains.radius[0]) / grains.density[0];
   double sum = 0.0;
   for (const double r : grains.radius) sum += ball(2.0 * r);
   return sum;

@@ -135,6 +135,24 @@ void check_overlap(const Case& c, const Derived& d, Found& found) {
        fmt::format("raise it to {} or more", softer)});
 }
 
+/// Where no damping gives the restitution wanted at restitution_at.
+void check_restitution(const Case& c, const Derived& d, Found& found) {
+  for (const ContactKind& kind : d.kinds) {
+    if (!kind.found || kind.found->damping_ratio) continue;
+    const Collision& undamped = kind.found->collision;
+    found.push_back(
+        {"contact.restitution_at",
+         undamped.end == CollisionEnd::sticks
+             ? fmt::format(
+                   "is {:g} m/s, at which {} and {} stick whatever the damping: the attraction alone holds them",
+                   *c.contact.restitution_at, kind.first, kind.second)
+             : fmt::format("is {:g} m/s, at which {} and {} without any damping keep {:.3g} of their speed: the "
+                           "attraction takes the rest",
+                           *c.contact.restitution_at, kind.first, kind.second, undamped.restitution),
+         "raise the speed, lower the restitution, or weaken the attraction"});
+  }
+}
+
 }  // namespace
 
 std::vector<data::Problem> problems(const Case& c) {
@@ -150,6 +168,7 @@ std::vector<data::Problem> problems(const Case& c) {
   };
   const Derived d = derive(c);
   check_overlap(c, d, found);
+  check_restitution(c, d, found);
   if (unused_because(c, "contact.cut_off").empty()) {
     if (c.contact.cut_off > 0.5 * d.smallest) add("contact.cut_off", "is longer than a sphere's radius", "shorten it");
     if (c.contact.minimum_separation > c.contact.cut_off) {

@@ -124,6 +124,8 @@ void read_laws(const Section& s, Contact& k) {
   choose(s, "hamaker_of", {"simulation", "original"}, k.hamaker_of);
   choose(s, "length_scale", {"diameter", "radius"}, k.length_scale);
   choose(s, "wall_attraction", {"as_grains", "derjaguin"}, k.wall_attraction);
+  if (s.has("restitution_at"))
+    k.restitution_at = s.quantity("restitution_at", "m/s", {.low = 0.0, .high = 1000.0, .open_low = true});
 }
 
 constexpr const char* laws[]{"normal", "tangential", "resistance", "cohesion"};
@@ -224,6 +226,8 @@ void read_components(const Section& mixture, const Section& materials, Case& c) 
       continue;
     }
     const Section own = materials.child(name);
+    for (const char* key : {"coarse_graining", "fill"})
+      if (own.has(key)) own.problem(key, "is that of the mixture, not of a component", "move it to " + c.material.name);
     read_grain(own, part.material);
     read_component_contact(own.child("contact"), name, c, part.material);
     c.components.push_back(std::move(part));
@@ -259,7 +263,7 @@ void sort_out_pairs(const Section& root, Case& c) {
       if (!name.empty() && !in(grains, name) && !in(bodies, name) && !root.child("materials").has(name))
         root.child("contact").problem(
             "pair", fmt::format("names '{}', which is no material, mesh or mesh's material", name),
-            fmt::format("choose two of: {}, {}", fmt::join(grains, ", "), fmt::join(bodies, ", ")));
+            fmt::format("choose two of: {}, {}", listed(grains), listed(bodies)));
     }
     return !((in(grains, p.first) && (in(grains, p.second) || in(bodies, p.second))) ||
              (in(bodies, p.first) && in(grains, p.second)));

@@ -43,7 +43,7 @@ Setup make_setup(const Case& c, BuiltRig rig, std::uint64_t rest_steps, int thre
   s.spheres.velocity = std::move(rig.velocity);
   s.spheres.frozen = std::move(rig.frozen);
   s.bodies = std::move(rig.bodies);
-  s.laws = make_force_pass(make_bed(c, body_labels(c)));
+  s.laws = make_force_pass(d.bed);
   s.gravity = c.run.gravity * rig.down;
   s.time_step = d.time_step;
   s.skin = d.skin;

@@ -67,7 +67,7 @@ std::vector<std::string> body_names(const Case& c);
 /// The highest speed of any point of a moving body [m/s].
 double tool_speed(const Case& c);
 
-/// How high the powder would stand in a box filled without gaps [m].
+/// How high the powder would stand in the box without bodies, its spheres on a cubic lattice [m].
 double fill_depth(const Case& c);
 
 }  // namespace dem
