@@ -80,6 +80,10 @@ unit = "uN m"
 runs = 48
 standard_error = 0.03          # wanted of each run's mean torque, relative
 
+[run]
+overlap_limit = 0.8            # of a radius: a deeper contact ends a run. Usual is 0.1; grains that wedge between this
+                               # blade and trough at high friction go deeper: demcal simulate says how often and how deep
+
 [[observe]]                    # your measurement: a CSV with the columns rpm, torque, torque_se
 name = "bench"
 material = "powder"

@@ -12,9 +12,10 @@ dem::Case pinched() {
   c.rig.fill = 350.0;
   c.material.diameter = 1.5e-3;
   c.contact.stiffness = 200.0;
-  c.run.settle = 0.03;
-  c.run.start_up = 0.02;
-  c.run.shortest = c.run.longest = 0.2;
+  c.rig.angular_velocity = 60.0;
+  c.run.settle = 0.02;
+  c.run.start_up = 0.01;
+  c.run.shortest = c.run.longest = 0.05;
   return c;
 }
 
