@@ -82,5 +82,6 @@ Action add_fit(CLI::App& program);
 Action add_sample(CLI::App& program);
 Action add_calibrate(CLI::App& program);
 Action add_report(CLI::App& program);
+Action add_observe(CLI::App& program);
 
 }  // namespace cli

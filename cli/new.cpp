@@ -28,7 +28,7 @@ kind = "slice"
 shaft_radius = "2.5 mm"
 blade_radius = "6 mm"
 blade_thickness = "1 mm"
-trough_radius = "7.1 mm"
+trough_radius = "8.4 mm"        # grains pass between blade and trough uncrushed: three diameters clear
 pitch = "12 mm"
 fill = 2400                    # spheres in the box, or their mass: "4 g"
 
@@ -45,7 +45,7 @@ coarse_graining = 1            # their diameter over that of the real grains
 
 [contact]                      # of all contacts; wall_KEY of those with bodies, which follows KEY unless given
 normal = "linear"              # or hertz, jkr: then young_modulus, poisson_ratio instead of stiffness
-stiffness = "100 N/m"
+stiffness = "300 N/m"
 restitution = 0.7              # without attraction; with restitution_at = "0.1 m/s" at that speed, attraction included
 resistance = "none"            # constant, spring: rolling_friction, twisting_friction stand in for the grains' shape
 cohesion = "van_der_waals"     # or dmt: then work_of_adhesion (J/m2) instead of hamaker
@@ -79,10 +79,6 @@ unit = "uN m"
 [training]
 runs = 48
 standard_error = 0.03          # wanted of each run's mean torque, relative
-
-[run]
-overlap_limit = 0.8            # of a radius: a deeper contact ends a run. Usual is 0.1; grains that wedge between this
-                               # blade and trough at high friction go deeper: demcal simulate says how often and how deep
 
 [[observe]]                    # your measurement: a CSV with the columns rpm, torque, torque_se
 name = "bench"

@@ -1,0 +1,247 @@
+// demcal observe: a raw torque log to observations, one row per plateau of constant speed.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "cli/command.hpp"
+#include "cli/observe_figure.hpp"
+#include "data/atomic_file.hpp"
+#include "data/csv.hpp"
+#include "data/hash.hpp"
+#include "data/torque_log.hpp"
+#include "uq/report_gnuplot.hpp"
+
+namespace cli {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double all = INFINITY;
+
+struct Window {
+  std::vector<double> seconds;  ///< none, or from and to
+  double from() const { return seconds.empty() ? -all : seconds[0]; }
+  double to() const { return seconds.empty() ? all : seconds[1]; }
+};
+
+struct Options {
+  Common common;
+  std::string log, out, idle_log, unit, output = "torque", control = "rpm";
+  data::LogColumns columns;
+  data::PlateauOptions plateaus;
+  Window window, idle_window;
+  std::optional<double> idle, idle_error;  ///< in the log's unit of torque
+};
+
+[[noreturn]] void refuse(data::ExitStatus status, const std::string& place, const std::string& what,
+                         const std::string& remedy) {
+  throw data::InputError(status, data::Problem{place, what, remedy});
+}
+
+/// What is taken off: nothing, one value for all rows, or the empty machine's torque at each speed.
+struct Idle {
+  enum class Kind { none, value, log } kind = Kind::none;
+  std::vector<data::MeanTorque> at;  ///< SI, by plateau
+};
+
+Idle find_idle(const Options& options, const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus) {
+  Idle idle;
+  const bool from_log = !options.idle_log.empty() || !options.idle_window.seconds.empty();
+  if (options.idle && from_log)
+    refuse(data::ExitStatus::usage, "--idle", "and a log of the idle torque contradict each other", "give one of them");
+  if (options.idle_error && !options.idle)
+    refuse(data::ExitStatus::usage, "--idle-error", "has no value that it is the error of", "give --idle, too");
+  if (options.idle) {
+    idle.kind = Idle::Kind::value;
+    const data::MeanTorque value{log.torque_unit.to_si(*options.idle),
+                                 log.torque_unit.factor * options.idle_error.value_or(0.0)};
+    idle.at.assign(plateaus.size(), value);
+  } else if (from_log) {
+    idle.kind = Idle::Kind::log;
+    const data::TorqueLog empty =
+        options.idle_log.empty() ? log : data::read_torque_log(options.idle_log, options.columns);
+    data::PlateauOptions part = options.plateaus;
+    part.from = options.idle_window.from();
+    part.to = options.idle_window.to();
+    const std::vector<data::Plateau> found = data::find_plateaus(empty, part);
+    for (const data::Plateau& plateau : plateaus) {
+      const auto value = data::idle_at(found, plateau.speed, 2.0 * options.plateaus.tolerance);
+      if (!value) {
+        std::string speeds;
+        for (const data::Plateau& one : found)
+          speeds += fmt::format("{}{:.4g}", speeds.empty() ? "" : ", ", log.speed_unit.from_si(one.speed));
+        refuse(
+            data::ExitStatus::bad_data, empty.file,
+            fmt::format("the empty machine was not run at {:.4g} {} (its plateaus: {})",
+                        log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, speeds.empty() ? "none" : speeds),
+            "log it at every speed of the measurement, or give one value with --idle");
+      }
+      idle.at.push_back(*value);
+    }
+  }
+  return idle;
+}
+
+std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus) {
+  std::vector<std::string> warnings;
+  if (log.missing > 0) warnings.push_back(fmt::format("{} samples without all three values are left out", log.missing));
+  if (log.uneven_share > 0.05)
+    warnings.push_back(
+        fmt::format("{:.0f} % of the samples are not evenly spaced in time: the errors, which take them "
+                    "to be, are approximate",
+                    100.0 * log.uneven_share));
+  for (const data::Plateau& plateau : plateaus)
+    if (!plateau.torque.reliable)
+      warnings.push_back(fmt::format(
+          "{:.4g} {} at {:.4g} s: too short for its correlation ({:.0f} independent samples), or still drifting: its "
+          "error is too small; measure longer",
+          log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, log.time[plateau.first],
+          plateau.torque.effective_samples));
+  return warnings;
+}
+
+/// One row per plateau; beside the columns that a study reads, what the mean rests on.
+std::string to_csv(const Options& options, const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
+                   const Idle& idle, const data::Unit& unit) {
+  std::string text = fmt::format("# from {} (XXH3 {}), by demcal observe\n", fs::path(options.log).filename().string(),
+                                 data::hash_file(options.log));
+  text += fmt::format(
+      "# units: {} [{}], {} [{}]; seconds: length of the part used; independent: its uncorrelated samples\n",
+      options.control, log.speed_unit.symbol, options.output, unit.symbol);
+  if (idle.kind == Idle::Kind::value) {
+    text +=
+        fmt::format("# idle torque {:.6g} {} taken off every row", unit.from_si(idle.at.front().value), unit.symbol);
+    text += options.idle_error
+                ? fmt::format("; its error is common to all of them: common_error = \"{:.3g} {}\" in [[observe]]\n",
+                              idle.at.front().error / unit.factor, unit.symbol)
+                : std::string("\n");
+  } else if (idle.kind == Idle::Kind::log) {
+    text += fmt::format("# idle torque of the empty machine taken off at each speed ({}); its error is in {}_se\n",
+                        options.idle_log.empty() ? "same log" : fs::path(options.idle_log).filename().string(),
+                        options.output);
+  }
+  text += fmt::format("{},{},{}_se,idle,from_s,seconds,independent,{}_sd\n", data::csv_field(options.control),
+                      data::csv_field(options.output), options.output, options.control);
+  for (std::size_t i = 0; i < plateaus.size(); ++i) {
+    const data::Plateau& plateau = plateaus[i];
+    const data::MeanTorque off = idle.kind == Idle::Kind::none ? data::MeanTorque{} : idle.at[i];
+    const double error = idle.kind == Idle::Kind::log ? std::hypot(plateau.torque.standard_error, off.error)
+                                                      : plateau.torque.standard_error;
+    text += fmt::format("{:.6g},{:.6g},{:.3g},{:.6g},{:.6g},{:.6g},{:.0f},{:.3g}\n",
+                        log.speed_unit.from_si(plateau.speed), (plateau.torque.mean - off.value) / unit.factor,
+                        error / unit.factor, off.value / unit.factor, log.time[plateau.used_from],
+                        log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
+                        plateau.torque.effective_samples, plateau.speed_sd / log.speed_unit.factor);
+  }
+  return text;
+}
+
+data::ExitStatus observe(Options options) {
+  const data::TorqueLog log = data::read_torque_log(options.log, options.columns);
+  options.plateaus.from = options.window.from();
+  options.plateaus.to = options.window.to();
+  std::vector<data::Plateau> plateaus = data::find_plateaus(log, options.plateaus);
+  if (!options.idle_window.seconds.empty() && options.idle_log.empty())  // the machine was still empty there
+    std::erase_if(plateaus, [&](const data::Plateau& plateau) {
+      return log.time[plateau.first] <= options.idle_window.to() &&
+             log.time[plateau.first + plateau.count - 1] >= options.idle_window.from();
+    });
+  if (plateaus.empty())
+    refuse(data::ExitStatus::bad_data, log.file,
+           fmt::format("has no stretch of {:g} s in which the speed stays within {:g} %", options.plateaus.shortest,
+                       100.0 * options.plateaus.tolerance),
+           "look at the log; then try a smaller --shortest or a larger --tolerance");
+  const data::Unit unit = options.unit.empty() ? log.torque_unit : data::parse_unit(options.unit);
+  const Idle idle = find_idle(options, log, plateaus);
+
+  const fs::path out = options.out.empty() ? fs::path(options.log).stem().string() + "-observed.csv" : options.out;
+  for (const std::string& input : {options.log, options.idle_log})
+    if (!input.empty() && fs::weakly_canonical(out) == fs::weakly_canonical(input))
+      refuse(data::ExitStatus::cannot_write, out.string(), "is the log itself", "choose another --out");
+  data::write_atomically(out.string(), to_csv(options, log, plateaus, idle, unit));
+  std::vector<double> off;
+  for (const data::MeanTorque& one : idle.at) off.push_back(one.value);
+  const fs::path folder = out.has_parent_path() ? out.parent_path() : fs::path(".");
+  uq::draw(log_figure(log, plateaus, off, unit, out.stem().string()), folder.string(), {});
+
+  nlohmann::json json{{"observations", out.string()}, {"rows", nlohmann::json::array()}};
+  for (std::size_t i = 0; i < plateaus.size(); ++i) {
+    const data::Plateau& plateau = plateaus[i];
+    const double mean = (plateau.torque.mean - (off.empty() ? 0.0 : off[i])) / unit.factor;
+    const double error = plateau.torque.standard_error / unit.factor;
+    say(options.common,
+        fmt::format("{:>8.4g} {}: {:.4g} +- {:.2g} {} ({:.4g} s, {:.0f} independent samples)",
+                    log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, mean, error, unit.symbol,
+                    log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
+                    plateau.torque.effective_samples));
+    json["rows"].push_back(
+        {{options.control, log.speed_unit.from_si(plateau.speed)}, {options.output, mean}, {"unit", unit.symbol}});
+  }
+  const std::vector<std::string> warnings = warnings_of(log, plateaus);
+  for (const std::string& warning : warnings) say(options.common, "warning: " + warning);
+  say(options.common, fmt::format("{} observations: {} (picture: {})", plateaus.size(), out.string(),
+                                  (folder / (out.stem().string() + ".svg")).string()));
+  json["warnings"] = warnings;
+  print_json(options.common, json);
+  return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
+}
+
+void add_window(CLI::App& command, const std::string& name, Window& window, const std::string& help) {
+  command.add_option(name, window.seconds, help)->expected(2)->type_name("FROM TO");
+}
+
+}  // namespace
+
+Action add_observe(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "observe", "a raw torque log (time, torque, rpm) to observations: one mean with its error per constant speed");
+  command->footer("Example: demcal observe bench-log.csv --idle-log empty.csv --out observed/bench.csv");
+  command
+      ->add_option("LOG", options->log,
+                   "the log, a CSV with a header; units in the header ('torque [N m]') or by option")
+      ->required();
+  command->add_option("--out", options->out, "the observations; the picture goes beside (default: ./LOG-observed.csv)");
+  const auto column = [&](const std::string& name, data::LogColumn& wanted) {
+    command->add_option("--" + name, wanted.name, fmt::format("column of the {} (default: {})", name, wanted.name));
+    command->add_option("--" + name + "-unit", wanted.unit, "its unit, instead of the header's");
+  };
+  column("time", options->columns.time);
+  column("torque", options->columns.torque);
+  column("rpm", options->columns.speed);
+  command->add_option("--unit", options->unit, "unit of the torque written (default: the log's)")
+      ->check([](const std::string& unit) {
+        try {
+          if (data::parse_unit(unit); data::convertible(unit, "N m")) return std::string();
+        } catch (const std::invalid_argument&) {
+        }
+        return "'" + unit + "' is not a unit of torque, like 'mN m'";
+      });
+  command->add_option("--control", options->control, "name of the speed in the study (default: rpm)");
+  command->add_option("--output", options->output, "name of the torque in the study (default: torque)");
+  command->add_option("--idle", options->idle,
+                      "torque of the empty machine at any speed, in the log's unit; taken off");
+  command->add_option("--idle-error", options->idle_error, "its standard error, common to all rows")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--idle-log", options->idle_log, "a log of the empty machine at the same speeds, instead");
+  add_window(*command, "--idle-window", options->idle_window,
+             "the seconds of that log, or without --idle-log of LOG, in which the machine was empty");
+  add_window(*command, "--window", options->window, "the seconds of LOG that are used (default: all)");
+  command
+      ->add_option("--dead-time", options->plateaus.dead_time,
+                   "seconds dropped after each change of speed (default: 0)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--shortest", options->plateaus.shortest, "seconds; shorter stretches are ramps (default: 5)")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option_function<double>(
+          "--tolerance", [options](double percent) { options->plateaus.tolerance = percent / 100.0; },
+          "percent by which a constant speed may vary (default: 2)")
+      ->check(CLI::Range(0.01, 50.0));
+  command->add_flag("--quiet", options->common.quiet, "no summary");
+  command->add_flag("--json", options->common.json, "the result as JSON on stdout, and nothing else there");
+  return [options] { return observe(*options); };
+}
+
+}  // namespace cli

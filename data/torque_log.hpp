@@ -1,0 +1,72 @@
+#pragma once
+// A raw torque log, and the means at each of its constant speeds.
+//
+// A log is what a mixer's logger wrote: time, torque and speed of every sample, with the motor starting, ramps between
+// the speeds, single bad samples and stops. A plateau is a stretch of constant speed; its mean torque, with the error
+// that the correlation of its samples leaves (mean_with_error), is one observation.
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data/time_series.hpp"
+#include "data/unit.hpp"
+
+namespace data {
+
+/// Where a log keeps a quantity. A header may carry the unit: "Torque [N m]", "time (s)", "speed / rpm".
+struct LogColumn {
+  std::string name;  ///< without the unit; upper and lower case are the same
+  std::string unit;  ///< "" : the header's, or, where that has none, `usual`
+  std::string usual;
+};
+
+struct LogColumns {
+  LogColumn time{.name = "time", .unit = "", .usual = "s"};
+  LogColumn torque{.name = "torque", .unit = "", .usual = ""};  ///< no usual unit: it must be said somewhere
+  LogColumn speed{.name = "rpm", .unit = "", .usual = "rpm"};
+};
+
+/// Samples in SI, in the order of time.
+struct TorqueLog {
+  std::string file;
+  Unit torque_unit, speed_unit;  ///< the log's own
+  std::vector<double> time;      ///< s
+  std::vector<double> torque;    ///< N m
+  std::vector<double> speed;     ///< rad/s
+  std::size_t missing = 0;       ///< samples left out because a field was empty or NaN
+  double interval = 0.0;         ///< s, median between samples
+  double uneven_share = 0.0;     ///< share of the intervals that differ from the median by more than a fifth
+};
+
+/// Reads a log. Throws InputError: 66 missing; 65 missing column, unknown unit, a time that runs backwards, no samples.
+TorqueLog read_torque_log(const std::string& path, const LogColumns& columns = {});
+
+struct PlateauOptions {
+  double tolerance = 0.02;  ///< of the speed: how far a sample may lie from its plateau's speed
+  double shortest = 5.0;    ///< s; shorter stretches are ramps
+  double dead_time = 0.0;   ///< s dropped at the front of each plateau, before start-up is looked for
+  double from = -INFINITY;  ///< s, the part of the log that is used
+  double to = INFINITY;     ///< s
+};
+
+struct Plateau {
+  std::size_t first = 0, count = 0;    ///< samples of constant speed
+  std::size_t used_from = 0;           ///< the first sample after dead time and start-up
+  double speed = 0.0, speed_sd = 0.0;  ///< rad/s, of the samples used
+  SeriesMean torque;                   ///< N m
+};
+
+/// The plateaus in the order of time; standstill (below a hundredth of the log's largest speed) is none.
+std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& options = {});
+
+/// A mean with its standard error, SI.
+struct MeanTorque {
+  double value = 0.0, error = 0.0;
+};
+
+/// The idle torque at a speed, from the plateaus of a log of the empty machine: the mean, weighted by the errors, of
+/// those within `tolerance` of the speed; none where there is no such plateau.
+std::optional<MeanTorque> idle_at(const std::vector<Plateau>& idle, double speed, double tolerance);
+
+}  // namespace data

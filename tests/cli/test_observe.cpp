@@ -1,0 +1,79 @@
+// A raw log made into observations, as a user does.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "data/csv.hpp"
+#include "data/random.hpp"
+#include "tests/cli/program.hpp"
+
+namespace fs = std::filesystem;
+using Catch::Contains;
+using test::Folder;
+
+namespace {
+
+/// 20 s at each of three speeds, 100 samples a second: torque `at_rest` + `slope` * rpm with independent noise.
+std::string log_text(double at_rest, double slope, std::uint64_t seed) {
+  data::RandomStream random(seed, data::Purpose::test);
+  std::string text = "time [s],torque [mN m],rpm\n";
+  for (int i = 0; i < 6000; ++i) {
+    const double rpm = 100.0 * (1 + i / 2000);
+    text += fmt::format("{:.2f},{:.6f},{:.2f}\n", 0.01 * i, at_rest + slope * rpm + 0.05 * random.normal(), rpm);
+  }
+  return text;
+}
+
+void write(const Folder& folder, const std::string& name, const std::string& text) {
+  std::ofstream(folder.path / name) << text;
+}
+
+}  // namespace
+
+TEST_CASE("a log becomes observations that a calibration reads, with a picture") {
+  const Folder folder;
+  write(folder, "log.csv", log_text(2.0, 0.001, 1));
+  write(folder, "empty.csv", log_text(0.3, 0.0005, 2));
+  const auto outcome =
+      folder.demcal({"observe", "log.csv", "--idle-log", "empty.csv", "--unit", "uN m", "--out", "seen/bench.csv"});
+  CHECK(outcome.status == 0);
+  CHECK(fs::file_size(folder.path / "seen" / "bench.svg") > 1000);
+  const data::Csv csv = data::read_csv((folder.path / "seen" / "bench.csv").string());
+  REQUIRE(csv.rows.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double rpm = csv.number(csv.rows[i], csv.column("rpm"));
+    const double error = csv.number(csv.rows[i], csv.column("torque_se"));
+    CHECK(rpm == Approx(100.0 * static_cast<double>(i + 1)));
+    CHECK(error == Approx(50.0 * std::sqrt(2.0 / 2000.0)).epsilon(0.3));  // of the log's mean and of the idle one's
+    CHECK(std::abs(csv.number(csv.rows[i], csv.column("torque")) - (1700.0 + 0.5 * rpm)) < 4.0 * error);
+  }
+}
+
+TEST_CASE("an idle torque given as one value is an error common to all rows, and the file says how to state it") {
+  const Folder folder;
+  write(folder, "log.csv", log_text(2.0, 0.0, 3));
+  REQUIRE(folder.demcal({"observe", "log.csv", "--idle", "0.5", "--idle-error", "0.1", "--quiet"}).status == 0);
+  const data::Csv csv = data::read_csv((folder.path / "log-observed.csv").string());
+  CHECK(csv.number(csv.rows[0], csv.column("torque")) == Approx(1.5).epsilon(0.01));
+  CHECK(csv.number(csv.rows[0], csv.column("torque_se")) < 0.01);
+  CHECK_THAT(csv.comments.at(2), Contains("common_error = \"0.1 mN m\""));
+}
+
+TEST_CASE("a log that cannot be used is refused with what to do, and is never overwritten") {
+  const Folder folder;
+  write(folder, "log.csv", log_text(2.0, 0.0, 4));
+  write(folder, "empty.csv", "time,torque [N m],rpm\n0,0,50\n4,0,50\n8,0,50\n12,0,50\n");
+  auto outcome = folder.demcal({"observe", "log.csv", "--shortest", "30"});
+  CHECK(outcome.status == 65);
+  CHECK_THAT(outcome.err, Contains("no stretch of 30 s") && Contains("--shortest"));
+  outcome = folder.demcal({"observe", "log.csv", "--idle-log", "empty.csv"});
+  CHECK(outcome.status == 65);
+  CHECK_THAT(outcome.err, Contains("was not run at 100 rpm (its plateaus: 50)"));
+  CHECK(folder.demcal({"observe", "log.csv", "--out", "log.csv"}).status == 73);
+  CHECK(folder.demcal({"observe", "absent.csv"}).status == 66);
+  CHECK(folder.demcal({"observe", "log.csv", "--idle", "1", "--idle-log", "empty.csv"}).status == 64);
+}

@@ -1,0 +1,141 @@
+#include "data/torque_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "data/random.hpp"
+#include "tests/data/temporary.hpp"
+
+namespace {
+
+constexpr double rpm = std::numbers::pi / 30.0;
+
+/// A logger's file: at each speed for `seconds`, a first-order sensor lag after ramps of 40 rpm/s, correlated noise of
+/// the powder, speed noise, and now and then a dropout of the speed.
+struct Made {
+  std::vector<double> speeds{50, 100, 200};
+  double seconds = 40.0, interval = 0.02, noise = 0.1, memory = 0.9;
+  double torque(double speed) const { return 2.0 + 0.004 * speed; }
+  std::string text(std::uint64_t seed) const {
+    data::RandomStream random(seed, data::Purpose::test);
+    std::string text = "time,Torque [mN m],rpm\n";
+    double t = 0.0, speed = 0.0, sensor = 0.0, powder = 0.0;
+    for (const double wanted : speeds)
+      for (int i = 0; i * interval < seconds; ++i, t += interval) {
+        speed += std::clamp(wanted - speed, -40.0 * interval, 40.0 * interval);
+        sensor += (torque(speed) - sensor) * interval / 0.3;
+        powder = memory * powder + std::sqrt(1.0 - memory * memory) * noise * random.normal();
+        const double shown = random.uniform() < 0.002 ? 0.0 : speed + 0.1 * random.normal();
+        text += fmt::format("{:.3f},{:.6f},{:.3f}\n", t, sensor + powder, shown);
+      }
+    return text;
+  }
+};
+
+std::vector<data::Plateau> reduced(const Made& made, std::uint64_t seed, const data::PlateauOptions& options = {}) {
+  const TemporaryFolder folder;
+  return data::find_plateaus(data::read_torque_log(folder.write("log.csv", made.text(seed))), options);
+}
+
+std::string refusal(const std::string& text, const data::LogColumns& columns = {}) {
+  const TemporaryFolder folder;
+  return failure_of(folder, [&] { data::read_torque_log(folder.write("log.csv", text), columns); });
+}
+
+}  // namespace
+
+TEST_CASE("each constant speed of a log is one plateau; ramps, start-up and dropouts of the speed do not count") {
+  const Made made;
+  const std::vector<data::Plateau> plateaus = reduced(made, 1);
+  REQUIRE(plateaus.size() == made.speeds.size());
+  for (std::size_t i = 0; i < plateaus.size(); ++i) {
+    CHECK(plateaus[i].speed == Approx(made.speeds[i] * rpm).epsilon(1e-3));
+    CHECK(plateaus[i].speed_sd < 0.5 * rpm);
+    CHECK(static_cast<double>(plateaus[i].count) * made.interval > 0.85 * made.seconds);
+    CHECK(plateaus[i].torque.reliable);
+  }
+}
+
+TEST_CASE("the means of a log lie within their errors of the truth as often as they should") {
+  const Made made{.speeds = {120}, .seconds = 30.0};
+  int within_one = 0, within_two = 0;
+  constexpr int logs = 200;
+  for (std::uint64_t seed = 0; seed < logs; ++seed) {
+    const std::vector<data::Plateau> plateaus = reduced(made, seed, {.dead_time = 2.0});
+    REQUIRE(plateaus.size() == 1);
+    const double z = (1e3 * plateaus[0].torque.mean - made.torque(120)) / (1e3 * plateaus[0].torque.standard_error);
+    within_one += std::abs(z) < 1.0;
+    within_two += std::abs(z) < 2.0;
+  }
+  CHECK(std::abs(within_one - 0.683 * logs) < 3.0 * std::sqrt(logs * 0.683 * 0.317));
+  CHECK(std::abs(within_two - 0.954 * logs) < 4.0 * std::sqrt(logs * 0.954 * 0.046));
+}
+
+TEST_CASE("dead time is dropped from the front, and a window leaves out what lies outside") {
+  const Made made;
+  for (const data::Plateau& plateau : reduced(made, 2, {.dead_time = 5.0}))
+    CHECK(static_cast<double>(plateau.used_from - plateau.first) * made.interval >= 5.0 - 1e-9);
+  CHECK(reduced(made, 2, {.from = 41.0, .to = 79.0}).size() == 1);
+  CHECK(reduced(made, 2, {.shortest = 41.0}).empty());
+}
+
+TEST_CASE("headers carry units in brackets, parentheses or after a slash; an option overrides them") {
+  for (const std::string head :
+       {"time [s],torque [mN m],rpm", "Time,TORQUE (mN m),rpm", "time,torque / mN m,rpm [rpm]"}) {
+    const TemporaryFolder folder;
+    const data::TorqueLog log = data::read_torque_log(folder.write("log.csv", head + "\n0,2,60\n1,3,60\n"));
+    CHECK(log.torque == std::vector<double>{2e-3, 3e-3});
+    CHECK(log.speed[0] == Approx(60 * rpm));
+  }
+  data::LogColumns columns;
+  columns.torque.unit = "N cm";
+  columns.speed = {.name = "drehzahl", .unit = "rad/s", .usual = "rpm"};
+  const TemporaryFolder folder;
+  const data::TorqueLog log =
+      data::read_torque_log(folder.write("log.csv", "time,torque [N m],Drehzahl\n0,2,3\n1,2,3\n"), columns);
+  CHECK(log.torque[0] == Approx(0.02));
+  CHECK(log.speed[0] == 3.0);
+}
+
+TEST_CASE("samples with a missing value are left out and counted") {
+  const TemporaryFolder folder;
+  const data::TorqueLog log =
+      data::read_torque_log(folder.write("log.csv", "time,torque [N m],rpm\n0,2,60\n1,,60\n2,2,nan\n3,2,60\n"));
+  CHECK(log.time == std::vector<double>{0.0, 3.0});
+  CHECK(log.missing == 2);
+}
+
+TEST_CASE("what is wrong with a log is named with its place and a remedy") {
+  CHECK(refusal("time,torque,rpm\n0,1,1\n1,1,1\n") ==
+        "65: log.csv:1: the column 'torque' has no unit (write it in the header, 'torque [N m]', or give "
+        "--torque-unit)");
+  CHECK(refusal("time,torque [N m],speed\n0,1,1\n") ==
+        "65: log.csv:1: the column 'rpm' is missing (the columns are time, torque [N m], speed) (name it with --rpm)");
+  CHECK(refusal("time,torque [N],rpm\n0,1,1\n") ==
+        "65: log.csv:1: 'N' is not a unit of torque (a unit like 'N m'; --torque-unit overrides the header)");
+  CHECK(refusal("time,torque [N m],rpm\n0,1,1\n1,1,1\n1,1,1\n") ==
+        "65: log.csv:4: time: 1 s does not come after 1 s of the sample before (sort the log by time, remove repeated "
+        "lines, or split a log that was restarted)");
+  CHECK(refusal("time,torque [N m],rpm\n0,1,1\n") ==
+        "65: log.csv: has 1 complete samples (a log has time, torque and speed of many samples)");
+}
+
+TEST_CASE("the idle torque at a speed is the weighted mean of the empty machine's plateaus there") {
+  const auto plateau = [](double speed, double mean, double error) {
+    data::Plateau one;
+    one.speed = speed;
+    one.torque.mean = mean;
+    one.torque.standard_error = error;
+    return one;
+  };
+  const std::vector<data::Plateau> idle{plateau(10.0, 1.0, 0.1), plateau(10.1, 2.0, 0.2), plateau(20.0, 5.0, 0.1)};
+  const auto at = data::idle_at(idle, 10.0, 0.02);
+  REQUIRE(at);
+  CHECK(at->value == Approx(1.2));
+  CHECK(at->error == Approx(1.0 / std::sqrt(125.0)));
+  CHECK_FALSE(data::idle_at(idle, 15.0, 0.02));
+}
