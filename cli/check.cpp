@@ -2,7 +2,9 @@
 #include <fmt/core.h>
 
 #include "cli/point.hpp"
+#include "dem/derived.hpp"
 #include "dem/rig.hpp"
+#include "dem/target.hpp"
 
 namespace cli {
 
@@ -19,7 +21,11 @@ Action add_check(CLI::App& program) {
       warnings.push_back(data::describe({problem}));
     for (const auto& [material, unused] : workspace.cases) {
       const dem::Case c = case_at(workspace, parse_point(workspace, material, {}));
+      if (auto found = dem::problems(c); !found.empty())
+        throw data::InputError(data::ExitStatus::bad_study, std::move(found));
       dem::build_rig(c, study.seed);  // whether the spheres fit
+      say(*common, material.empty() ? "simulation, amid its ranges:" : material + ", amid its ranges:");
+      for (const std::string& line : dem::describe(c, dem::derive(c))) say(*common, "  " + line);
       const std::vector<std::string> broken = dem::rig_warnings(c);
       if (material == workspace.cases.begin()->first) warnings.insert(warnings.end(), broken.begin(), broken.end());
     }

@@ -39,12 +39,21 @@ fill = 2400                    # spheres in the box, or their mass: "4 g"
 density = "6090 kg/m3"
 diameter = "0.8 mm"            # of the simulated spheres
 coarse_graining = 1            # their diameter over that of the real grains
+# Instead of one diameter: sizes = [{{ diameter = "0.6 mm", mass_fraction = 0.3 }}, {{ diameter = "0.9 mm", mass_fraction = 0.7 }}]
+# or distribution = {{ kind = "log_normal", median = "0.8 mm", geometric_sd = 1.2, low = "0.5 mm", high = "1.2 mm" }}.
+# A bed of several: [materials.mix] components = [{{ material = "sand", mass_fraction = 0.7 }}, ...], and a table for each.
 
-[contact]
+[contact]                      # of all contacts; wall_KEY of those with bodies, which follows KEY unless given
+normal = "linear"              # or hertz, jkr: then young_modulus, poisson_ratio instead of stiffness
 stiffness = "300 N/m"
-restitution = 0.7
+restitution = 0.7              # without attraction; with restitution_at = "0.1 m/s" at that speed, attraction included
+resistance = "none"            # constant, spring: rolling_friction, twisting_friction stand in for the grains' shape
+cohesion = "van_der_waals"     # or dmt: then work_of_adhesion (J/m2) instead of hamaker
 minimum_separation = "1.5 nm"  # only hamaker / minimum_separation^2 matters
-# wall_friction = 0.3          # follows friction unless given
+# wall_friction = 0.3
+# [[contact.pair]]             # what two materials, or one and a mesh, its material or "wall", have of their own
+# between = ["powder", "wall"]
+# restitution = 0.5
 
 [parameters.friction]          # what is to be calibrated
 target = "contact.friction"

@@ -86,7 +86,7 @@ Point parse_point(const Workspace& workspace, const std::string& material, const
                   fmt::format("write NAME=VALUE with one of: {}", names_of(inputs)));
     const std::string place = "--at " + name;
     const double value = parse_value(assignment.substr(equals + 1), *found, place);
-    const dem::Target& target = dem::target(found->target);
+    const dem::Target target = dem::target(found->target);
     if (!(value >= target.low && value <= target.high))
       throw usage(place,
                   fmt::format("{} is outside the possible range [{:g}, {:g}] of {}", with_unit(value, found->unit),
@@ -122,6 +122,8 @@ std::string settings_hash(const Workspace& workspace, const std::string& materia
   settings.run.shortest = usual.shortest;
   settings.run.shortest_turns = usual.shortest_turns;
   settings.run.longest = usual.longest;
+  // Whether a run is stopped, not what it gives.
+  settings.run.overlap_limit = usual.overlap_limit;
   return data::hash_text(dem::settings_text(settings));
 }
 

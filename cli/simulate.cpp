@@ -23,12 +23,20 @@ struct Options {
 };
 
 nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
+  const dem::Derived derived = dem::derive(case_at(workspace, point));
   nlohmann::json json{{"material", point.material},
                       {"seed", workspace.study.seed},
                       {"isa", data::built_isa()},
                       {"settings", settings_hash(workspace, point.material)},
-                      {"bond_number", dem::derive(case_at(workspace, point)).bond},
+                      {"bond_number", derived.bond},
+                      {"time_step", {{"s", derived.time_step}, {"from", derived.duration_of}}},
                       {"warnings", result.warnings}};
+  for (const dem::ContactKind& kind : derived.kinds)
+    json["contacts"].push_back({{"between", {kind.first, kind.second}},
+                                {"pull_off_N", kind.pull_off},
+                                {"bond_number", kind.bond},
+                                {"damping_ratio", kind.law.damping_ratio},
+                                {"duration_s", kind.duration}});
   std::size_t column = 0;
   const auto input = [&](const auto& named) { json["point"][named.name] = named.unit.from_si(point.inputs[column++]); };
   for (const data::Parameter& p : workspace.study.parameters) input(p);
@@ -44,10 +52,10 @@ nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem
 }
 
 std::string summary(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
-  const dem::Derived derived = dem::derive(case_at(workspace, point));
-  std::string text =
-      fmt::format("{} spheres, pull-off {:.3g} N, Bond number {:.3g}, time step {:.3g} s, {:.3g} s of turning\n",
-                  derived.spheres, derived.pull_off, derived.bond, derived.time_step, result.diagnostics.simulated);
+  const dem::Case c = case_at(workspace, point);
+  std::string text;
+  for (const std::string& line : dem::describe(c, dem::derive(c))) text += line + "\n";
+  text += fmt::format("{:.3g} s of turning\n", result.diagnostics.simulated);
   const data::RunRow row = to_row(workspace, point, result);
   for (std::size_t i = 0; i < row.outputs.size(); ++i) {
     const data::Output& output = workspace.study.outputs[i];

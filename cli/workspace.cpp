@@ -16,12 +16,12 @@ namespace {
 /// Each parameter and control must name something the DEM has, in a range and unit that it can take.
 void check_target(const data::Section& section, const std::string& target_name, const data::Unit& unit, double low,
                   double high) {
-  const dem::Target* target = dem::find_target(target_name);
-  if (target == nullptr) {
+  const std::optional<dem::Target> target = dem::find_target(target_name);
+  if (!target) {
     std::string known;
     for (const dem::Target& t : dem::targets()) known += (known.empty() ? "" : ", ") + t.name;
     section.problem("target", fmt::format("the simulation has no quantity '{}'", target_name),
-                    "choose one of: " + known);
+                    "choose one of: " + known + ", contact.A-B.KEY, material.NAME.KEY");
     return;
   }
   if (!data::convertible(unit.symbol, target->unit)) {

@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <filesystem>
+#include <set>
 
 #include "data/atomic_file.hpp"
 #include "data/observations.hpp"
@@ -29,8 +30,18 @@ std::string beside(const Study& study, const std::string& file) {
   return (fs::path(study.folder) / file).lexically_normal().string();
 }
 
+/// What mixtures are made of is simulated within them, and has no rows of its own.
+std::set<std::string> ingredients(const Section& materials) {
+  std::set<std::string> names;
+  for (const auto& [unused, section] : materials.children())
+    for (const Section& part : section.array("components")) names.insert(part.text("material", ""));
+  return names;
+}
+
 void read_materials(const Section& root, Study& study) {
+  const std::set<std::string> parts = ingredients(root.child("materials"));
   for (const auto& [name, section] : root.child("materials").children()) {
+    if (parts.contains(name)) continue;
     Material material{.name = name, .fixed = read_fixed(section.child("fixed"), study), .place = section.place()};
     if (section.has("runs")) material.runs = static_cast<int>(section.integer("runs", {.low = 1, .high = 1e6}));
     study.materials.push_back(std::move(material));

@@ -1,9 +1,10 @@
 #pragma once
-// One DEM case as plain data: the rig, the material, the contact law and how long to run. SI units throughout.
+// One DEM case as plain data: the rig, the materials, the contact law and how long to run. SI units throughout.
 // Everything a study may calibrate or control is reached by name (dem/target.hpp).
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dem/laws.hpp"
 #include "dem/stl_rig.hpp"
@@ -25,11 +26,32 @@ struct Rig {
   double angular_velocity = 15.707963267948966;  ///< rad/s about +x (150 rpm), or the meshes' axes
 };
 
+/// A share of a material's mass that is in spheres of one diameter.
+struct SizeShare {
+  double diameter = 0.0;  ///< m
+  double mass_fraction = 0.0;
+};
+
+/// Diameters of which the logarithm is normal, by mass, none outside [low, high] (dem/grains.hpp).
+struct LogNormalSizes {
+  double geometric_sd = 1.2;     ///< exp of the standard deviation of the logarithm
+  double low = 0.0, high = 0.0;  ///< m
+};
+
 struct Material {
   std::string name = "grain";
-  double density = 6090.0;       ///< kg/m3
-  double diameter = 0.8e-3;      ///< m
-  double coarse_graining = 1.0;  ///< l: diameter here / diameter of the original grain
+  double density = 6090.0;                             ///< kg/m3
+  double diameter = 0.8e-3;                            ///< m; of log-normal sizes the median by mass
+  double coarse_graining = 1.0;                        ///< l: diameter here / diameter of the original grain
+  std::vector<SizeShare> sizes;                        ///< instead of one diameter
+  std::optional<LogNormalSizes> log_normal;            ///< alike
+  std::optional<double> young_modulus, poisson_ratio;  ///< Pa, 1; the contact's where not set
+};
+
+/// A material that makes up part of the bed.
+struct Component {
+  Material material;
+  double mass_fraction = 1.0;  ///< of the bed; relative to the sum over the components
 };
 
 enum class LengthScale { diameter, radius };          ///< what L of eq. (1) is
@@ -52,9 +74,10 @@ struct Contact {
   std::optional<double> wall_young_modulus;  ///< Pa; may be infinite
   double restitution = 0.7;                  ///< of a head-on collision without attraction, tension allowed
   std::optional<double> wall_restitution;
-  double tangential_ratio = 2.0 / 7.0;  ///< kt / k, linear
-  double tangential_damping = 0.5;      ///< tangential dashpot / normal dashpot
-  double friction = 0.4;                ///< Coulomb coefficient, grain-grain
+  std::optional<double> restitution_at;  ///< m/s, then it is that of a collision at this speed, attraction included
+  double tangential_ratio = 2.0 / 7.0;   ///< kt / k, linear
+  double tangential_damping = 0.5;       ///< tangential dashpot / normal dashpot
+  double friction = 0.4;                 ///< Coulomb coefficient, grain-grain
   std::optional<double> wall_friction;
   DashpotTension tension = DashpotTension::allowed;
   FrictionCap cap = FrictionCap::repulsion;
@@ -74,11 +97,25 @@ struct Contact {
   double work_of_adhesion = 0.0;                ///< J/m2, w = 2 gamma of equal materials: jkr and dmt
   std::optional<double> wall_work_of_adhesion;  ///< J/m2
   std::optional<double> true_stiffness;         ///< N/m (linear) of the real grain: attraction scaled by sqrt(k / it)
+  std::optional<double> true_young_modulus;  ///< Pa (hertz, jkr) of the real grain: attraction scaled by (E / it)^0.4
+};
+
+/// What contacts between two materials have of their own; the rest is the contact law's. The names are those of
+/// materials in the bed, of a body or its material, or "wall" for every body.
+struct PairContact {
+  std::string first, second;
+  std::optional<double> stiffness;    ///< N/m
+  std::optional<double> restitution;  ///< as Contact's
+  std::optional<double> friction, rolling_friction, twisting_friction;
+  std::optional<double> hamaker;           ///< J, as Contact's
+  std::optional<double> work_of_adhesion;  ///< J/m2
 };
 
 struct RunControl {
   double gravity = 9.81;            ///< m/s2 along -z
-  double steps_per_contact = 30.0;  ///< contact duration of the stiffest pair / time step
+  double steps_per_contact = 30.0;  ///< shortest contact duration / time step
+  std::optional<double> time_step;  ///< s, instead; at most a fifteenth of that duration
+  double overlap_limit = 0.1;       ///< of a radius; a deeper contact ends the run, half as deep is counted
   double skin = 0.12;               ///< of the neighbour list, in diameters
   double settle = 0.08;             ///< s, filling comes to rest before the tool turns
   double start_up = 0.2;            ///< s of turning dropped at least, before means are taken
@@ -92,8 +129,10 @@ struct RunControl {
 
 struct Case {
   Rig rig;
-  Material material;
+  Material material;                  ///< the bed, unless it has components; then only its name and coarse graining
+  std::vector<Component> components;  ///< what a mixture is made of
   Contact contact;
+  std::vector<PairContact> pairs;  ///< later ones win
   RunControl run;
 };
 

@@ -1,110 +1,127 @@
 #include "dem/derived.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+
+#include "dem/grains.hpp"
 
 namespace dem {
 namespace {
 
 constexpr double pi = std::numbers::pi;
 
-double wall_factor(const Contact& k) { return k.wall_attraction == WallAttraction::derjaguin ? 2.0 : 1.0; }
-
 }  // namespace
-
-double damping_ratio(double restitution) {
-  const double l = std::log(restitution);
-  return -l / std::sqrt(pi * pi + l * l);
-}
 
 Derived derive(const Case& c) {
   const Contact& k = c.contact;
+  const BedSummary bed = summarise_bed(c);
   Derived d;
-  const double size = c.material.diameter;
-  d.mass = c.material.density * pi / 6.0 * size * size * size;
-  const double spheres = c.rig.fill_mass ? *c.rig.fill_mass / d.mass : c.rig.fill;
-  d.spheres = spheres > 0.0 ? static_cast<std::size_t>(std::llround(spheres)) : 0;
+  d.spheres = bed.spheres;
+  d.smallest = bed.smallest;
+  d.largest = bed.largest;
+  d.mass = bed.equal ? bed.classes[0].mean_mass : bed.mass / static_cast<double>(std::max<std::size_t>(1, bed.spheres));
   d.weight = d.mass * c.run.gravity;
-  d.length_scale = k.length_scale == LengthScale::diameter ? size : 0.5 * size;
-  d.wall_friction = k.wall_friction.value_or(k.friction);
-  d.wall_stiffness = k.wall_stiffness.value_or(k.stiffness);
-  const double l3 = std::pow(c.material.coarse_graining, 3);
-  const double given_is = k.hamaker_of == HamakerOf::original ? l3 : 1.0;
-  d.hamaker = given_is * k.hamaker;
-  d.wall_hamaker = given_is * k.wall_hamaker.value_or(k.hamaker);
-  d.original_hamaker = d.hamaker / l3;
-  const double per_hamaker = d.length_scale / (12.0 * k.minimum_separation * k.minimum_separation);
-  d.pull_off = d.hamaker * per_hamaker;
-  d.wall_pull_off = wall_factor(k) * d.wall_hamaker * per_hamaker;
-  d.bond = d.pull_off / d.weight;
-  d.wall_bond = d.wall_pull_off / d.weight;
-  d.damping_ratio = damping_ratio(k.restitution);
-  const double damped = std::sqrt(1.0 - d.damping_ratio * d.damping_ratio);
-  const double frequency = std::max(std::sqrt(2.0 * k.stiffness / d.mass), std::sqrt(d.wall_stiffness / d.mass));
-  d.contact_duration = pi / (frequency * damped);
-  d.time_step = d.contact_duration / c.run.steps_per_contact;
-  d.skin = c.run.skin * size;
+  d.diameter = bed.equal
+                   ? bed.largest
+                   : std::cbrt(6.0 / pi * bed.volume / static_cast<double>(std::max<std::size_t>(1, bed.spheres)));
+  d.length_scale = k.length_scale == LengthScale::diameter ? d.diameter : 0.5 * d.diameter;
+  d.hamaker = hamaker_in_use(c, k.hamaker);
+  d.wall_hamaker = hamaker_in_use(c, k.wall_hamaker.value_or(k.hamaker));
+  d.original_hamaker = d.hamaker / std::pow(c.material.coarse_graining, 3);
+  d.conditions = conditions_of(c);
+  Contacts contacts = contacts_of(c, d.conditions);
+  d.bed = std::move(contacts.bed);
+  d.kinds = std::move(contacts.kinds);
+  d.damping_ratio = d.kinds[0].law.damping_ratio;
+  d.pull_off = d.kinds[0].pull_off;
+  d.bond = d.kinds[0].bond;
+  d.contact_duration = std::numeric_limits<double>::infinity();
+  bool walled = false;
+  for (const ContactKind& kind : d.kinds) {
+    if (kind.wall && !walled) {
+      d.wall_pull_off = kind.pull_off;
+      d.wall_bond = kind.bond;
+      walled = true;
+    }
+    if (!(kind.duration < d.contact_duration)) continue;
+    d.contact_duration = kind.duration;
+    d.duration_of = fmt::format("{}, {} with {}", kind.duration_of, kind.first, kind.second);
+  }
+  d.time_step = c.run.time_step.value_or(d.contact_duration / c.run.steps_per_contact);
+  d.skin = c.run.skin * d.diameter;
   return d;
 }
 
-BedCoefficients make_bed(const Case& c, std::size_t bodies) {
-  const Derived d = derive(c);
-  const Contact& k = c.contact;
-  PairCoefficients grain;
-  grain.stiffness = k.stiffness;
-  const double flexible = (1.0 - k.poisson_ratio * k.poisson_ratio) / k.young_modulus;
-  const double shearing = 2.0 * (2.0 - k.poisson_ratio) * (1.0 + k.poisson_ratio) / k.young_modulus;
-  grain.young_modulus = 1.0 / (2.0 * flexible);
-  grain.shear_modulus = 1.0 / (2.0 * shearing);
-  grain.damping_ratio = damping_ratio(k.restitution);
-  grain.tension = k.tension == DashpotTension::allowed;
-  grain.tangential_stiffness = k.tangential_ratio * k.stiffness;
-  grain.tangential_damping = k.tangential_damping;
-  grain.friction = k.friction;
-  grain.cap_weight = k.cap == FrictionCap::net ? -1.0 : k.cap == FrictionCap::repulsion ? 0.0 : 1.0;
-  grain.rolling_friction = k.rolling_friction;
-  grain.twisting_friction = k.twisting_friction;
-  grain.rolling_damping = k.rolling_damping;
-  grain.adhesion = k.work_of_adhesion;
-  PairCoefficients wall = grain;
-  const double wall_modulus = k.wall_young_modulus.value_or(k.young_modulus);
-  wall.young_modulus = 1.0 / (flexible * (1.0 + k.young_modulus / wall_modulus));
-  wall.shear_modulus = 1.0 / (shearing * (1.0 + k.young_modulus / wall_modulus));
-  wall.stiffness = d.wall_stiffness;
-  wall.tangential_stiffness = k.tangential_ratio * d.wall_stiffness;
-  wall.damping_ratio = damping_ratio(k.wall_restitution.value_or(k.restitution));
-  wall.friction = d.wall_friction;
-  wall.rolling_friction = k.wall_rolling_friction.value_or(k.rolling_friction);
-  wall.adhesion = k.wall_work_of_adhesion.value_or(k.work_of_adhesion);
+namespace {
 
-  const double radius = 0.5 * c.material.diameter;
-  const bool hertzian = k.normal != NormalLaw::linear;
-  for (auto [pair, reduced] : {std::pair{&grain, 0.5 * radius}, std::pair{&wall, radius}}) {
-    // The tangent of the Hertz law at an overlap of 1 % of the radius.
-    const double normal = hertzian ? 2.0 * pair->young_modulus * std::sqrt(reduced * 0.01 * radius) : pair->stiffness;
-    pair->rolling_stiffness = k.rolling_stiffness_ratio * normal;
-    if (k.cohesion == Cohesion::dmt) {
-      pair->pull_off = 2.0 * pi * pair->adhesion;
-    } else {
-      pair->pull_off = (pair == &grain ? d.pull_off : d.wall_pull_off) / reduced;
-      pair->minimum_separation = k.minimum_separation;
-      pair->cut_off = k.cut_off;
+std::string contact_line(const ContactKind& kind, const std::string& second) {
+  return fmt::format(
+      "{} with {}: pull-off {:.3g} N, Bond number {:.3g}, damping ratio {:.3g}, contact duration {:.3g} s, overlap at "
+      "rest at most {:.2g} of a radius",
+      kind.first, second, kind.pull_off, kind.bond, kind.law.damping_ratio, kind.duration, kind.rest_overlap);
+}
+
+/// One line each, bodies that a material meets alike in one.
+void add_contacts(const Derived& d, std::vector<std::string>& lines) {
+  for (std::size_t k = 0; k < d.kinds.size();) {
+    std::string names = d.kinds[k].second;
+    std::size_t next = k + 1;
+    while (next < d.kinds.size() && d.kinds[k].wall && d.kinds[next].wall &&
+           contact_line(d.kinds[k], "") == contact_line(d.kinds[next], "")) {
+      names += ", " + d.kinds[next++].second;
     }
-    if (k.true_stiffness) pair->pull_off *= std::sqrt(pair->stiffness / *k.true_stiffness);
+    lines.push_back(contact_line(d.kinds[k], names));
+    k = next;
   }
+}
 
-  BedCoefficients bed;
-  bed.choice.normal = k.normal;
-  bed.choice.tangential = k.tangential.value_or(hertzian ? TangentialLaw::mindlin : TangentialLaw::linear);
-  bed.choice.resistance = k.resistance;
-  const bool attracts = k.normal != NormalLaw::jkr && (grain.pull_off > 0.0 || wall.pull_off > 0.0);
-  bed.choice.attraction = attracts ? AttractionLaw::short_range : AttractionLaw::none;
-  bed.grain = {grain};
-  bed.wall.assign(bodies, wall);
-  bed.equal_mass = d.mass;
-  bed.equal_radius = radius;
-  return bed;
+void add_attraction(const Case& c, const Derived& d, std::vector<std::string>& lines) {
+  const Contact& k = c.contact;
+  const auto pulls = [](const ContactKind& kind) { return kind.law.pull_off > 0.0; };
+  if (k.normal == NormalLaw::jkr) {
+    lines.push_back(fmt::format("JKR: work of adhesion {:.4g} J/m2, at walls {:.4g} J/m2; pull-off 3/2 pi w R*",
+                                k.work_of_adhesion, k.wall_work_of_adhesion.value_or(k.work_of_adhesion)));
+  } else if (std::none_of(d.kinds.begin(), d.kinds.end(), pulls)) {
+    return;
+  } else if (k.cohesion == Cohesion::dmt) {
+    lines.push_back(fmt::format("DMT: work of adhesion {:.4g} J/m2, at walls {:.4g} J/m2; pull-off 2 pi w R*",
+                                k.work_of_adhesion, k.wall_work_of_adhesion.value_or(k.work_of_adhesion)));
+  } else {
+    const double l = c.material.coarse_graining;
+    lines.push_back(fmt::format(
+        "van der Waals: H* {:.4g} J in use, {:.4g} J at walls; H = H*/l^3 {:.4g} J on the original grains (coarse "
+        "graining l {:g})",
+        d.hamaker, d.wall_hamaker, d.original_hamaker, l));
+    lines.push_back(fmt::format("  L of eq. (1) is the {} ({:.4g} mm), minimum separation {:.3g} nm, cut-off {:.3g} nm",
+                                k.length_scale == LengthScale::diameter ? "diameter" : "radius", 1e3 * d.length_scale,
+                                1e9 * k.minimum_separation, 1e9 * k.cut_off));
+  }
+  if (k.true_stiffness && k.normal == NormalLaw::linear)
+    lines.push_back(fmt::format("  attraction scaled by sqrt(stiffness / {:.4g} N/m)", *k.true_stiffness));
+  if (k.true_young_modulus && k.normal != NormalLaw::linear)
+    lines.push_back(fmt::format("  attraction scaled by (young_modulus / {:.4g} Pa)^0.4", *k.true_young_modulus));
+}
+
+}  // namespace
+
+std::vector<std::string> describe(const Case& c, const Derived& d) {
+  const double mass = 1e3 * d.mass * static_cast<double>(d.spheres);
+  const std::string sizes = d.smallest < d.largest
+                                ? fmt::format("{:.4g} to {:.4g} mm", 1e3 * d.smallest, 1e3 * d.largest)
+                                : fmt::format("{:.4g} mm", 1e3 * d.diameter);
+  std::vector<std::string> lines{fmt::format("{} spheres of {}, {:.4g} g", d.spheres, sizes, mass)};
+  add_contacts(d, lines);
+  add_attraction(c, d, lines);
+  if (c.contact.restitution_at)
+    lines.push_back(fmt::format("damping found for the wanted restitution at {:.3g} m/s, attraction included",
+                                *c.contact.restitution_at));
+  lines.push_back(fmt::format("time step {:.4g} s, {:.3g} in the shortest contact, {:.4g} s: {}", d.time_step,
+                              d.contact_duration / d.time_step, d.contact_duration, d.duration_of));
+  return lines;
 }
 
 }  // namespace dem

@@ -28,7 +28,7 @@ struct StepSums {
   double tool_work = 0.0;      ///< J in this step, of the bodies on the spheres
   std::uint64_t contacts = 0;  ///< pairs of spheres that touch
   std::uint64_t wall_contacts = 0;
-  std::uint64_t deep = 0;    ///< contacts whose overlap is more than 10 % of a radius
+  std::uint64_t deep = 0;    ///< contacts whose overlap is more than Surroundings::deep
   double max_overlap = 0.0;  ///< of a radius
 };
 
@@ -45,6 +45,7 @@ struct Surroundings {
   std::span<const Frame> frames;
   double time_step;  ///< s
   double range;      ///< m
+  double deep;       ///< of a radius: overlaps beyond it are counted
 };
 
 /// J, at the present positions.

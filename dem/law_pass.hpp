@@ -53,7 +53,7 @@ class LawPass final : public ForcePass {
 
   void chunk(State& s, const Surroundings& around, std::size_t chunk, StepSums& sums) const override {
     const PairView view{s.position.data(), s.motion.data(), s.pair.data(),    s.partner_load.data(), s.in_range.data(),
-                        s.history.data(),  s.load.data(),   around.time_step, around.range};
+                        s.history.data(),  s.load.data(),   around.time_step, around.range,          around.deep};
     const std::uint32_t begin = s.chunk_pair[chunk], end = s.chunk_pair[chunk + 1];
     PairSums pairs;
     if (equal()) {
@@ -240,7 +240,7 @@ class LawPass final : public ForcePass {
       max_overlap = larger(max_overlap, relative);
       const unsigned lane_mask = (1u << used) - 1u;
       sums.wall_contacts += static_cast<unsigned>(std::popcount(bits(r.touch > 0.0) & lane_mask));
-      sums.deep += static_cast<unsigned>(std::popcount(bits(relative > 0.1) & lane_mask));
+      sums.deep += static_cast<unsigned>(std::popcount(bits(relative > around.deep) & lane_mask));
     }
     BodyLoad& load = sums.body[body];
     for (int k = 0; k < lanes; ++k) {

@@ -10,9 +10,8 @@
 namespace dem {
 namespace {
 
-constexpr double spacing = 1.1;  // of the lattice, in diameters
-constexpr double jitter = 0.04;  // in diameters
-constexpr double margin = 0.02;  // in diameters, left to the bodies
+constexpr double margin = 0.02;                            // in diameters of the largest sphere, left to the bodies
+constexpr double room = site_spacing - 2.0 * site_jitter;  // for a parcel, alike
 
 struct Lattice {
   Vec3 first;
@@ -49,7 +48,7 @@ std::pair<Vec3, Vec3> extent(const Packable& w) {
     low = Vec3{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)} - grow;
     high = Vec3{std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)} + grow;
   }
-  const auto rim = [&](std::size_t axis) { return w.periodic[axis] ? 0.0 : (0.5 + jitter) * w.diameter; };
+  const auto rim = [&](std::size_t axis) { return w.periodic[axis] ? 0.0 : w.clearance - margin * w.diameter; };
   const Vec3 inset{rim(0), rim(1), rim(2)}, first = w.low + inset, last = w.high - inset;
   return {{std::max(low.x, first.x), std::max(low.y, first.y), std::max(low.z, first.z)},
           {std::min(high.x, last.x), std::min(high.y, last.y), std::min(high.z, last.z)}};
@@ -67,8 +66,8 @@ Lattice make_lattice(const Packable& w) {
     if (!(length >= 0.0)) return {};
     l.around[a] = w.periodic[a] && length > (1.0 - 1e-9) * box[a];
     // Along a periodic axis half a spacing is left at each end, so that the images keep clear too.
-    l.n[a] = static_cast<int>(length / (spacing * w.diameter)) + (w.periodic[a] ? 0 : 1);
-    l.step[a] = w.periodic[a] && l.n[a] > 0 ? length / l.n[a] : spacing * w.diameter;
+    l.n[a] = static_cast<int>(length / (site_spacing * w.diameter)) + (w.periodic[a] ? 0 : 1);
+    l.step[a] = w.periodic[a] && l.n[a] > 0 ? length / l.n[a] : site_spacing * w.diameter;
     first[a] = 0.5 * (from[a] + to[a]) - 0.5 * (l.n[a] - 1) * l.step[a];
   }
   l.first = {first[0], first[1], first[2]};
@@ -111,6 +110,41 @@ void shuffle(std::vector<Row>& rows, data::RandomStream& random) {
 
 }  // namespace
 
+Parcels make_parcels(const Grains& grains, std::size_t count) {
+  const auto diameter = [&](std::size_t k) { return 2.0 * grains.radius[grains.radius.size() == 1 ? 0 : k]; };
+  const double largest = diameter(0);
+  Parcels parcels;
+  parcels.first.push_back(0);
+  int finest = 1;
+  while (parcels.first.back() < count) {
+    const std::size_t next = parcels.first.back();
+    const int n = std::clamp(static_cast<int>(largest / diameter(next)), 1, 8);
+    parcels.first.push_back(std::min(count, next + static_cast<std::size_t>(n * n * n)));
+    parcels.along.push_back(n);
+    finest = std::max(finest, n);
+  }
+  // From a site's centre to the far side of the sphere in the corner of its parcel.
+  for (int n = 1; n <= finest; ++n) {
+    const double corner = std::sqrt(3.0) * 0.5 * (n - 1) * room / n + 0.5 / n;
+    parcels.clearance = std::max(parcels.clearance, (corner + site_jitter + margin) * largest);
+  }
+  return parcels;
+}
+
+std::vector<Vec3> place(const Parcels& parcels, const std::vector<Vec3>& sites, double largest) {
+  std::vector<Vec3> position;
+  for (std::size_t p = 0; p < parcels.sites(); ++p) {
+    const int n = parcels.along[p];
+    const double step = room * largest / n, back = 0.5 * (n - 1) * step;
+    for (std::size_t k = 0; k < parcels.first[p + 1] - parcels.first[p]; ++k) {
+      const auto row = static_cast<int>(k);
+      position.push_back(sites[p] +
+                         Vec3{row % n * step - back, row / n % n * step - back, row / (n * n) * step - back});
+    }
+  }
+  return position;
+}
+
 double depth_in_bodies(std::span<const Body> bodies, std::span<const Surface> surfaces, Vec3 center, double radius) {
   double deepest = -std::numeric_limits<double>::infinity();
   std::vector<NearFeature> near;
@@ -132,7 +166,7 @@ std::vector<Vec3> free_sites(const Packable& where, std::span<const Body> bodies
   const Lattice l = make_lattice(where);
   // No body passes between two neighbouring sites that keep clear of it by half their spacing.
   const double widest = *std::max_element(l.step.begin(), l.step.end());
-  const double clear = std::max((0.5 + jitter + margin) * where.diameter, 0.5001 * widest);
+  const double clear = std::max(where.clearance, 0.5001 * widest);
   std::vector<Surface> surfaces;
   for (const Body& b : bodies) surfaces.push_back(make_surface(b.mesh, clear));
   std::vector<char> free(l.total(), 0);
@@ -165,7 +199,7 @@ std::vector<Vec3> jittered(std::vector<Vec3> sites, std::size_t count, double di
   sites.resize(count);
   for (Vec3& p : sites) {
     const double x = random.uniform(-1.0, 1.0), y = random.uniform(-1.0, 1.0), z = random.uniform(-1.0, 1.0);
-    p += jitter * diameter / std::sqrt(3.0) * Vec3{x, y, z};
+    p += site_jitter * diameter / std::sqrt(3.0) * Vec3{x, y, z};
   }
   shuffle(sites, random);
   return sites;

@@ -1,10 +1,15 @@
 #pragma once
-// Where spheres of one size start in a region with bodies in it (dem/stl_rig.hpp says how).
+// Where spheres start: on the sites of a lattice, in a region with bodies in it (dem/stl_rig.hpp says how) or in the
+// slice (dem/slice.cpp).
+//
+// The lattice is that of the largest spheres; a site takes one of them, or a parcel of n^3 smaller ones, n times
+// smaller at least (n up to 8), on a cubic lattice of their own, so that fine powder does not start as a cloud.
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "dem/grains.hpp"
 #include "dem/simulation.hpp"
 #include "dem/stl_rig.hpp"
 
@@ -14,9 +19,25 @@ struct Packable {
   const FillRegion& region;
   Vec3 low, high;  ///< m, the box
   std::array<bool, 3> periodic;
-  Vec3 down;              ///< unit
-  double diameter = 0.0;  ///< m
+  Vec3 down;               ///< unit
+  double diameter = 0.0;   ///< m, of the largest sphere
+  double clearance = 0.0;  ///< m, of a site's centre from bodies and from the box's closed faces
 };
+
+/// Of the lattice's sites, and of how far each is moved at random, in diameters of the largest sphere.
+inline constexpr double site_spacing = 1.1, site_jitter = 0.04;
+
+/// What each site holds: the first sphere of each parcel, one more, and n of n^3.
+struct Parcels {
+  std::vector<std::size_t> first;
+  std::vector<int> along;
+  double clearance = 0.0;  ///< m, that a site's centre needs, its jitter included
+  std::size_t sites() const { return along.size(); }
+};
+/// Of spheres given largest first.
+Parcels make_parcels(const Grains& grains, std::size_t count);
+/// The spheres at the sites, which hold the parcels in their order.
+std::vector<Vec3> place(const Parcels& parcels, const std::vector<Vec3>& sites, double largest);
 
 /// Free sites of the lattice, lowest first, those of a layer in random order; each keeps clear of all others and of the
 /// bodies by the jitter that `jittered` gives it.

@@ -14,7 +14,7 @@ struct PairSums {
   double virial = 0.0;         ///< J, sum of push * distance of the centres
   double dissipated = 0.0;     ///< J in this step
   std::uint64_t contacts = 0;  ///< pairs that touch
-  std::uint64_t deep = 0;      ///< contacts whose overlap is more than 10 % of a radius
+  std::uint64_t deep = 0;      ///< contacts whose overlap is more than PairView::deep
   double max_overlap = 0.0;    ///< of the mean radius of the two
 };
 
@@ -28,6 +28,7 @@ struct PairView {
   LoadRow* load;
   double time_step;  ///< s
   double range;      ///< m, of the laws beyond touching
+  double deep;       ///< of the mean radius of the two
 };
 
 /// Laws of the pairs of a bed: one for all where spheres are equal, else a table over both materials.
@@ -189,7 +190,7 @@ template <class Law, bool Uniform>
       const Lane relative = Uniform ? Lane(m.overlap * (1.0 / laws.each_radius())) : Lane(2.0 * m.overlap / sum);
       max_overlap = larger(max_overlap, relative);
       contacts += static_cast<unsigned>(std::popcount(bits(r.touch > 0.0) & lane_mask));
-      deep += static_cast<unsigned>(std::popcount(bits(relative > 0.1) & lane_mask));
+      deep += static_cast<unsigned>(std::popcount(bits(relative > v.deep) & lane_mask));
     }
   }
   for (int k = 0; k < lanes; ++k) {

@@ -1,8 +1,13 @@
 #include "dem/read_case.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
+#include "dem/grains.hpp"
 #include "dem/read_stl_rig.hpp"
+#include "dem/rig.hpp"
 #include "dem/target.hpp"
 
 namespace dem {
@@ -11,17 +16,21 @@ namespace {
 using data::Range;
 using data::Section;
 
-Range range_of(std::string_view name) {
-  const Target& t = target(name);
-  return {.low = t.low, .high = t.high};
-}
+/// What to say of a key that this case's laws do not read: other materials' may.
+enum class Unread { is_a_problem, is_for_others };
 
 /// A key whose name, unit and range are those of the target "SECTION.KEY".
-void read(const Section& s, std::string_view section, std::string_view key, Case& c) {
+void read(const Section& s, std::string_view section, std::string_view key, Case& c,
+          Unread unread = Unread::is_a_problem) {
   if (!s.has(key)) return;
-  const Target& t = target(std::string(section) + "." + std::string(key));
-  const double value = s.quantity(key, t.unit, range_of(t.name), get_target(c, t.name));
-  if (value >= t.low && value <= t.high) set_target(c, t.name, value);
+  const Target t = target(std::string(section) + "." + std::string(key));
+  const double value = s.quantity(key, t.unit, {.low = t.low, .high = t.high}, get_target(c, t.name));
+  if (!(value >= t.low && value <= t.high)) return;
+  const std::string why = unused_because(c, t.name);
+  if (why.empty())
+    set_target(c, t.name, value);
+  else if (unread == Unread::is_a_problem)
+    s.problem(key, why, "remove it, or choose what reads it");
 }
 
 template <class Choice>
@@ -61,21 +70,84 @@ void read_rig(const Section& s, const std::string& folder, Case& c) {
   read_fill(s, c);
 }
 
-void read_contact(const Section& s, Case& c) {
-  for (const char* key : {"stiffness", "wall_stiffness", "restitution", "tangential_ratio", "tangential_damping",
-                          "friction", "wall_friction", "hamaker", "wall_hamaker", "minimum_separation", "cut_off"}) {
-    read(s, "contact", key, c);
+constexpr const char* coefficients[]{"stiffness",
+                                     "wall_stiffness",
+                                     "young_modulus",
+                                     "wall_young_modulus",
+                                     "poisson_ratio",
+                                     "restitution",
+                                     "wall_restitution",
+                                     "tangential_ratio",
+                                     "tangential_damping",
+                                     "friction",
+                                     "wall_friction",
+                                     "rolling_friction",
+                                     "wall_rolling_friction",
+                                     "twisting_friction",
+                                     "rolling_stiffness_ratio",
+                                     "rolling_damping",
+                                     "hamaker",
+                                     "wall_hamaker",
+                                     "minimum_separation",
+                                     "cut_off",
+                                     "work_of_adhesion",
+                                     "wall_work_of_adhesion",
+                                     "true_stiffness",
+                                     "true_young_modulus"};
+std::optional<double> read_coefficient(const Section& s, std::string_view key) {
+  if (!s.has(key)) return {};
+  const Target t = target("contact." + std::string(key));
+  return s.quantity(key, t.unit, {.low = t.low, .high = t.high});
+}
+
+void read_pair(const Section& s, Case& c) {
+  PairContact pair;
+  const std::vector<std::string> between = s.texts("between", true);
+  if (between.size() == 2) {
+    pair.first = between[0];
+    pair.second = between[1];
+  } else {
+    s.problem("between", fmt::format("has {} names", between.size()), R"(give two, like ["sand", "wall"])");
   }
-  choose(s, "tension", {"allowed", "clamped"}, c.contact.tension);
-  choose(s, "cap", {"net", "repulsion", "thornton"}, c.contact.cap);
-  choose(s, "hamaker_of", {"simulation", "original"}, c.contact.hamaker_of);
-  choose(s, "length_scale", {"diameter", "radius"}, c.contact.length_scale);
-  choose(s, "wall_attraction", {"as_grains", "derjaguin"}, c.contact.wall_attraction);
+  for (const PairKey& k : pair_keys) pair.*k.field = read_coefficient(s, k.key);
+  c.pairs.push_back(std::move(pair));
+}
+
+/// The choices of laws come first: which coefficients are read depends on them.
+void read_laws(const Section& s, Contact& k) {
+  choose(s, "normal", {"linear", "hertz", "jkr"}, k.normal);
+  if (s.has("tangential")) choose(s, "tangential", {"linear", "mindlin"}, k.tangential.emplace(TangentialLaw::linear));
+  choose(s, "resistance", {"none", "constant", "spring"}, k.resistance);
+  choose(s, "cohesion", {"van_der_waals", "dmt"}, k.cohesion);
+  choose(s, "tension", {"allowed", "clamped"}, k.tension);
+  choose(s, "cap", {"net", "repulsion", "thornton"}, k.cap);
+  choose(s, "hamaker_of", {"simulation", "original"}, k.hamaker_of);
+  choose(s, "length_scale", {"diameter", "radius"}, k.length_scale);
+  choose(s, "wall_attraction", {"as_grains", "derjaguin"}, k.wall_attraction);
+  if (s.has("restitution_at"))
+    k.restitution_at = s.quantity("restitution_at", "m/s", {.low = 0.0, .high = 1000.0, .open_low = true});
+}
+
+constexpr const char* laws[]{"normal", "tangential", "resistance", "cohesion"};
+bool chooses_laws(const Section& s) {
+  return std::any_of(std::begin(laws), std::end(laws), [&](const char* key) { return s.has(key); });
+}
+
+/// The study's [contact], then the material's own.
+void read_contact(const Section& common, const Section& own, Unread unread, Case& c) {
+  read_laws(common, c.contact);
+  read_laws(own, c.contact);
+  for (const char* key : coefficients) read(common, "contact", key, c, unread);
+  for (const char* key : coefficients) read(own, "contact", key, c);
+  for (const Section& pair : common.array("pair")) read_pair(pair, c);
+  for (const Section& pair : own.array("pair")) read_pair(pair, c);
 }
 
 void read_run(const Section& s, RunControl& r) {
   r.gravity = s.quantity("gravity", "m/s2", {.low = 0.0, .high = 1000.0, .open_low = true}, r.gravity);
   r.steps_per_contact = s.number("steps_per_contact", {.low = 15.0, .high = 10000.0}, r.steps_per_contact);
+  if (s.has("time_step")) r.time_step = s.quantity("time_step", "s", data::positive);
+  r.overlap_limit = s.number("overlap_limit", {.low = 0.0, .high = 1.0, .open_low = true}, r.overlap_limit);
   r.skin = s.number("skin", {.low = 0.01, .high = 1.0}, r.skin);
   r.settle = s.quantity("settle", "s", data::non_negative, r.settle);
   r.start_up = s.quantity("start_up", "s", data::non_negative, r.start_up);
@@ -86,10 +158,116 @@ void read_run(const Section& s, RunControl& r) {
   r.longest = s.quantity("longest", "s", data::positive, r.longest);
 }
 
-void read_material(const Section& s, Case& c) {
-  for (const char* key : {"density", "diameter", "coarse_graining"}) read(s, "material", key, c);
+LogNormalSizes read_distribution(const Section& s, Material& m) {
+  const Target diameter = target("material.diameter");
+  const Range lengths{.low = diameter.low, .high = diameter.high};
+  const Target spread = target("material.geometric_sd");
+  s.choice("kind", {"log_normal"});
+  m.diameter = s.quantity("median", "m", lengths);
+  LogNormalSizes l;
+  l.geometric_sd = s.number("geometric_sd", {.low = spread.low, .high = spread.high});
+  const double two = l.geometric_sd * l.geometric_sd;
+  l.low = s.quantity("low", "m", lengths, m.diameter / two);
+  l.high = s.quantity("high", "m", lengths, m.diameter * two);
+  return l;
+}
+
+/// What a grain is, by itself.
+void read_grain(const Section& s, Material& m) {
+  const auto number = [&](const char* key, double& field) {
+    if (!s.has(key)) return;
+    const Target t = target(std::string("material.") + key);
+    field = s.quantity(key, t.unit, {.low = t.low, .high = t.high});
+  };
+  number("density", m.density);
+  number("diameter", m.diameter);
+  number("coarse_graining", m.coarse_graining);
+  const Target diameter = target("material.diameter");
+  for (const Section& size : s.array("sizes"))
+    m.sizes.push_back({size.quantity("diameter", "m", {.low = diameter.low, .high = diameter.high}),
+                       size.number("mass_fraction", {.low = 0.0, .high = 1.0, .open_low = true})});
+  if (s.has("distribution")) m.log_normal = read_distribution(s.child("distribution"), m);
+  if (s.has("diameter") && (!m.sizes.empty() || m.log_normal))
+    s.problem("diameter", "stands beside sizes or a distribution", "keep one of them");
+}
+
+/// What a component's own [contact] says holds between its grains and, but for what differs there, at walls.
+void read_component_contact(const Section& s, const std::string& name, Case& c, Material& m) {
+  PairContact grains, walls;
+  grains.first = grains.second = walls.first = name;
+  walls.second = "wall";
+  if (chooses_laws(s)) s.problem("", "chooses laws for a component", "the laws are those of the mixture");
+  bool some = false, some_wall = false;
+  for (const PairKey& k : pair_keys) {
+    grains.*k.field = walls.*k.field = read_coefficient(s, k.key);
+    const std::string wall_key = fmt::format("wall_{}", k.key);
+    if (find_target("contact." + wall_key)) {
+      if (const std::optional<double> of_wall = read_coefficient(s, wall_key)) walls.*k.field = of_wall;
+    }
+    some = some || grains.*k.field;
+    some_wall = some_wall || walls.*k.field;
+  }
+  m.young_modulus = read_coefficient(s, "young_modulus");
+  m.poisson_ratio = read_coefficient(s, "poisson_ratio");
+  if (some) c.pairs.push_back(grains);
+  if (some_wall) c.pairs.push_back(walls);
+}
+
+void read_components(const Section& mixture, const Section& materials, Case& c) {
+  double sum = 0.0;
+  for (const Section& s : mixture.array("components")) {
+    const std::string name = s.text("material");
+    Component part;
+    part.material.name = name;
+    part.mass_fraction = s.number("mass_fraction", {.low = 0.0, .high = 1.0});
+    sum += part.mass_fraction;
+    if (!materials.has(name) || name == c.material.name) {
+      s.problem("material", fmt::format("there is no other material '{}'", name), "name a table of [materials]");
+      continue;
+    }
+    const Section own = materials.child(name);
+    for (const char* key : {"coarse_graining", "fill"})
+      if (own.has(key)) own.problem(key, "is that of the mixture, not of a component", "move it to " + c.material.name);
+    read_grain(own, part.material);
+    read_component_contact(own.child("contact"), name, c, part.material);
+    c.components.push_back(std::move(part));
+  }
+  if (!(std::abs(sum - 1.0) < 1e-3))
+    mixture.problem("components", fmt::format("have mass fractions that sum to {:g}, not 1", sum), "correct them");
+}
+
+void read_material(const Section& s, const Section& root, Case& c) {
+  const Section materials = root.child("materials");
   read_fill(s, c);
-  read_contact(s.child("contact"), c);
+  if (s.has("components")) {
+    for (const char* key : {"density", "diameter", "sizes", "distribution"})
+      if (s.has(key)) s.problem(key, "is that of each component, not of the mixture", "move it to the components");
+    read(s, "material", "coarse_graining", c);
+    read_components(s, materials, c);
+  } else {
+    read_grain(s, c.material);
+  }
+  bool various = false;
+  for (const auto& [name, other] : materials.children()) various = various || chooses_laws(other.child("contact"));
+  read_contact(root.child("contact"), s.child("contact"), various ? Unread::is_for_others : Unread::is_a_problem, c);
+}
+
+/// Pairs must name materials of the study or bodies; those of other materials than this bed's are left out.
+void sort_out_pairs(const Section& root, Case& c) {
+  const std::vector<std::string> grains = grain_names(c), bodies = body_names(c);
+  const auto in = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  std::erase_if(c.pairs, [&](const PairContact& p) {
+    for (const std::string& name : {p.first, p.second}) {
+      if (!name.empty() && !in(grains, name) && !in(bodies, name) && !root.child("materials").has(name))
+        root.child("contact").problem(
+            "pair", fmt::format("names '{}', which is no material, mesh or mesh's material", name),
+            fmt::format("choose two of: {}, {}", listed(grains), listed(bodies)));
+    }
+    return !((in(grains, p.first) && (in(grains, p.second) || in(bodies, p.second))) ||
+             (in(bodies, p.first) && in(grains, p.second)));
+  });
 }
 
 }  // namespace
@@ -98,20 +276,21 @@ Case read_case(const data::StudyFile& study, std::string_view material) {
   const Section root = study.root();
   Case c;
   read_rig(root.child("rig"), study.folder(), c);
-  read_contact(root.child("contact"), c);
   read_run(root.child("run"), c.run);
   c.run.standard_error =
       root.child("training")
           .number("standard_error", {.low = 0.0, .high = 1.0, .open_low = true}, c.run.standard_error);
+  const auto materials = root.child("materials").children();
+  if (materials.empty()) read_contact(root.child("contact"), root.child("none"), Unread::is_a_problem, c);
   // Every material's keys are known, whichever is read.
-  for (const auto& [name, section] : root.child("materials").children()) {
-    Case other = c;
-    read_material(section, other);
-    if (name == material) {
-      c = other;
-      c.material.name = name;
-    }
+  const Case common = c;
+  for (const auto& [name, section] : materials) {
+    Case other = common;
+    other.material.name = name;
+    read_material(section, root, other);
+    if (name == material) c = other;
   }
+  sort_out_pairs(root, c);
   // An InputError for what no single key is to blame for; single keys were checked as they were read.
   for (const data::Problem& p : problems(c)) root.child("rig").problem("", p.place + " " + p.what, p.remedy);
   return c;

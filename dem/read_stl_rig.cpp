@@ -106,6 +106,7 @@ void read_meshes(const Section& rig, const std::string& folder, StlRig& r) {
       if (other.name == mesh.name)
         s.problem("name", fmt::format("'{}' is taken by another mesh", mesh.name), "give each mesh a name of its own");
     }
+    mesh.material = s.text("material", "wall");
     const std::string file = s.text("file");
     const double scale = read_unit(s, "unit", {});
     read_motion(s, mesh);

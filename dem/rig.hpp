@@ -8,6 +8,7 @@
 
 #include "data/error.hpp"
 #include "dem/case.hpp"
+#include "dem/grains.hpp"
 #include "dem/simulation.hpp"
 
 namespace dem {
@@ -26,6 +27,7 @@ struct BuiltRig {
   std::array<bool, 3> periodic{false, false, false};
   Vec3 down{0.0, 0.0, -1.0};  ///< unit, direction of gravity
   std::vector<Body> bodies;
+  Grains grains;
   std::vector<Vec3> position;        ///< m, of the spheres at the start
   std::vector<Vec3> velocity;        ///< m/s, empty: at rest
   std::vector<std::uint8_t> frozen;  ///< 1: that sphere does not move; empty: none
@@ -54,10 +56,18 @@ std::vector<data::Problem> rig_problems(const Case& c);
 /// Settings that no target names, one "name = value" a line.
 std::string rig_settings(const Case& c);
 
-/// Whether this rig has the quantity: the slice's dimensions mean nothing to another rig.
-bool rig_has(const Case& c, std::string_view target_name);
+/// What the rig's bodies are called and made of, in their order.
+struct BodyLabel {
+  std::string name, material;
+};
+std::vector<BodyLabel> body_labels(const Case& c);
+/// All by which a pair of materials may name a body: names, materials and "wall".
+std::vector<std::string> body_names(const Case& c);
 
-/// How high the powder would stand in a box filled without gaps [m].
+/// The highest speed of any point of a moving body [m/s].
+double tool_speed(const Case& c);
+
+/// How high the powder would stand in the box without bodies, its spheres on a cubic lattice [m].
 double fill_depth(const Case& c);
 
 }  // namespace dem

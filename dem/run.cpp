@@ -90,19 +90,24 @@ Summary summarise(const Case& c, const Series& s) {
   return summary;
 }
 
-void take_sample(const Case& c, const Sensor& sensor, const Simulation& simulation, std::uint64_t turning_steps,
-                 Checkpoint& now) {
-  const Derived d = derive(c);
-  const double n = static_cast<double>(now.under_way.steps), spheres = static_cast<double>(d.spheres);
+/// What does not change from sample to sample.
+struct Sampling {
+  Sensor sensor;
+  double solid_volume = 0.0;  ///< m3
+};
+
+void take_sample(const Sampling& of, const Simulation& simulation, std::uint64_t turning_steps, Checkpoint& now) {
+  const Sensor& sensor = of.sensor;
+  const double n = static_cast<double>(now.under_way.steps),
+               spheres = static_cast<double>(simulation.state().particles());
   const double momentum = dot(sensor.flow_axis, simulation.momentum());
   Series& s = now.series;
-  s.time.push_back(static_cast<double>(turning_steps) * d.time_step);
+  s.time.push_back(static_cast<double>(turning_steps) * simulation.setup().time_step);
   s.torque.push_back(now.under_way.torque / n);
   s.axial_flow.push_back(momentum / sensor.flow_length);
   s.coordination.push_back(2.0 * now.under_way.contacts / n / spheres);
   s.kinetic_energy.push_back(simulation.kinetic_energy());
-  const double volume = spheres * d.mass / c.material.density;
-  s.normal_stress.push_back(now.under_way.virial / n / (3.0 * volume));
+  s.normal_stress.push_back(now.under_way.virial / n / (3.0 * of.solid_volume));
   now.under_way.steps = 0;
   now.under_way.torque = now.under_way.contacts = now.under_way.virial = 0.0;
   if (!std::isfinite(s.kinetic_energy.back() + s.torque.back())) {
@@ -142,6 +147,7 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   const Derived d = derive(c);
   BuiltRig rig = build_rig(c, seed);
   const Sensor sensor = rig.sensor;
+  const Sampling sampling{sensor, solid_volume(rig.grains, rig.position.size())};
   const Plan plan = make_plan(c, d, sensor);
   RunResult result;
   result.seed = seed;
@@ -165,6 +171,8 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
       now.under_way.cpu_seconds = cpu_earlier + cpu_time(options.threads) - cpu_before;
     };
     bool done = false;
+    keep();
+    Checkpoint good = now;
     try {
       for (std::uint64_t look = 0; !done; ++look) {
         simulation.step();
@@ -181,8 +189,10 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
         now.under_way.virial += sums.virial;
         now.under_way.deep_contacts += sums.deep;
         now.under_way.max_overlap = std::max(now.under_way.max_overlap, sums.max_overlap);
-        if (turning % plan.sample == 0) take_sample(c, sensor, simulation, turning, now);
+        if (turning % plan.sample == 0) take_sample(sampling, simulation, turning, now);
         if (turning % plan.check == 0 || turning >= plan.longest) {
+          keep();
+          good = now;
           double torque = 0.0, error = 1.0;
           if (turning > plan.start_up) {
             const data::SeriesMean mean = data::mean_with_error(after(now.series, now.series.torque, c.run.start_up));
@@ -207,7 +217,10 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
       result.status = RunStatus::failed;
       result.reason = fault.what();
     }
-    keep();
+    if (result.status == RunStatus::failed)
+      now = std::move(good);
+    else
+      keep();
     result.diagnostics.steps = simulation.state().step;
     result.diagnostics.rebuilds = simulation.state().rebuilds;
   } catch (const Fault& fault) {
@@ -227,8 +240,9 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   }
   if (g.deep_contacts > 0) {
     result.warnings.push_back(fmt::format(
-        "{} contact-steps overlap by more than 10 % of a radius (largest {:.3g} of a radius): raise contact.stiffness",
-        g.deep_contacts, g.max_overlap));
+        "{} contact-steps overlap by more than {:g} of a radius, half of run.overlap_limit (largest {:.3g}): raise {}",
+        g.deep_contacts, 0.5 * c.run.overlap_limit, g.max_overlap,
+        c.contact.normal == NormalLaw::linear ? "contact.stiffness" : "contact.young_modulus"));
   }
   return result;
 }

@@ -47,7 +47,7 @@ std::string output_names();  ///< "torque, torque_fluctuation, ..."
 struct Diagnostics {
   Derived derived;  ///< pull-off, Bond number, time step, ...
   std::uint64_t steps = 0, rebuilds = 0;
-  std::uint64_t deep_contacts = 0;  ///< contact-steps with an overlap beyond 10 % of a radius
+  std::uint64_t deep_contacts = 0;  ///< contact-steps with an overlap beyond half the limit
   double max_overlap = 0.0;         ///< of a radius, while turning
   double simulated = 0.0;           ///< s of turning
   double steps_per_second = 0.0;    ///< particle-steps per second of processor time
@@ -86,7 +86,7 @@ struct RunResult {
   Series series;
   Summary summary;
   Diagnostics diagnostics;
-  Checkpoint checkpoint;  ///< the last good state
+  Checkpoint checkpoint;  ///< the last state; of a failed run a good one before
 };
 
 struct RunProgress {

@@ -100,7 +100,7 @@ std::vector<Frame> Simulation::frames() const {
 }
 
 Surroundings Simulation::around(const std::vector<Frame>& frames) const {
-  return {surface_, frames, setup_.time_step, range_};
+  return {surface_, frames, setup_.time_step, range_, 0.5 * setup_.overlap_limit};
 }
 
 void Simulation::compute_forces() {
@@ -196,6 +196,7 @@ void Simulation::step() {
   else
     follow_owners();
   compute_forces();
+  if (sums_.max_overlap > setup_.overlap_limit) report_overlap();
 }
 
 MotionRow Simulation::motion(std::size_t i) const {

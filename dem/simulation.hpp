@@ -6,6 +6,7 @@
 // velocity Verlet, which makes the dashpot second order between contact events. Spins alike with inertia 2/5 m r^2.
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -42,10 +43,11 @@ struct Setup {
   Spheres spheres;
   std::vector<Body> bodies;
   std::shared_ptr<const ForcePass> laws;
-  Vec3 gravity{0.0, 0.0, -9.81};  ///< m/s2
-  double time_step = 0.0;         ///< s
-  double skin = 0.0;              ///< m
-  std::uint64_t rest_steps = 0;   ///< before the bodies' motions begin
+  Vec3 gravity{0.0, 0.0, -9.81};                                   ///< m/s2
+  double time_step = 0.0;                                          ///< s
+  double skin = 0.0;                                               ///< m
+  double overlap_limit = std::numeric_limits<double>::infinity();  ///< of a radius; beyond it the run ends
+  std::uint64_t rest_steps = 0;                                    ///< before the bodies' motions begin
   int threads = 1;
 };
 
@@ -96,6 +98,7 @@ class Simulation {
   void list_walls();
   std::vector<Frame> frames() const;
   Surroundings around(const std::vector<Frame>& frames) const;
+  [[noreturn]] void report_overlap() const;
 
   Setup setup_;
   State state_;

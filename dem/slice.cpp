@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "data/random.hpp"
-#include "dem/derived.hpp"
+#include "dem/packing.hpp"
 
 namespace dem {
 namespace {
@@ -93,14 +93,17 @@ TriangleMesh trough_mesh(const Rig& rig, double top) {
 }
 
 Packing pack(const Case& c, std::uint64_t seed) {
-  const Derived d = derive(c);
+  const BedSummary bed = summarise_bed(c);
   const Rig& rig = c.rig;
+  Packing packing;
+  packing.grains = draw_grains(c, seed);
+  const Parcels parcels = make_parcels(packing.grains, bed.spheres);
   data::RandomStream random(seed, data::Purpose::packing);
-  const double size = c.material.diameter, radius = 0.5 * size, length = rig.pitches * rig.pitch;
-  const double jitter = 0.04 * size, clear = radius + jitter + 0.02 * size;
+  const double size = bed.largest, length = rig.pitches * rig.pitch;
+  const double jitter = site_jitter * size, clear = parcels.clearance;
   // A simple cubic lattice whose spacing along x divides the box; sites keep clear of each other and of the walls.
-  const int nx = static_cast<int>(length / (1.1 * size));
-  const double dx = length / nx, step = 1.1 * size;
+  const int nx = static_cast<int>(length / (site_spacing * size));
+  const double dx = length / nx, step = site_spacing * size;
   const double wall = rig.trough_radius * std::cos(pi / (2 * facets)) - clear;
   const int ny = static_cast<int>(std::floor(2.0 * wall / step)) + 1;
   const auto free = [&](Vec3 p) {
@@ -115,8 +118,8 @@ Packing pack(const Case& c, std::uint64_t seed) {
         std::min(rho, rig.shaft_radius) * 2.0 * pi / std::hypot(rig.pitch, 2.0 * pi * std::min(rho, rig.shaft_radius));
     return (off - 0.5 * rig.blade_thickness) * cosine > clear;
   };
-  Packing packing;
-  for (int layer = 0; packing.position.size() < d.spheres; ++layer) {
+  std::vector<Vec3> taken;
+  for (int layer = 0; taken.size() < parcels.sites(); ++layer) {
     const double z = -wall + layer * step;
     std::vector<Vec3> sites;
     for (int ix = 0; ix < nx; ++ix) {
@@ -129,17 +132,15 @@ Packing pack(const Case& c, std::uint64_t seed) {
     for (std::size_t k = sites.size(); k > 1; --k)
       std::swap(sites[k - 1], sites[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
     for (const Vec3 p : sites) {
-      if (packing.position.size() == d.spheres) break;
-      packing.position.push_back(
-          p + jitter / std::sqrt(3.0) *
-                  Vec3{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)});
+      if (taken.size() == parcels.sites()) break;
+      taken.push_back(p + jitter / std::sqrt(3.0) *
+                              Vec3{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)});
       packing.top = std::max(packing.top, p.z + clear);
     }
   }
-  for (std::size_t k = packing.position.size(); k > 1; --k) {
-    std::swap(packing.position[k - 1],
-              packing.position[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
-  }
+  for (std::size_t k = taken.size(); k > 1; --k)
+    std::swap(taken[k - 1], taken[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
+  packing.position = place(parcels, taken, size);
   return packing;
 }
 
@@ -153,6 +154,7 @@ BuiltRig build_slice(const Case& c, std::uint64_t seed) {
   s.low = {0.0, -side, -side};
   s.high = {length, side, top};
   s.periodic = {true, false, false};
+  s.grains = std::move(packing.grains);
   s.position = std::move(packing.position);
   const Vec3 shift{length, 0.0, 0.0};
   s.bodies.push_back({"mixer", with_copies(auger_mesh(rig), {shift}, 1e-9 * length), {}});
@@ -167,7 +169,7 @@ BuiltRig build_slice(const Case& c, std::uint64_t seed) {
 std::vector<data::Problem> slice_problems(const Case& c) {
   std::vector<data::Problem> found;
   const Rig& rig = c.rig;
-  const double size = c.material.diameter, length = rig.pitches * rig.pitch;
+  const double size = summarise_bed(c).largest, length = rig.pitches * rig.pitch;
   if (!(rig.shaft_radius < rig.blade_radius && rig.blade_radius < rig.trough_radius)) {
     found.push_back({"rig",
                      fmt::format("has radii of shaft {:g}, blade {:g} and trough {:g} m, which must grow in this order",

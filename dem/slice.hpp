@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dem/case.hpp"
+#include "dem/grains.hpp"
 #include "dem/mesh.hpp"
 #include "dem/rig.hpp"
 
@@ -22,6 +23,7 @@ TriangleMesh trough_mesh(const Rig& rig, double top);
 
 /// Where the filling starts: a jittered lattice clear of the walls, filled from the bottom, in random order.
 struct Packing {
+  Grains grains;
   std::vector<Vec3> position;  ///< m
   double top = 0.0;            ///< m above the axis, of the highest sphere
 };

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
-#include "dem/derived.hpp"
 #include "dem/packing.hpp"
 #include "dem/rig.hpp"
 
@@ -46,17 +46,21 @@ void check_packing(const StlRig& rig, std::span<const Body> bodies, double radiu
   }
 }
 
-std::vector<Vec3> fill(const Case& c, const StlRig& rig, std::span<const Body> bodies, std::uint64_t seed) {
-  const std::size_t wanted = derive(c).spheres;
-  std::vector<Vec3> sites =
-      free_sites({rig.region, rig.low, rig.high, rig.periodic, rig.down, c.material.diameter}, bodies, seed);
-  if (sites.size() < wanted) {
+void fill(const Case& c, std::uint64_t seed, BuiltRig& built) {
+  const StlRig& rig = *c.rig.stl;
+  const BedSummary bed = summarise_bed(c);
+  built.grains = draw_grains(c, seed);
+  const Parcels parcels = make_parcels(built.grains, bed.spheres);
+  std::vector<Vec3> sites = free_sites(
+      {rig.region, rig.low, rig.high, rig.periodic, rig.down, bed.largest, parcels.clearance}, built.bodies, seed);
+  if (sites.size() < parcels.sites()) {
+    const std::string parts = bed.equal ? "" : fmt::format(" ({} sites of the largest)", parcels.sites());
     fail("rig.fill",
-         fmt::format("asks for {} spheres of {:g} m, but the fill region has room for {} clear of the meshes", wanted,
-                     c.material.diameter, sites.size()),
+         fmt::format("asks for {} spheres of {:g} m{}, but the fill region has room for {} clear of the meshes",
+                     bed.spheres, bed.largest, parts, sites.size()),
          "lower the fill, or make rig.region larger");
   }
-  return jittered(std::move(sites), wanted, c.material.diameter, seed);
+  built.position = place(parcels, jittered(std::move(sites), parcels.sites(), bed.largest, seed), bed.largest);
 }
 
 void check_mesh_in_box(const RigMesh& m, const Case& c, std::vector<data::Problem>& found) {
@@ -67,7 +71,7 @@ void check_mesh_in_box(const RigMesh& m, const Case& c, std::vector<data::Proble
     low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
     high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
   }
-  if (!(length(high - low) > c.material.diameter)) {
+  if (!(length(high - low) > summarise_bed(c).smallest)) {
     found.push_back(
         {place, fmt::format("is {:g} m across, smaller than a sphere", length(high - low)), "correct the mesh's unit"});
   }
@@ -130,6 +134,26 @@ Motion motion_of(const RigMesh& mesh, double angular_velocity) {
   return motion;
 }
 
+double mesh_speed(const StlRig& rig, double angular_velocity) {
+  double fastest = 0.0;
+  for (const RigMesh& m : rig.meshes) {
+    const Motion motion = motion_of(m, angular_velocity);
+    double from_axis = 0.0, from_point = 0.0;
+    for (const Vec3 v : m.mesh.vertices) {
+      from_axis = std::max(from_axis, length(cross(motion.axis, v - motion.point)));
+      from_point = std::max(from_point, length(v - motion.point));
+    }
+    double speed = 0.0;
+    for (const SpeedPoint& p : motion.programme) speed = std::max(speed, std::abs(p.angular_velocity) * from_axis);
+    for (const Oscillation& o : motion.oscillations) {
+      const double arm = o.kind == OscillationKind::along ? 1.0 : from_point;
+      speed += 2.0 * std::numbers::pi * o.frequency * std::abs(o.amplitude) * arm;
+    }
+    fastest = std::max(fastest, speed);
+  }
+  return fastest;
+}
+
 BuiltRig build_stl_rig(const Case& c, std::uint64_t seed) {
   const StlRig& rig = *c.rig.stl;
   BuiltRig built;
@@ -141,9 +165,10 @@ BuiltRig build_stl_rig(const Case& c, std::uint64_t seed) {
     built.bodies.push_back(
         {m.name, with_copies(m.mesh, periods(rig), m.tolerance), motion_of(m, c.rig.angular_velocity)});
   if (rig.packing.empty()) {
-    built.position = fill(c, rig, built.bodies, seed);
+    fill(c, seed, built);
   } else {
-    check_packing(rig, built.bodies, 0.5 * c.material.diameter);
+    built.grains = draw_grains(c, seed);
+    check_packing(rig, built.bodies, built.grains.radius[0]);
     built.position = rig.packing;
     built.velocity = rig.velocity;
     built.frozen = rig.frozen;
@@ -160,9 +185,9 @@ std::vector<data::Problem> stl_rig_problems(const Case& c) {
   std::vector<data::Problem> found;
   const StlRig& rig = *c.rig.stl;
   const auto low = components(rig.low), high = components(rig.high);
+  const BedSummary bed = summarise_bed(c);
   for (std::size_t a = 0; a < 3; ++a) {
-    const double size = high[a] - low[a],
-                 least = rig.periodic[a] ? 4.0 * (1.0 + c.run.skin) * c.material.diameter : 0.0;
+    const double size = high[a] - low[a], least = rig.periodic[a] ? 4.0 * (1.0 + c.run.skin) * bed.largest : 0.0;
     if (!(size > least)) {
       found.push_back({"rig.box",
                        fmt::format("is {:g} m long along {}, but must be longer than {:g} m{}", size, axis_names[a],
@@ -183,11 +208,13 @@ std::vector<data::Problem> stl_rig_problems(const Case& c) {
   }
   if (driven && c.rig.angular_velocity == 0.0)
     found.push_back({"rig.rpm", "is zero: a mixer at rest has no torque to measure", "give a speed"});
-  if (!rig.packing.empty() && derive(c).spheres != rig.packing.size()) {
-    found.push_back(
-        {"rig.fill",
-         fmt::format("makes {} spheres, but rig.packing has {} positions", derive(c).spheres, rig.packing.size()),
-         "leave fill away, or remove packing"});
+  if (!rig.packing.empty() && !bed.equal) {
+    found.push_back({"rig.packing", "says where spheres of one size start, and those of the bed differ",
+                     "remove packing, and give a fill"});
+  } else if (!rig.packing.empty() && bed.spheres != rig.packing.size()) {
+    found.push_back({"rig.fill",
+                     fmt::format("makes {} spheres, but rig.packing has {} positions", bed.spheres, rig.packing.size()),
+                     "leave fill away, or remove packing"});
   }
   return found;
 }
@@ -197,6 +224,7 @@ std::string stl_rig_settings(const StlRig& rig) {
                                   text(rig.high), rig.periodic[0] ? "x" : "", rig.periodic[1] ? "y" : "",
                                   rig.periodic[2] ? "z" : "", text(rig.down), rig.content);
   for (const RigMesh& m : rig.meshes) {
+    if (m.material != "wall") lines += fmt::format("rig.mesh.{}.material = {}\n", m.name, m.material);
     lines += fmt::format("rig.mesh.{} = about {} through {} ratio {:.17g}", m.name, text(m.motion.axis),
                          text(m.motion.point), m.speed_ratio);
     for (const SpeedPoint& p : m.motion.programme)

@@ -23,10 +23,11 @@ struct BuiltRig;
 /// One mesh of the rig.
 struct RigMesh {
   std::string name;
-  TriangleMesh mesh;         ///< m, checked, one box length of it where the box is periodic
-  double tolerance = 0.0;    ///< m, of its welding
-  Motion motion;             ///< with its own programme, or none
-  double speed_ratio = 0.0;  ///< constant speed / the rig's angular velocity, instead of a programme
+  std::string material = "wall";  ///< by which [[contact.pair]] names it
+  TriangleMesh mesh;              ///< m, checked, one box length of it where the box is periodic
+  double tolerance = 0.0;         ///< m, of its welding
+  Motion motion;                  ///< with its own programme, or none
+  double speed_ratio = 0.0;       ///< constant speed / the rig's angular velocity, instead of a programme
 };
 
 /// Where the centres of the spheres may start.
@@ -58,6 +59,9 @@ std::vector<Vec3> periods(const StlRig& rig);
 
 /// The mesh's motion at this speed of the rig [rad/s].
 Motion motion_of(const RigMesh& mesh, double angular_velocity);
+
+/// The highest speed of any point of the meshes, at this speed of the rig, at most [m/s].
+double mesh_speed(const StlRig& rig, double angular_velocity);
 
 /// The torque is that about the measured mesh's axis: what its drive must supply, positive when the powder resists, or,
 /// for a mesh that does not turn, the powder's moment on it. The flow is positive along that axis.

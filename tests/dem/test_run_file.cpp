@@ -105,6 +105,8 @@ TEST_CASE("a run file gives back the run, and its checkpoint goes on with the sa
   dem::Case c;
   c.rig.fill = 200.0;
   c.material.diameter = 1.6e-3;
+  c.rig.trough_radius = 8e-3;  // a gap that they pass through
+  c.contact.stiffness = 400.0;
   c.run.settle = 0.02;
   c.run.start_up = 0.01;
   c.run.shortest = 0.01;

@@ -17,6 +17,7 @@ dem::Case small_case() {
   dem::Case c;
   c.rig.fill = 350.0;
   c.material.diameter = 1.5e-3;
+  c.rig.trough_radius = 8e-3;  // a gap that they pass through
   c.contact.stiffness = 200.0;
   c.contact.friction = 0.4;
   c.run.settle = 0.03;
@@ -177,6 +178,7 @@ TEST_CASE("a quantity is set and read by its full and its short name, and refuse
   CHECK_THROWS_AS(dem::set_target(c, "friction", -1.0), data::InputError);
   CHECK_THROWS_AS(dem::set_target(c, "frikction", 0.1), data::InputError);
   for (const dem::Target& t : dem::targets()) {
+    if (!dem::unused_because(c, t.name).empty()) continue;
     const double before = dem::get_target(c, t.name);
     dem::set_target(c, t.name, before);
     CHECK(dem::get_target(c, t.name) == Approx(before));
@@ -187,6 +189,7 @@ TEST_CASE("two cases have the same settings text only when no setting differs") 
   dem::Case a, b;
   CHECK(dem::settings_text(a) == dem::settings_text(b));
   for (const dem::Target& t : dem::targets()) {
+    if (!dem::unused_because(a, t.name).empty()) continue;
     dem::Case changed = a;
     const double x = dem::get_target(a, t.name);
     dem::set_target(changed, t.name, x == 0.0 ? 0.5 * t.high : x * 1.25);

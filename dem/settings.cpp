@@ -1,0 +1,88 @@
+// A case as text, complete: what decides a run is in it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "dem/grains.hpp"
+#include "dem/rig.hpp"
+#include "dem/target.hpp"
+
+namespace dem {
+namespace {
+
+/// What says nothing while it equals what it follows.
+constexpr std::pair<std::string_view, std::string_view> followers[]{{"contact.wall_restitution", "contact.restitution"},
+                                                                    {"contact.true_stiffness", "contact.stiffness"}};
+
+struct Text {
+  std::string lines;
+  void number(std::string_view name, double value, std::string_view unit) {
+    lines += fmt::format("{} = {:.17g}{}{}\n", name, value, unit == "1" ? "" : " ", unit == "1" ? "" : unit);
+  }
+  template <class Choice>
+  void choice(std::string_view name, Choice value, std::initializer_list<const char*> names) {
+    lines += fmt::format("{} = {}\n", name, names.begin()[static_cast<std::size_t>(value)]);
+  }
+  /// Left out at the default.
+  template <class Choice>
+  void later_choice(std::string_view name, Choice value, std::initializer_list<const char*> names) {
+    if (value != Choice{}) choice(name, value, names);
+  }
+};
+
+void add_sizes(const Material& m, Text& text) {
+  for (const SizeShare& s : m.sizes) {
+    text.number(fmt::format("material.{}.sizes.diameter", m.name), s.diameter, "m");
+    text.number(fmt::format("material.{}.sizes.mass_fraction", m.name), s.mass_fraction, "1");
+  }
+  if (!m.log_normal) return;
+  text.number(fmt::format("material.{}.distribution.low", m.name), m.log_normal->low, "m");
+  text.number(fmt::format("material.{}.distribution.high", m.name), m.log_normal->high, "m");
+  text.number(fmt::format("material.{}.distribution.geometric_sd", m.name), m.log_normal->geometric_sd, "1");
+}
+
+}  // namespace
+
+std::string settings_text(const Case& c) {
+  Text text{fmt::format("rig.kind = {}\n", c.rig.stl ? "stl" : "slice")};
+  for (const std::string& name : quantities_of(c)) {
+    const auto* const follower =
+        std::find_if(std::begin(followers), std::end(followers), [&](const auto& f) { return f.first == name; });
+    const double value = get_target(c, name);
+    if (follower != std::end(followers) && value == get_target(c, follower->second)) continue;
+    text.number(name, value, target(name).unit);
+  }
+  const Contact& k = c.contact;
+  const RunControl& r = c.run;
+  text.lines += rig_settings(c);
+  text.choice("contact.tension", k.tension, {"allowed", "clamped"});
+  text.choice("contact.cap", k.cap, {"net", "repulsion", "thornton"});
+  text.choice("contact.hamaker_of", k.hamaker_of, {"simulation", "original"});
+  text.choice("contact.length_scale", k.length_scale, {"diameter", "radius"});
+  text.choice("contact.wall_attraction", k.wall_attraction, {"as_grains", "derjaguin"});
+  text.number("run.gravity", r.gravity, "m/s2");
+  text.number("run.steps_per_contact", r.steps_per_contact, "1");
+  text.number("run.skin", r.skin, "1");
+  text.number("run.settle", r.settle, "s");
+  text.number("run.start_up", r.start_up, "s");
+  text.number("run.sample_interval", r.sample_interval, "s");
+  text.number("run.window", r.window, "s");
+  text.number("run.standard_error", r.standard_error, "1");
+  text.number("run.shortest", r.shortest, "s");
+  text.number("run.shortest_turns", r.shortest_turns, "1");
+  text.number("run.longest", r.longest, "s");
+
+  text.later_choice("contact.normal", k.normal, {"linear", "hertz", "jkr"});
+  if (k.tangential && k.normal == NormalLaw::hertz)
+    text.choice("contact.tangential", *k.tangential, {"linear", "mindlin"});
+  text.later_choice("contact.resistance", k.resistance, {"none", "constant", "spring"});
+  text.later_choice("contact.cohesion", k.cohesion, {"van_der_waals", "dmt"});
+  if (k.restitution_at) text.number("contact.restitution_at", *k.restitution_at, "m/s");
+  if (r.time_step) text.number("run.time_step", *r.time_step, "s");
+  if (r.overlap_limit != RunControl{}.overlap_limit) text.number("run.overlap_limit", r.overlap_limit, "1");
+  for (const Component& part : components_of(c)) add_sizes(part.material, text);
+  return text.lines;
+}
+
+}  // namespace dem

@@ -1,0 +1,158 @@
+// The study's keys of contact laws, pairs, sizes and mixtures: each reaches the case, changes the settings, and is
+// refused by name where it cannot be.
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+#include "data/error.hpp"
+#include "dem/read_case.hpp"
+#include "dem/target.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Reading {
+  dem::Case c;
+  std::string said;  ///< of what is wrong
+};
+
+/// As the program reads it: the case, then every problem at once.
+Reading reading(const std::string& text, const std::string& material = "mix") {
+  const fs::path path = fs::temp_directory_path() / "demcal-test-contact-keys.toml";
+  std::ofstream(path) << text;
+  const data::StudyFile file = data::StudyFile::open(path.string());
+  Reading r{dem::read_case(file, material), ""};
+  try {
+    file.finish();
+  } catch (const data::InputError& error) {
+    r.said = error.what();
+  }
+  fs::remove(path);
+  return r;
+}
+
+const std::string rig = "[rig]\nkind = \"slice\"\nfill = 900\n";
+const std::string mix = rig + R"(
+[materials.sand]
+density = "2600 kg/m3"
+sizes = [{ diameter = "0.6 mm", mass_fraction = 0.25 }, { diameter = "0.8 mm", mass_fraction = 0.75 }]
+contact = { friction = 0.55, wall_friction = 0.35 }
+[materials.steel]
+density = "7800 kg/m3"
+diameter = "1 mm"
+[materials.mix]
+components = [{ material = "sand", mass_fraction = 0.7 }, { material = "steel", mass_fraction = 0.3 }]
+)";
+
+std::string one_material(const std::string& contact) {
+  return rig + "[materials.mix]\ndensity = \"2600 kg/m3\"\ndiameter = \"0.8 mm\"\n[contact]\n" + contact;
+}
+
+}  // namespace
+
+TEST_CASE("each key of the contact section reaches the case, in SI, and changes the settings") {
+  const std::string usual = dem::settings_text(reading(one_material("")).c);
+  struct Key {
+    const char* laws;  ///< under which it is read
+    const char* key;
+    const char* value;
+    double si;
+  };
+  const Key keys[]{{"", "stiffness", "\"2 kN/m\"", 2000.0},
+                   {"", "wall_stiffness", "\"2 kN/m\"", 2000.0},
+                   {"normal = \"hertz\"", "young_modulus", "\"3 MPa\"", 3e6},
+                   {"normal = \"hertz\"", "wall_young_modulus", "\"3 GPa\"", 3e9},
+                   {"normal = \"hertz\"", "poisson_ratio", "0.3", 0.3},
+                   {"normal = \"hertz\"", "true_young_modulus", "\"70 GPa\"", 7e10},
+                   {"", "wall_restitution", "0.4", 0.4},
+                   {"", "tangential_damping", "0.1", 0.1},
+                   {"resistance = \"constant\"", "rolling_friction", "0.05", 0.05},
+                   {"resistance = \"constant\"", "wall_rolling_friction", "0.05", 0.05},
+                   {"resistance = \"spring\"", "twisting_friction", "0.05", 0.05},
+                   {"resistance = \"spring\"", "rolling_stiffness_ratio", "0.5", 0.5},
+                   {"resistance = \"spring\"", "rolling_damping", "0.5", 0.5},
+                   {"cohesion = \"dmt\"", "work_of_adhesion", "\"5 mJ/m2\"", 5e-3},
+                   {"normal = \"jkr\"", "wall_work_of_adhesion", "\"5 mJ/m2\"", 5e-3},
+                   {"", "true_stiffness", "\"1 MN/m\"", 1e6}};
+  for (const Key& k : keys) {
+    INFO(k.key);
+    const std::string laws = std::string(k.laws) + "\n";
+    const Reading without = reading(one_material(laws));
+    const Reading with = reading(one_material(laws + k.key + " = " + k.value + "\n"));
+    CHECK(with.said.empty());
+    CHECK(dem::get_target(with.c, std::string("contact.") + k.key) == Approx(k.si));
+    CHECK(dem::settings_text(with.c) != dem::settings_text(without.c));
+    if (!laws.empty() && laws != "\n") CHECK(dem::settings_text(without.c) != usual);
+  }
+}
+
+TEST_CASE("what decides a run beside the coefficients changes the settings too") {
+  const std::string usual = dem::settings_text(reading(one_material("")).c);
+  for (const char* line : {"restitution_at = \"0.1 m/s\"", "[run]\ntime_step = \"1 us\"", "[run]\noverlap_limit = 0.2",
+                           "[[contact.pair]]\nbetween = [\"mix\", \"mixer\"]\nfriction = 0.1"}) {
+    INFO(line);
+    const Reading r = reading(one_material(std::string(line) + "\n"));
+    CHECK(r.said.empty());
+    CHECK(dem::settings_text(r.c) != usual);
+  }
+}
+
+TEST_CASE("a mixture takes density, sizes and contact of its components") {
+  const Reading r = reading(mix);
+  CHECK(r.said.empty());
+  REQUIRE(r.c.components.size() == 2);
+  CHECK(r.c.components[0].material.density == 2600.0);
+  REQUIRE(r.c.components[0].material.sizes.size() == 2);
+  CHECK(r.c.components[0].material.sizes[1].diameter == Approx(0.8e-3));
+  CHECK(r.c.components[1].mass_fraction == 0.3);
+  CHECK(dem::get_target(r.c, "contact.sand-sand.friction") == 0.55);
+  CHECK(dem::get_target(r.c, "contact.sand-wall.friction") == 0.35);
+  CHECK(dem::get_target(r.c, "contact.sand-steel.friction") == dem::Contact{}.friction);
+  CHECK(dem::settings_text(r.c).find("material.sand.sizes.mass_fraction = 0.25") != std::string::npos);
+}
+
+TEST_CASE("a log-normal distribution is read with its bounds") {
+  const Reading r =
+      reading(rig +
+              "[materials.mix]\ndistribution = { kind = \"log_normal\", median = \"0.7 mm\", geometric_sd "
+              "= 1.2, low = \"0.5 mm\", high = \"1 mm\" }\n");
+  CHECK(r.said.empty());
+  REQUIRE(r.c.material.log_normal.has_value());
+  CHECK(r.c.material.diameter == Approx(0.7e-3));
+  CHECK(r.c.material.log_normal->geometric_sd == 1.2);
+  CHECK(r.c.material.log_normal->high == Approx(1e-3));
+}
+
+TEST_CASE("a bed that cannot be is named with its key") {
+  const auto changed = [](const std::string& from, const std::string& to) {
+    std::string text = mix;
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return reading(text.replace(at, from.size(), to)).said;
+  };
+  CHECK_THAT(changed("mass_fraction = 0.7 }", "mass_fraction = 0.5 }"), Catch::Contains("sum to 0.8"));
+  CHECK_THAT(changed("mass_fraction = 0.25 }", "mass_fraction = 0.35 }"), Catch::Contains("sum to 1.1"));
+  CHECK_THAT(changed("material = \"steel\"", "material = \"glass\""), Catch::Contains("glass"));
+  CHECK_THAT(changed("diameter = \"1 mm\"", "diameter = \"1 mm\"\ncoarse_graining = 2"),
+             Catch::Contains("coarse_graining") && Catch::Contains("mix"));
+  CHECK_THAT(changed("[materials.mix]\n", "[materials.mix]\ndensity = \"1 g/cm3\"\n"),
+             Catch::Contains("density") && Catch::Contains("component"));
+  CHECK_THAT(changed("wall_friction = 0.35", "normal = \"hertz\""), Catch::Contains("laws"));
+}
+
+TEST_CASE("a key that the chosen laws do not read, and a pair of no such material, are refused where they stand") {
+  CHECK_THAT(reading(one_material("work_of_adhesion = \"1 mJ/m2\"\n")).said,
+             Catch::Contains("contact.work_of_adhesion") && Catch::Contains("jkr"));
+  CHECK_THAT(reading(one_material("normal = \"jkr\"\nhamaker = \"1e-19 J\"\n")).said,
+             Catch::Contains("contact.hamaker"));
+  CHECK_THAT(reading(one_material("tangential = \"mindlin\"\n")).said, Catch::Contains("contact.tangential"));
+  CHECK_THAT(reading(one_material("normal = \"stiff\"\n")).said, Catch::Contains("hertz"));
+  CHECK_THAT(reading(one_material("[[contact.pair]]\nbetween = [\"mix\", \"glass\"]\nfriction = 0.1\n")).said,
+             Catch::Contains("glass") && Catch::Contains("mixer"));
+  CHECK_THAT(reading(one_material("[[contact.pair]]\nbetween = [\"mix\"]\nfriction = 0.1\n")).said,
+             Catch::Contains("between"));
+  CHECK_THAT(reading(one_material("[[contact.pair]]\nbetween = [\"mix\", \"wall\"]\nfriction = \"2 mm\"\n")).said,
+             Catch::Contains("friction"));
+}
