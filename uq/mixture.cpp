@@ -1,7 +1,6 @@
 #include "uq/mixture.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -32,72 +31,105 @@ Eigen::MatrixXd factor_of(Eigen::MatrixXd covariance) {
   return diagonal.cwiseSqrt().asDiagonal();
 }
 
+/// Squared length of L^-1 (x - mean) for each row x: forward substitution on all points at once, a column at a time.
+Eigen::ArrayXd squared_distances(const Eigen::MatrixXd& points, const Eigen::VectorXd& mean,
+                                 const Eigen::MatrixXd& factor) {
+  const Eigen::Index dimension = points.cols();
+  Eigen::ArrayXXd whitened(points.rows(), dimension);
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(points.rows());
+  for (Eigen::Index a = 0; a < dimension; ++a) {
+    whitened.col(a) = points.col(a).array() - mean[a];
+    for (Eigen::Index b = 0; b < a; ++b) whitened.col(a) -= factor(a, b) * whitened.col(b);
+    whitened.col(a) *= 1.0 / factor(a, a);
+    sum += whitened.col(a).square();
+  }
+  return sum;
+}
+
 /// Log of each component's weighted Gaussian density at each point: points x components.
-Eigen::MatrixXd log_terms(const Gaussians& fit, const Eigen::MatrixXd& points) {
-  Eigen::MatrixXd terms(points.rows(), fit.weights.size());
+Eigen::ArrayXXd log_terms(const Gaussians& fit, const Eigen::MatrixXd& points) {
+  Eigen::ArrayXXd terms(points.rows(), fit.weights.size());
   const double dimension = static_cast<double>(points.cols());
   for (Eigen::Index k = 0; k < fit.weights.size(); ++k) {
     const auto& factor = fit.factors[static_cast<std::size_t>(k)];
-    Eigen::MatrixXd whitened = (points.rowwise() - fit.means[static_cast<std::size_t>(k)].transpose()).transpose();
-    factor.triangularView<Eigen::Lower>().solveInPlace(whitened);
     const double constant = std::log(std::max(fit.weights[k], 1e-300)) - factor.diagonal().array().log().sum() -
                             0.5 * dimension * std::log(2.0 * std::numbers::pi);
-    terms.col(k) = constant - 0.5 * whitened.colwise().squaredNorm().transpose().array();
+    terms.col(k) = constant - 0.5 * squared_distances(points, fit.means[static_cast<std::size_t>(k)], factor);
   }
   return terms;
 }
 
+/// Largest of each row, a column at a time.
+Eigen::ArrayXd largest_of_rows(const Eigen::ArrayXXd& terms) {
+  Eigen::ArrayXd largest = terms.col(0);
+  for (Eigen::Index k = 1; k < terms.cols(); ++k) largest = largest.max(terms.col(k));
+  return largest;
+}
+
 /// Weighted mean and covariance with responsibilities `share`.
-void refit_component(Gaussians& fit, std::size_t k, const Eigen::MatrixXd& points, const Eigen::VectorXd& share,
+void refit_component(Gaussians& fit, std::size_t k, const Eigen::MatrixXd& points, const Eigen::ArrayXd& share,
                      const Eigen::MatrixXd& pooled) {
   const double total = share.sum();
   fit.weights[static_cast<Eigen::Index>(k)] = total;
   if (total <= 0.0) return;
-  fit.means[k] = points.transpose() * share / total;
-  const Eigen::MatrixXd centred = points.rowwise() - fit.means[k].transpose();
-  fit.covariances[k] =
-      centred.transpose() * (centred.array().colwise() * share.array()).matrix() / total + 1e-6 * pooled;
+  const Eigen::Index dimension = points.cols();
+  Eigen::ArrayXXd centred(points.rows(), dimension);
+  for (Eigen::Index a = 0; a < dimension; ++a) {
+    fit.means[k][a] = (points.col(a).array() * share).sum() / total;
+    centred.col(a) = points.col(a).array() - fit.means[k][a];
+  }
+  for (Eigen::Index a = 0; a < dimension; ++a)
+    for (Eigen::Index b = 0; b <= a; ++b)
+      fit.covariances[k](a, b) = fit.covariances[k](b, a) =
+          (share * centred.col(a) * centred.col(b)).sum() / total + 1e-6 * pooled(a, b);
   fit.factors[k] = factor_of(fit.covariances[k]);
 }
 
-/// Component centres apart from each other (k-means++), then expectation maximisation.
-Gaussians maximise(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const Eigen::MatrixXd& pooled,
-                   int count, data::RandomStream& random, const MixtureOptions& options) {
-  const Eigen::Index n = points.rows();
-  const Eigen::MatrixXd pooled_factor = factor_of(pooled);
-  Eigen::MatrixXd whitened = points.transpose();
-  pooled_factor.triangularView<Eigen::Lower>().solveInPlace(whitened);
-
+/// Component centres apart from each other (k-means++): each point's weight goes to its nearest.
+Eigen::ArrayXXd spread_out(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights,
+                           const Eigen::MatrixXd& pooled_factor, int count, data::RandomStream& random) {
   // Each new centre is drawn with probability proportional to its squared distance from the nearest one so far.
+  const Eigen::Index n = points.rows();
   Eigen::VectorXd distance = Eigen::VectorXd::Ones(n);
-  Eigen::MatrixXd share = Eigen::MatrixXd::Zero(n, count);
-  Eigen::MatrixXd nearest = Eigen::MatrixXd::Zero(n, count);
+  Eigen::ArrayXXd nearest(n, count);
   for (int k = 0; k < count; ++k) {
     const Eigen::VectorXd chance = distance.cwiseProduct(weights);
     double left = random.uniform() * chance.sum();
     Eigen::Index chosen = 0;
     for (; chosen + 1 < n && left > chance[chosen]; ++chosen) left -= chance[chosen];
-    nearest.col(k) = (whitened.colwise() - whitened.col(chosen)).colwise().squaredNorm().transpose();
-    distance = k == 0 ? Eigen::VectorXd(nearest.col(0)) : Eigen::VectorXd(distance.cwiseMin(nearest.col(k)));
+    nearest.col(k) = squared_distances(points, points.row(chosen).transpose(), pooled_factor);
+    distance = k == 0 ? Eigen::VectorXd(nearest.col(0)) : Eigen::VectorXd(distance.array().min(nearest.col(k)));
   }
+  Eigen::ArrayXXd share = Eigen::ArrayXXd::Zero(n, count);
   for (Eigen::Index i = 0; i < n; ++i) {
     Eigen::Index best = 0;
     nearest.row(i).minCoeff(&best);
     share(i, best) = weights[i];
   }
+  return share;
+}
 
+/// Expectation maximisation from the responsibilities `share` (points x components, summing to the weights).
+Gaussians maximise(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const Eigen::MatrixXd& pooled,
+                   Eigen::ArrayXXd share, const MixtureOptions& options) {
+  const Eigen::Index count = share.cols();
   Gaussians fit{.weights = Eigen::VectorXd::Zero(count), .means = {}, .covariances = {}, .factors = {}};
   fit.means.assign(static_cast<std::size_t>(count), points.transpose() * weights);
   fit.covariances.assign(static_cast<std::size_t>(count), pooled);
-  fit.factors.assign(static_cast<std::size_t>(count), pooled_factor);
+  fit.factors.assign(static_cast<std::size_t>(count), factor_of(pooled));
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    for (int k = 0; k < count; ++k) refit_component(fit, static_cast<std::size_t>(k), points, share.col(k), pooled);
-    const Eigen::MatrixXd terms = log_terms(fit, points);
-    const Eigen::VectorXd largest = terms.rowwise().maxCoeff();
-    const Eigen::MatrixXd ratio = (terms.colwise() - largest).array().exp();
-    const Eigen::VectorXd sums = ratio.rowwise().sum();
-    const double mean_log_density = weights.dot((sums.array().log() + largest.array()).matrix());
-    share = ratio.array().colwise() * (weights.array() / sums.array());
+    for (Eigen::Index k = 0; k < count; ++k)
+      refit_component(fit, static_cast<std::size_t>(k), points, share.col(k), pooled);
+    share = log_terms(fit, points);
+    const Eigen::ArrayXd largest = largest_of_rows(share);
+    Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(points.rows());
+    for (Eigen::Index k = 0; k < count; ++k) {
+      share.col(k) = (share.col(k) - largest).exp();
+      sums += share.col(k);
+    }
+    const double mean_log_density = weights.dot((sums.log() + largest).matrix());
+    sums = weights.array() / sums;
+    for (Eigen::Index k = 0; k < count; ++k) share.col(k) *= sums;
     const bool settled = mean_log_density - fit.mean_log_density < options.tolerance;
     fit.mean_log_density = mean_log_density;
     if (settled) break;
@@ -105,22 +137,41 @@ Gaussians maximise(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights
   return fit;
 }
 
+/// Responsibilities under a mixture that was fitted before (its tails as they are).
+Eigen::ArrayXXd responsibilities(const Mixture& before, const Eigen::MatrixXd& points, const Eigen::VectorXd& weights) {
+  Eigen::ArrayXXd share = before.log_terms(points);
+  const Eigen::ArrayXd largest = largest_of_rows(share);
+  Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(points.rows());
+  for (Eigen::Index k = 0; k < share.cols(); ++k) {
+    share.col(k) = (share.col(k) - largest).exp();
+    sums += share.col(k);
+  }
+  for (Eigen::Index k = 0; k < share.cols(); ++k) share.col(k) *= weights.array() / sums;
+  return share;
+}
+
 }  // namespace
 
-double Mixture::log_density(const Eigen::VectorXd& x) const {
-  const double exponent = -0.5 * (degrees_of_freedom + static_cast<double>(x.size()));
-  double largest = -std::numeric_limits<double>::infinity();
-  std::array<double, 64> terms{};
-  for (std::size_t k = 0; k < components.size(); ++k) {
-    Eigen::VectorXd whitened = x - components[k].mean;
-    components[k].factor.triangularView<Eigen::Lower>().solveInPlace(whitened);
-    terms[k] = components[k].log_constant + exponent * std::log1p(whitened.squaredNorm() / degrees_of_freedom);
-    largest = std::max(largest, terms[k]);
-  }
-  double sum = 0.0;
-  for (std::size_t k = 0; k < components.size(); ++k) sum += std::exp(terms[k] - largest);
-  return largest + std::log(sum);
+Eigen::ArrayXXd Mixture::log_terms(const Eigen::MatrixXd& points) const {
+  const double exponent = -0.5 * (degrees_of_freedom + static_cast<double>(points.cols()));
+  Eigen::ArrayXXd terms(points.rows(), static_cast<Eigen::Index>(components.size()));
+  for (std::size_t k = 0; k < components.size(); ++k)
+    terms.col(static_cast<Eigen::Index>(k)) =
+        components[k].log_constant +
+        exponent *
+            (1.0 + squared_distances(points, components[k].mean, components[k].factor) / degrees_of_freedom).log();
+  return terms;
 }
+
+Eigen::VectorXd Mixture::log_densities(const Eigen::MatrixXd& points) const {
+  Eigen::ArrayXXd terms = log_terms(points);
+  const Eigen::ArrayXd largest = largest_of_rows(terms);
+  Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(points.rows());
+  for (Eigen::Index k = 0; k < terms.cols(); ++k) sums += (terms.col(k) - largest).exp();
+  return (largest + sums.log()).matrix();
+}
+
+double Mixture::log_density(const Eigen::VectorXd& x) const { return log_densities(x.transpose())[0]; }
 
 Eigen::VectorXd Mixture::draw(data::RandomStream& random) const {
   double left = random.uniform();
@@ -137,7 +188,7 @@ Eigen::VectorXd Mixture::draw(data::RandomStream& random) const {
 }
 
 Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, data::RandomStream& random,
-                    const MixtureOptions& options) {
+                    const MixtureOptions& options, const Mixture* before) {
   const Eigen::VectorXd normalised = weights / weights.sum();
   const double dimension = static_cast<double>(points.cols());
   const double effective = 1.0 / normalised.squaredNorm();
@@ -145,19 +196,32 @@ Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weight
   const Eigen::MatrixXd centred = points.rowwise() - mean.transpose();
   const Eigen::MatrixXd pooled = centred.transpose() * (centred.array().colwise() * normalised.array()).matrix();
 
+  const auto numbers_of = [&](int count) {
+    return count * (1.0 + dimension + 0.5 * dimension * (dimension + 1.0)) - 1.0;
+  };
+  const auto criterion_of = [&](const Gaussians& fit, int count) {
+    return -2.0 * effective * fit.mean_log_density + numbers_of(count) * std::log(effective);
+  };
   Gaussians best;
   double best_criterion = std::numeric_limits<double>::infinity();
+  const int known = before ? static_cast<int>(before->components.size()) : 0;
+  if (known > 0) {
+    best = maximise(points, normalised, pooled, responsibilities(*before, points, normalised), options);
+    best_criterion = criterion_of(best, known);
+  }
+  const Eigen::MatrixXd pooled_factor = factor_of(pooled);
   for (const int count : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32}) {
-    const double numbers = count * (1.0 + dimension + 0.5 * dimension * (dimension + 1.0)) - 1.0;
-    if (count > options.components_max || (count > 1 && effective < 4.0 * numbers)) break;
-    const Gaussians fit = maximise(points, normalised, pooled, count, random, options);
-    const double criterion = -2.0 * effective * fit.mean_log_density + numbers * std::log(effective);
-    if (criterion < best_criterion) {
+    if (count <= known) continue;
+    if (count > options.components_max || (count > 1 && effective < 4.0 * numbers_of(count))) break;
+    const Gaussians fit =
+        maximise(points, normalised, pooled, spread_out(points, normalised, pooled_factor, count, random), options);
+    const double criterion = criterion_of(fit, count);
+    const bool better = criterion < best_criterion;
+    if (better) {
       best_criterion = criterion;
       best = fit;
-    } else if (count > 3) {
-      break;
     }
+    if (known > 0 || (!better && count > 3)) break;
   }
 
   Mixture mixture;

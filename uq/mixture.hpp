@@ -23,17 +23,20 @@ struct MixtureComponent {
 struct Mixture {
   std::vector<MixtureComponent> components;
   double log_density(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd log_densities(const Eigen::MatrixXd& points) const;  ///< of each row
+  Eigen::ArrayXXd log_terms(const Eigen::MatrixXd& points) const;      ///< points x components
   Eigen::VectorXd draw(data::RandomStream& random) const;
 };
 
 struct MixtureOptions {
   int components_max = 12;  ///< largest number of components tried
   int iterations = 60;      ///< of expectation maximisation
-  double tolerance = 1e-4;  ///< stop when the mean log density rises by less
+  double tolerance = 1e-3;  ///< stop when the mean log density rises by less: a thousandth of a proposal's worth
 };
 
-/// Fits to the rows of `points` with non-negative `weights` (any scale).
+/// Fits to the rows of `points` with non-negative `weights` (any scale). Given what was fitted to much the same points
+/// `before`, goes on from there, and tries no other number of components but the next larger one.
 Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, data::RandomStream& random,
-                    const MixtureOptions& options = {});
+                    const MixtureOptions& options = {}, const Mixture* before = nullptr);
 
 }  // namespace uq

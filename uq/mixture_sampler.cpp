@@ -50,15 +50,14 @@ struct Proposals {
 };
 
 Proposals propose(const Target& target, const Mixture& mixture, int count, RandomStream& random) {
-  Proposals made{
-      .x = Eigen::MatrixXd(count, target.dimension), .log_density = {}, .log_proposal = Eigen::VectorXd(count)};
+  Proposals made{.x = Eigen::MatrixXd(count, target.dimension), .log_density = {}, .log_proposal = {}};
   for (int i = 0; i < count; ++i) {
     Eigen::VectorXd x = mixture.draw(random);
     ++made.tries;
     for (int again = 0; again < 1000 && !target.contains(x); ++again, ++made.tries) x = mixture.draw(random);
     made.x.row(i) = x.transpose();
-    made.log_proposal[i] = mixture.log_density(x);
   }
+  made.log_proposal = mixture.log_densities(made.x);
   made.log_density = evaluate(target, made.x);
   return made;
 }
@@ -117,7 +116,7 @@ Fitted fit_proposal(const Target& target, const Eigen::MatrixXd& points, const M
     all_shares << shares * before / (before + trust), cut_weights * (trust / (before + trust) / cut_weights.sum());
     gathered = all;
     shares = all_shares;
-    current = fit_mixture(gathered, shares, random, options.mixture);
+    current = fit_mixture(gathered, shares, random, options.mixture, &current);
   }
   return best;
 }

@@ -18,7 +18,7 @@ model {
   }
   y ~ normal(1 + 2 * mu * (1 + 0.5 * log1p(H / 2)) - 0.3 * H * w / (1 + H) + 0.4 * w .* w + offset, sigma);
 }"
-model <- stan_model(model_code = code)
+model <- stan_model(model_code = code, boost_lib = "/usr/include")  # where Debian keeps it
 i <- 0:9
 w <- i / 9
 y <- 1 + 0.8 * (1 + 0.5 * log1p(2)) - 0.3 * 4 * w / 5 + 0.4 * w^2 + 0.02 * sin(3 * i + 1) * sqrt(2)

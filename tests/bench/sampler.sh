@@ -4,8 +4,12 @@
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${1:?usage: sampler.sh BUILD_FOLDER}
-if ! dpkg-query -W -f '${Status}' r-cran-rstan 2>/dev/null | grep -q 'ok installed'; then
-  if ((EUID == 0)); then apt-get install -y --no-install-recommends r-cran-rstan; else sudo apt-get install -y --no-install-recommends r-cran-rstan; fi
+missing=()
+for package in r-cran-rstan r-cran-bh r-cran-rcppeigen; do  # the last two: what rstan compiles a model with
+  dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+done
+if ((${#missing[@]})); then
+  if ((EUID == 0)); then apt-get install -y --no-install-recommends "${missing[@]}"; else sudo apt-get install -y --no-install-recommends "${missing[@]}"; fi
 fi
 cmake --build "$build" --target demcal_uq
 march=$(grep -o -m 1 -- '-march=[^ "]*' "$build/compile_commands.json")  # as the library was compiled
