@@ -9,19 +9,26 @@ namespace cli {
 
 Action add_calibrate(CLI::App& program) {
   const auto common = std::make_shared<Common>();
-  add_study_command(program, "calibrate", "fit, sample, identify, report: what the torque determines and what not",
-                    "demcal calibrate data/developer", *common);
-  return [common] {
+  CLI::App* command =
+      add_study_command(program, "calibrate", "fit, sample, identify, report: what the torque determines and what not",
+                        "demcal calibrate data/developer", *common);
+  const auto sampler = add_sampler_option(*command);
+  return [common, sampler] {
     const Workspace workspace = open_workspace(*common);
     const TrainingRows rows = rows_to_learn_from(*common, workspace);
     make_out(workspace);
+    const uq::SurrogateOptions surrogates = surrogate_options(*common, workspace, rows);
     uq::Calibration result;
     {
       JobProgress progress(*common, "calibrating");
       result = uq::calibrate_all(workspace.study, rows.table,
-                                 {.seed = workspace.study.seed, .progress = std::ref(progress)});
+                                 {.surrogates = surrogates,
+                                  .sampler = *sampler,
+                                  .seed = workspace.study.seed,
+                                  .progress = std::ref(progress)});
     }
-    save_surrogates(workspace, rows.table, result.surrogates);
+    keep_surrogates(workspace, rows, surrogates, result.surrogates);
+    say_surrogates(*common, result.surrogates);
     for (const uq::SampledCase& sampled : result.cases)
       if (!sampled.draws.chains.empty())
         uq::write_posterior(posterior_path(workspace, sampled.model->name), workspace.study, sampled,

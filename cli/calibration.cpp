@@ -2,44 +2,25 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/point.hpp"
 #include "data/hash.hpp"
 #include "data/provenance.hpp"
 #include "dem/derived.hpp"
-#include "surrogate/storage.hpp"
 #include "uq/report_html.hpp"
 #include "uq/report_json.hpp"
 #include "uq/report_results.hpp"
 #include "uq/report_terminal.hpp"
 #include "uq/report_text.hpp"
+#include "uq/surrogate_file.hpp"
 
 namespace cli {
 namespace fs = std::filesystem;
 namespace {
 
-/// Hash of what the rows say, in their order.
-std::string table_hash(const data::RunTable& table) {
-  std::string text;
-  for (const data::RunRow& row : table.rows) {
-    text += data::row_key(row);
-    for (std::size_t i = 0; i < row.outputs.size(); ++i)
-      text += fmt::format(" {} {}", row.outputs[i], row.standard_errors[i]);
-    text += "\n";
-  }
-  return data::hash_text(text);
-}
-
-/// Hash of what in the study decides a surrogate.
-std::string surrogate_hash(const data::Study& study) {
-  std::string text = fmt::format("{}\n", study.seed);
-  for (const data::Parameter& p : study.parameters)
-    text += fmt::format("{} {} {} {}\n", p.name, p.low, p.high, p.scale == data::Scale::log);
-  for (const data::Control& c : study.controls) text += fmt::format("{} {} {}\n", c.name, c.low, c.high);
-  for (const data::Output& output : study.outputs) text += output.name + "\n";
-  return data::hash_text(text);
-}
+std::string surrogate_path(const Workspace& workspace) { return (fs::path(workspace.out) / "surrogate.h5").string(); }
 
 /// What the rig's attraction amounts to at the top of the calibrated range: a Hamaker constant alone says nothing.
 std::string attraction_note(const std::string& material, const dem::Case& c) {
@@ -67,15 +48,35 @@ TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace
   return rows;
 }
 
-void save_surrogates(const Workspace& workspace, const data::RunTable& table,
+uq::SurrogateOptions surrogate_options(const Common& common, const Workspace& workspace, const TrainingRows& rows) {
+  uq::SurrogateOptions options = *workspace.surrogates;
+  options.fit.seed = workspace.study.seed;
+  options.low = rows.low;
+  uq::SavedSurrogates saved = uq::load_surrogates(surrogate_path(workspace), workspace.study, rows.table, options);
+  if (!saved.stale.empty()) say(common, fmt::format("{} is fitted again: {}", surrogate_path(workspace), saved.stale));
+  options.known = std::move(saved.fitted);
+  return options;
+}
+
+void keep_surrogates(const Workspace& workspace, const TrainingRows& rows, const uq::SurrogateOptions& options,
                      const std::vector<uq::FittedSurrogate>& fitted) {
-  surrogate::ProcessSet processes;
+  const bool nothing_new = std::all_of(fitted.begin(), fitted.end(), [&](const uq::FittedSurrogate& one) {
+    return std::any_of(options.known.begin(), options.known.end(),
+                       [&](const uq::FittedSurrogate& known) { return known.process == one.process; });
+  });
+  if (!nothing_new) uq::save_surrogates(surrogate_path(workspace), workspace.study, rows.table, options, fitted);
+}
+
+void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>& fitted) {
   for (const uq::FittedSurrogate& one : fitted) {
-    const std::string& output = workspace.study.outputs[one.rows.output].name;
-    processes.emplace(one.rows.material.empty() ? output : one.rows.material + " " + output, *one.process);
+    const uq::SurrogateReport& r = one.report;
+    say(common, fmt::format("surrogate of {}{}{}: {} (Q2 {:.4f} left out, {:.4f} held out; 95 % intervals cover {:.0f} "
+                            "%; {} runs{}). {}",
+                            r.material, r.material.empty() ? "" : " ", r.output, r.verdict, r.q2, r.q2_held_out,
+                            100.0 * r.coverage95, r.runs, r.low_runs > 0 ? fmt::format(" over {}", r.low_runs) : "",
+                            r.verdict == "good" ? "" : r.remedy));
+    for (const std::string& note : r.notes) say(common, "  " + note);
   }
-  surrogate::save_processes((fs::path(workspace.out) / "surrogate.h5").string(), processes,
-                            {.study_hash = surrogate_hash(workspace.study), .table_hash = table_hash(table)});
 }
 
 void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const TrainingRows& rows) {
@@ -86,7 +87,9 @@ void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, c
     report.provenance.emplace_back(name, value);
   };
   add("study", fmt::format("{} (xxh3 {})", fs::path(study.file).filename().string(), data::hash_file(study.file)));
-  add("training table", fmt::format("{} rows (xxh3 {})", rows.table.rows.size(), table_hash(rows.table)));
+  add("training table", fmt::format("{} rows (xxh3 {})", rows.table.rows.size(), uq::table_hash(rows.table)));
+  if (rows.low)
+    add("rows of the cheaper level", fmt::format("{} (xxh3 {})", rows.low->rows.size(), uq::table_hash(*rows.low)));
   for (const data::ObservationSet& set : study.observations)
     add("observations " + set.name,
         fmt::format("{} (xxh3 {})", fs::path(set.file).filename().string(), data::hash_file(set.file)));
@@ -112,6 +115,19 @@ data::ExitStatus write_report(const Common& common, const Workspace& workspace, 
   say(common, uq::terminal_summary(report, {.report_file = (out / "report.html").string()}));
   print_json(common, uq::report_json(report));
   return uq::has_warning(report) ? data::ExitStatus::warning : data::ExitStatus::done;
+}
+
+std::shared_ptr<std::optional<data::Sampler>> add_sampler_option(CLI::App& command) {
+  auto chosen = std::make_shared<std::optional<data::Sampler>>();
+  command
+      .add_option_function<std::string>(
+          "--sampler",
+          [chosen](const std::string& name) {
+            *chosen = name == "nuts" ? data::Sampler::nuts : data::Sampler::mixture;
+          },
+          "instead of each case's own: mixture (no gradient) or nuts")
+      ->check(CLI::IsMember({"mixture", "nuts"}));
+  return chosen;
 }
 
 std::string posterior_path(const Workspace& workspace, const std::string& case_name) {

@@ -1,6 +1,8 @@
 #pragma once
 // What `fit`, `sample` and `calibrate` share: options from the command line, the rows to learn from, and the files
 // written.
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "cli/command.hpp"
@@ -13,15 +15,25 @@ namespace cli {
 /// out.
 TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace);
 
-/// Fits and saves every surrogate (OUT/surrogate.h5).
-void save_surrogates(const Workspace& workspace, const data::RunTable& table,
+/// The study's options of every surrogate, with those that OUT/surrogate.h5 holds, if it is still of this study and
+/// table; if not, the user is told why.
+uq::SurrogateOptions surrogate_options(const Common& common, const Workspace& workspace, const TrainingRows& rows);
+
+/// Writes OUT/surrogate.h5 if there is anything new; what it held and still holds true stays.
+void keep_surrogates(const Workspace& workspace, const TrainingRows& rows, const uq::SurrogateOptions& options,
                      const std::vector<uq::FittedSurrogate>& fitted);
+
+/// How each did, and what its fit has to say.
+void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>& fitted);
 
 /// The report's provenance and the choices behind it, as the study, the table and the DEM's settings tell them.
 void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const TrainingRows& rows);
 
 /// report.json, report.html with figures, results.json in OUT, and what the terminal says.
 data::ExitStatus write_report(const Common& common, const Workspace& workspace, const uq::CalibrationReport& report);
+
+/// --sampler mixture|nuts, instead of what each case says.
+std::shared_ptr<std::optional<data::Sampler>> add_sampler_option(CLI::App& command);
 
 /// "posterior-CASE.nc" in OUT.
 std::string posterior_path(const Workspace& workspace, const std::string& case_name);

@@ -16,7 +16,7 @@ namespace {
 
 /// The value that is typed with five digits in the unit, so that table, terminal and simulation mean the same point.
 double rounded(double si, const data::Unit& unit) {
-  return unit.to_si(std::stod(fmt::format("{:.5g}", unit.from_si(si))));
+  return unit.to_si(fmt::format("{:.5g}", unit.from_si(si)));
 }
 
 double scaled(const data::Parameter& p, double u) {
@@ -93,10 +93,13 @@ std::vector<Point> read_design(const Workspace& workspace) {
   std::vector<Point> points;
   for (const data::CsvRow& row : csv.rows) {
     Point point{choose_material(study, row.fields[material]), {}};
-    for (const data::Parameter& p : study.parameters)
-      point.inputs.push_back(p.unit.to_si(csv.number(row, csv.column(p.name))));
-    for (const data::Control& c : study.controls)
-      point.inputs.push_back(c.unit.to_si(csv.number(row, csv.column(c.name))));
+    const auto read = [&](const std::string& name, const data::Unit& unit) {
+      const std::size_t column = csv.column(name);
+      static_cast<void>(csv.number(row, column));  // throws where it is none
+      point.inputs.push_back(unit.to_si(row.fields[column]));
+    };
+    for (const data::Parameter& p : study.parameters) read(p.name, p.unit);
+    for (const data::Control& c : study.controls) read(c.name, c.unit);
     points.push_back(std::move(point));
   }
   return points;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +15,10 @@
 #include "data/study.hpp"
 #include "data/study_file.hpp"
 #include "dem/case.hpp"
+
+namespace uq {
+struct SurrogateOptions;
+}
 
 namespace cli {
 
@@ -38,7 +43,9 @@ CLI::App* add_study_command(CLI::App& program, const std::string& name, const st
 struct Workspace {
   data::Study study;
   std::map<std::string, dem::Case> cases;  ///< by material; empty when the study has no [rig]
-  std::string out;                         ///< results folder, absolute; made by the first write
+  /// As the study says; rows and fitted surrogates are added by the commands that fit.
+  std::shared_ptr<const uq::SurrogateOptions> surrogates;
+  std::string out;  ///< results folder, absolute; made by the first write
 };
 
 /// Reads the study and, where it has a rig, the DEM case of each material. Throws InputError with every problem.
@@ -53,7 +60,8 @@ void make_out(const Workspace& workspace, const std::string& subfolder = "");
 /// The rows shipped with the study and those in OUT/training.h5, merged; rows of other settings are left out.
 struct TrainingRows {
   data::RunTable table;
-  std::vector<std::string> notes;  ///< rows left out and why
+  std::optional<data::RunTable> low;  ///< rows of the cheaper level, where the study names some
+  std::vector<std::string> notes;     ///< rows left out and why
 };
 TrainingRows training_rows(const Workspace& workspace);
 

@@ -1,6 +1,4 @@
 // demcal fit: the surrogates and how well they predict.
-#include <fmt/core.h>
-
 #include "cli/calibration.hpp"
 
 namespace cli {
@@ -13,25 +11,25 @@ Action add_fit(CLI::App& program) {
     const Workspace workspace = open_workspace(*common);
     const TrainingRows rows = rows_to_learn_from(*common, workspace);
     make_out(workspace);
-    const std::vector<uq::FittedSurrogate> fitted =
-        uq::fit_surrogates(workspace.study, rows.table, {.fit = {.seed = workspace.study.seed}});
-    save_surrogates(workspace, rows.table, fitted);
+    const uq::SurrogateOptions options = surrogate_options(*common, workspace, rows);
+    const std::vector<uq::FittedSurrogate> fitted = uq::fit_surrogates(workspace.study, rows.table, options);
+    keep_surrogates(workspace, rows, options, fitted);
+    say_surrogates(*common, fitted);
     nlohmann::json json = nlohmann::json::array();
     bool unusable = false;
     for (const uq::FittedSurrogate& one : fitted) {
       const uq::SurrogateReport& r = one.report;
       unusable = unusable || r.verdict == "unusable";
-      say(*common,
-          fmt::format("{}{}{}: {} (Q2 {:.4f} left out, {:.4f} held out; 95 % intervals cover {:.0f} %; {} runs). {}",
-                      r.material, r.material.empty() ? "" : " ", r.output, r.verdict, r.q2, r.q2_held_out,
-                      100.0 * r.coverage95, r.runs, r.remedy));
       json.push_back({{"output", r.output},
                       {"material", r.material},
                       {"q2", r.q2},
                       {"q2_held_out", r.q2_held_out},
                       {"coverage95", r.coverage95},
                       {"runs", r.runs},
-                      {"verdict", r.verdict}});
+                      {"verdict", r.verdict},
+                      {"low_runs", r.low_runs},
+                      {"rho", r.rho},
+                      {"notes", r.notes}});
     }
     print_json(*common, {{"surrogates", json}});
     return unusable ? data::ExitStatus::warning : data::ExitStatus::done;

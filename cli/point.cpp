@@ -39,18 +39,18 @@ std::string names_of(const std::vector<Input>& inputs) {
 /// "2e-18 J" or, in the input's unit, "2e-18".
 double parse_value(const std::string& text, const Input& input, const std::string& place) {
   std::size_t used = 0;
-  double value = 0.0;
   try {
-    value = std::stod(text, &used);
+    std::stod(text, &used);
   } catch (const std::exception&) {
     throw usage(place, fmt::format("'{}' is not a number", text),
                 fmt::format("write {}=NUMBER or {}=\"NUMBER UNIT\"", input.name, input.name));
   }
+  const std::string digits = text.substr(0, used);
   std::string unit = text.substr(used);
   unit.erase(0, unit.find_first_not_of(' '));
-  if (unit.empty()) return input.unit.to_si(value);
+  if (unit.empty()) return input.unit.to_si(digits);
   try {
-    if (data::convertible(unit, input.unit.symbol)) return data::parse_unit(unit).to_si(value);
+    if (data::convertible(unit, input.unit.symbol)) return data::parse_unit(unit).to_si(digits);
   } catch (const std::invalid_argument&) {
   }
   throw usage(place, fmt::format("'{}' is not a unit of {}", unit, input.name),

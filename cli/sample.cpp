@@ -1,23 +1,81 @@
 // demcal sample: posterior draws of every case, for ArviZ and others.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include "cli/calibration.hpp"
+#include "data/atomic_file.hpp"
 #include "uq/posterior_nc.hpp"
+#include "uq/report_gnuplot.hpp"
+#include "uq/report_text.hpp"
+#include "uq/simulation_calibration.hpp"
 
 namespace cli {
+namespace {
+
+/// Simulation-based calibration of every case: sbc-CASE.json and a figure.
+data::ExitStatus check_width(const Common& common, const Workspace& workspace,
+                             const std::vector<uq::Emulator>& emulators, int replicates) {
+  const std::filesystem::path out = workspace.out;
+  nlohmann::json json = nlohmann::json::array();
+  bool calibrated = true;
+  make_out(workspace, "figures");
+  for (std::size_t i = 0; i < workspace.study.cases.size(); ++i) {
+    const uq::CaseModel model = uq::build_case(workspace.study, emulators, i);
+    if (std::any_of(model.slots.begin(), model.slots.end(),
+                    [](const uq::Slot& slot) { return !slot.cut_from.empty(); })) {
+      say(common, model.name + ": a cut posterior is not that of its own data, so its ranks are not checked");
+      continue;
+    }
+    uq::SimulationCalibration found;
+    {
+      JobProgress progress(common, "simulating " + model.name);
+      found = uq::simulate_calibration(model, {.replicates = replicates,
+                                               .seed = workspace.study.seed,
+                                               .progress = [&](double share) { progress("", share); }});
+    }
+    const std::string path = (out / ("sbc-" + model.name + ".json")).string();
+    data::write_atomically(path, uq::to_json_text(found));
+    uq::draw(uq::rank_figure(found, uq::slug("sbc-" + model.name)), (out / "figures").string(), {});
+    calibrated = calibrated && found.calibrated();
+    for (const uq::RankCheck& one : found.unknowns) {
+      say(common, fmt::format("{}: {}: ranks {} the 95 % bands; {:.0f} % intervals cover {:.1f} +- {:.1f} %",
+                              model.name, one.name, one.inside ? "inside" : "OUTSIDE", 100.0 * found.interval,
+                              100.0 * one.coverage, 100.0 * one.coverage_error));
+    }
+    if (found.failed > 0)
+      say(common, fmt::format("{}: {} of {} replicates did not converge and are left out", model.name, found.failed,
+                              replicates));
+    json.push_back({{"case", model.name}, {"calibrated", found.calibrated()}, {"file", path}});
+  }
+  print_json(common, {{"cases", json}});
+  return calibrated ? data::ExitStatus::done : data::ExitStatus::warning;
+}
+
+}  // namespace
 
 Action add_sample(CLI::App& program) {
   const auto common = std::make_shared<Common>();
-  add_study_command(program, "sample", "draw from the posterior of every case (posterior-CASE.nc)",
-                    "demcal sample data/developer", *common);
-  return [common] {
+  const auto replicates = std::make_shared<int>(0);
+  CLI::App* command = add_study_command(program, "sample", "draw from the posterior of every case (posterior-CASE.nc)",
+                                        "demcal sample data/developer", *common);
+  const auto sampler = add_sampler_option(*command);
+  command
+      ->add_option("--sbc", *replicates,
+                   "instead: simulation-based calibration of every case with N synthetic data sets (sbc-CASE.json)")
+      ->check(CLI::Range(20, 100000))
+      ->type_name("N");
+  return [common, sampler, replicates] {
     const Workspace workspace = open_workspace(*common);
     const data::Study& study = workspace.study;
     const TrainingRows rows = rows_to_learn_from(*common, workspace);
     make_out(workspace);
-    const uq::CalibrateOptions options{.seed = study.seed};
+    const uq::CalibrateOptions options{
+        .surrogates = surrogate_options(*common, workspace, rows), .sampler = *sampler, .seed = study.seed};
     const std::vector<uq::FittedSurrogate> fitted = uq::fit_surrogates(study, rows.table, options.surrogates);
-    save_surrogates(workspace, rows.table, fitted);
+    keep_surrogates(workspace, rows, options.surrogates, fitted);
+    if (*replicates > 0) return check_width(*common, workspace, uq::emulators_of(fitted), *replicates);
     nlohmann::json json = nlohmann::json::array();
     bool converged = true;
     for (std::size_t i = 0; i < study.cases.size(); ++i) {

@@ -7,6 +7,7 @@
 #include "cli/point.hpp"
 #include "dem/read_case.hpp"
 #include "dem/target.hpp"
+#include "uq/surrogate_settings.hpp"
 
 namespace cli {
 namespace fs = std::filesystem;
@@ -59,7 +60,9 @@ CLI::App* add_study_command(CLI::App& program, const std::string& name, const st
 
 Workspace open_workspace(const Common& common) {
   const data::StudyFile file = data::StudyFile::open(common.study, common.set);
-  Workspace workspace{.study = data::read_study(file), .cases = {}, .out = {}};
+  Workspace workspace{.study = data::read_study(file), .cases = {}, .surrogates = {}, .out = {}};
+  workspace.surrogates =
+      std::make_shared<const uq::SurrogateOptions>(uq::read_surrogate_options(file, workspace.study));
   data::Study& study = workspace.study;
   if (common.seed) study.seed = *common.seed;
   if (file.root().child("rig").exists()) {
@@ -102,7 +105,7 @@ void make_out(const Workspace& workspace, const std::string& subfolder) {
 
 TrainingRows training_rows(const Workspace& workspace) {
   const data::Study& study = workspace.study;
-  TrainingRows result{data::empty_table(study), {}};
+  TrainingRows result{data::empty_table(study), {}, {}};
   std::map<std::string, std::string> settings;
   for (const auto& [material, unused] : workspace.cases) settings[material] = settings_hash(workspace, material);
   const auto add = [&](const std::string& path) {
@@ -123,6 +126,11 @@ TrainingRows training_rows(const Workspace& workspace) {
   if (!study.training.table.empty()) add(study.training.table);
   const std::string own = (fs::path(workspace.out) / "training.h5").string();
   if (fs::exists(own)) add(own);
+  if (!study.training.low.empty()) {
+    data::TableRead read = data::read_table(study.training.low, study);
+    for (std::string& left_out : read.left_out) result.notes.push_back(std::move(left_out));
+    result.low = std::move(read.table);
+  }
   return result;
 }
 

@@ -19,24 +19,7 @@
 namespace data {
 namespace {
 
-double to_si(const std::string& field, const Unit& unit) {
-  long double value = 0.0L;
-  std::from_chars(field.data() + (field.front() == '+' ? 1 : 0), field.data() + field.size(), value);
-  return static_cast<double>(static_cast<long double>(unit.factor) * value + static_cast<long double>(unit.offset));
-}
-
-/// The decimal with the fewest digits that this file reads back as the same SI double.
-std::string from_si(double si, const Unit& unit) {
-  if (!std::isfinite(si)) return shortest(si);
-  const long double value =
-      (static_cast<long double>(si) - static_cast<long double>(unit.offset)) / static_cast<long double>(unit.factor);
-  std::string text;
-  for (int digits = 1; digits <= 21; ++digits) {
-    text = fmt::format("{:.{}g}", value, digits);
-    if (to_si(text, unit) == si) break;
-  }
-  return text;
-}
+std::string text_of(double si, const Unit& unit) { return std::isfinite(si) ? unit.digits(si) : shortest(si); }
 
 template <class Integer>
 Integer whole_number(const Csv& csv, const CsvRow& row, std::size_t column) {
@@ -153,7 +136,7 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     RunRow row;
     row.material = read_material(csv, line, at.material, study);
     for (std::size_t i = 0; i < at.inputs.size(); ++i)
-      row.inputs.push_back(to_si(line.fields[at.inputs[i]], *input_units[i]));
+      row.inputs.push_back(input_units[i]->to_si(line.fields[at.inputs[i]]));
     for (std::size_t i = 0; i < at.outputs.size(); ++i) {
       const Unit& unit = table.outputs[i].unit;
       Unit difference = unit;
@@ -163,8 +146,8 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
         row.standard_errors.push_back(std::numeric_limits<double>::quiet_NaN());
         continue;
       }
-      row.outputs.push_back(to_si(line.fields[at.outputs[i]], unit));
-      row.standard_errors.push_back(to_si(line.fields[at.errors[i]], difference));
+      row.outputs.push_back(unit.to_si(line.fields[at.outputs[i]]));
+      row.standard_errors.push_back(difference.to_si(line.fields[at.errors[i]]));
       if (row.standard_errors.back() < 0.0) {
         throw InputError(ExitStatus::bad_data,
                          Problem{csv.place(line, at.errors[i]), fmt::format("{} is below 0", line.fields[at.errors[i]]),
@@ -202,13 +185,13 @@ void write_table_csv(const std::string& path, const RunTable& table, const Study
     for (std::size_t i = 0; i < row.inputs.size(); ++i) {
       const bool parameter = i < table.parameters.size();
       const Column& column = parameter ? table.parameters[i] : table.controls.at(i - table.parameters.size());
-      text += from_si(row.inputs[i], column.unit) + ',';
+      text += text_of(row.inputs[i], column.unit) + ',';
     }
     for (std::size_t i = 0; i < row.outputs.size(); ++i) {
       Unit difference = table.outputs.at(i).unit;
-      text += from_si(row.outputs[i], difference) + ',';
+      text += text_of(row.outputs[i], difference) + ',';
       difference.offset = 0.0;
-      text += from_si(row.standard_errors.at(i), difference) + ',';
+      text += text_of(row.standard_errors.at(i), difference) + ',';
     }
     text += fmt::format("{},{},{},{},{},{}\n", csv_field(row.material), row.seed, csv_field(row.settings),
                         csv_field(row.isa), csv_field(row.origin), shortest(row.cpu_seconds));

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include <charconv>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -86,5 +87,23 @@ Unit parse_unit(std::string_view symbol) {
 }
 
 bool convertible(std::string_view a, std::string_view b) { return parse(a).powers == parse(b).powers; }
+
+double Unit::to_si(std::string_view text) const {
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  long double value = 0.0L;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return static_cast<double>(static_cast<long double>(factor) * value + static_cast<long double>(offset));
+}
+
+std::string Unit::digits(double si) const {
+  const long double value =
+      (static_cast<long double>(si) - static_cast<long double>(offset)) / static_cast<long double>(factor);
+  std::string text;
+  for (int count = 1; count <= 21; ++count) {
+    text = fmt::format("{:.{}g}", value, count);
+    if (to_si(text) == si) break;
+  }
+  return text;
+}
 
 }  // namespace data

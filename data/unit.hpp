@@ -14,6 +14,11 @@ struct Unit {
   std::string si_symbol = "1";  ///< the SI unit that it is mapped to, in base units: "kg m2 s-2"
   double to_si(double value) const { return factor * value + offset; }
   double from_si(double si) const { return (si - offset) / factor; }
+  /// Of a number as text, converted in long double: every reader of text gives the same bits. Of what is not a number
+  /// the part before it counts (0 when there is none); the caller has checked.
+  double to_si(std::string_view digits) const;
+  /// The decimal with the fewest digits that to_si(text) takes back to the same double.
+  std::string digits(double si) const;
 };
 
 /// Parses a unit. Throws std::invalid_argument when UDUNITS-2 does not know it.

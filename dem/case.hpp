@@ -79,7 +79,7 @@ struct Contact {
 struct RunControl {
   double gravity = 9.81;            ///< m/s2 along -z
   double steps_per_contact = 30.0;  ///< contact duration of the stiffest pair / time step
-  double skin = 0.10;               ///< of the neighbour list, in diameters
+  double skin = 0.12;               ///< of the neighbour list, in diameters
   double settle = 0.08;             ///< s, filling comes to rest before the tool turns
   double start_up = 0.2;            ///< s of turning dropped at least, before means are taken
   double sample_interval = 0.2e-3;  ///< s between samples; each is the mean over the steps since the last

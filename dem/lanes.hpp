@@ -69,32 +69,53 @@ inline Square transpose(Four a, Four b, Four c, Four d) {
   return {{__builtin_shuffle(ab0, cd0, Index{0, 1, 4, 5}), __builtin_shuffle(ab1, cd1, Index{0, 1, 4, 5}),
            __builtin_shuffle(ab0, cd0, Index{2, 3, 6, 7}), __builtin_shuffle(ab1, cd1, Index{2, 3, 6, 7})}};
 }
+/// One component of every lane, as fours.
+template <class L>
+struct Column {
+  Four part[L::size() / 4];
+};
+
+template <class L, class Row>
+LaneRows gather(Row&& row) {
+  if constexpr (L::size() % 4 == 0) {
+    Column<L> column[4];
+    for (std::size_t p = 0; p < L::size() / 4; ++p) {
+      const int k = static_cast<int>(4 * p);
+      const Square s = transpose(row(k), row(k + 1), row(k + 2), row(k + 3));
+      for (int c = 0; c < 4; ++c) column[c].part[p] = s.row[c];
+    }
+    return {{std::bit_cast<L>(column[0]), std::bit_cast<L>(column[1]), std::bit_cast<L>(column[2])},
+            std::bit_cast<L>(column[3])};
+  } else {
+    Four rows[L::size()];
+    for (std::size_t k = 0; k < L::size(); ++k) rows[k] = row(static_cast<int>(k));
+    const auto column = [&](int c) { return L([&](auto k) { return rows[k][c]; }); };
+    return {{column(0), column(1), column(2)}, column(3)};
+  }
+}
+
+template <class L>
+void scatter(const Vector3<L>& v, const L& w, Four* out) {
+  if constexpr (L::size() % 4 == 0) {
+    const Column<L> x = std::bit_cast<Column<L>>(v.x), y = std::bit_cast<Column<L>>(v.y),
+                    z = std::bit_cast<Column<L>>(v.z), last = std::bit_cast<Column<L>>(w);
+    for (std::size_t p = 0; p < L::size() / 4; ++p) {
+      const Square s = transpose(x.part[p], y.part[p], z.part[p], last.part[p]);
+      for (int k = 0; k < 4; ++k) out[4 * p + k] = s.row[k];
+    }
+  } else {
+    for (std::size_t k = 0; k < L::size(); ++k) out[k] = Four{v.x[k], v.y[k], v.z[k], w[k]};
+  }
+}
 }  // namespace detail
 
 /// `row(k)` gives lane k's four doubles.
 template <class Row>
 LaneRows transposed(Row&& row) {
-  if constexpr (lanes == 4) {
-    const detail::Square s = detail::transpose(row(0), row(1), row(2), row(3));
-    return {{std::bit_cast<Lane>(s.row[0]), std::bit_cast<Lane>(s.row[1]), std::bit_cast<Lane>(s.row[2])},
-            std::bit_cast<Lane>(s.row[3])};
-  } else {
-    Four rows[lanes];
-    for (int k = 0; k < lanes; ++k) rows[k] = row(k);
-    const auto column = [&](int c) { return Lane([&](auto k) { return rows[k][c]; }); };
-    return {{column(0), column(1), column(2)}, column(3)};
-  }
+  return detail::gather<Lane>(row);
 }
 
 /// Lane k's four doubles of `rows` into out[k].
-inline void untransposed(const LaneRows& rows, Four* out) {
-  if constexpr (lanes == 4) {
-    const detail::Square s = detail::transpose(std::bit_cast<Four>(rows.v.x), std::bit_cast<Four>(rows.v.y),
-                                               std::bit_cast<Four>(rows.v.z), std::bit_cast<Four>(rows.w));
-    for (int k = 0; k < 4; ++k) out[k] = s.row[k];
-  } else {
-    for (int k = 0; k < lanes; ++k) out[k] = Four{rows.v.x[k], rows.v.y[k], rows.v.z[k], rows.w[k]};
-  }
-}
+inline void untransposed(const LaneRows& rows, Four* out) { detail::scatter<Lane>(rows.v, rows.w, out); }
 
 }  // namespace dem

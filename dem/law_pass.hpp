@@ -16,7 +16,7 @@ inline History<double> history_of(const VectorRow& slip, const VectorRow& roll) 
 /// Features that the sphere may have reached since the rebuild: those are sorted by their gap then.
 inline std::uint32_t features_in_question(const State& s, const WallSlot& slot, const Frame& frame) {
   const PositionRow& at = s.position[slot.particle];
-  const double moved = length(at.at - s.reference[slot.particle]) + frame.moved + 1e-9 * at.radius;
+  const double moved = length(at.at - s.reference[slot.particle].at) + frame.moved + 1e-9 * at.radius;
   const double* gap = s.feature_gap.data() + slot.feature_first;
   std::uint32_t asked = 0;
   while (asked < slot.feature_count && gap[asked] <= moved) ++asked;

@@ -156,9 +156,21 @@ void read_packing(const Section& s, const std::string& folder, StlRig& r) {
   if (file.empty()) return;
   try {
     const data::Csv csv = data::read_csv(from_folder(folder, file));
-    const std::size_t x = csv.column("x"), y = csv.column("y"), z = csv.column("z");
-    for (const data::CsvRow& row : csv.rows)
-      r.packing.push_back(scale * Vec3{csv.number(row, x), csv.number(row, y), csv.number(row, z)});
+    const auto vector = [&](const data::CsvRow& row, const std::string& prefix) {
+      const auto at = [&](const char* axis) { return csv.number(row, csv.column(prefix + axis)); };
+      return Vec3{at("x"), at("y"), at("z")};
+    };
+    const bool moving = csv.find("vx") || csv.find("vy") || csv.find("vz");
+    const std::optional<std::size_t> frozen = csv.find("frozen");
+    for (const data::CsvRow& row : csv.rows) {
+      r.packing.push_back(scale * vector(row, ""));
+      if (moving) r.velocity.push_back(vector(row, "v"));
+      if (!frozen) continue;
+      const double flag = csv.number(row, *frozen);
+      if (flag != 0.0 && flag != 1.0)
+        s.problem("packing", fmt::format("{} is {:g}", csv.place(row, *frozen), flag), "write 1 for frozen, else 0");
+      r.frozen.push_back(flag == 1.0);
+    }
     if (r.packing.empty())
       s.problem("packing", fmt::format("{} has no row", file), "give positions in columns x, y, z");
   } catch (const data::InputError& error) {
@@ -194,6 +206,8 @@ std::string hash_content(const StlRig& r) {
     add(m.mesh.triangles);
   }
   add(r.packing);
+  add(r.velocity);
+  add(r.frozen);
   return data::hash_text(bytes);
 }
 

@@ -107,10 +107,11 @@ void Simulation::sort() {
   permute(s.position, order_);
   permute(s.motion, order_);
   permute(s.half, order_);
+  permute(s.load, order_);
   permute(s.id, order_);
   permute(cells_.of, order_);
   s.reference.resize(n);
-  for (std::size_t i = 0; i < n; ++i) s.reference[i] = s.position[i].at;
+  std::copy_n(s.position.begin(), n, s.reference.begin());
 }
 
 std::uint32_t Simulation::cell_of(Vec3 p) const {
@@ -283,7 +284,8 @@ void Simulation::cut_chunks() {
     }
     s.halo_owner.insert(s.halo_owner.end(), foreign.begin(), foreign.end());
   }
-  s.load.assign(n + s.halo_owner.size(), {});
+  s.load.resize(n);
+  s.load.resize(n + s.halo_owner.size());
 }
 
 /// Features near each sphere, and the memory of the contacts it had.

@@ -38,6 +38,8 @@ Setup make_setup(const Case& c, BuiltRig rig, std::uint64_t rest_steps, int thre
   s.spheres.radius = {0.5 * c.material.diameter};
   s.spheres.density = {c.material.density};
   s.spheres.position = std::move(rig.position);
+  s.spheres.velocity = std::move(rig.velocity);
+  s.spheres.frozen = std::move(rig.frozen);
   s.bodies = std::move(rig.bodies);
   s.laws = make_force_pass(make_bed(c, s.bodies.size()));
   s.gravity = c.run.gravity * rig.down;

@@ -26,7 +26,9 @@ struct BuiltRig {
   std::array<bool, 3> periodic{false, false, false};
   Vec3 down{0.0, 0.0, -1.0};  ///< unit, direction of gravity
   std::vector<Body> bodies;
-  std::vector<Vec3> position;  ///< m, of the spheres at the start
+  std::vector<Vec3> position;        ///< m, of the spheres at the start
+  std::vector<Vec3> velocity;        ///< m/s, empty: at rest
+  std::vector<std::uint8_t> frozen;  ///< 1: that sphere does not move; empty: none
   Sensor sensor;
 };
 

@@ -59,22 +59,24 @@ Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.thr
     m.mass = mass;
     m.material = pick(given.material, i, 0u);
     state_.motion.push_back(m);
-    const bool frozen = pick<std::uint8_t>(given.frozen, i, 0) != 0;
-    m.mass = frozen ? 0.0 : 1.0 / mass;
-    m.material = frozen ? 0.0 : 1.0 / (0.4 * mass * r * r);
     state_.half.push_back(m);
+    LoadRow load;
+    if (pick<std::uint8_t>(given.frozen, i, 0) == 0) {
+      load.inverse_mass = 1.0 / mass;
+      load.inverse_inertia = 1.0 / (0.4 * mass * r * r);
+    }
+    state_.load.push_back(load);
     state_.id.push_back(static_cast<std::uint32_t>(i));
   }
-  state_.load.resize(n);
   rebuild();
   compute_forces();
   // The velocities given are those at time 0; the integrator wants them half a step earlier.
   const double t = 0.5 * setup_.time_step;
   for (std::size_t i = 0; i < n; ++i) {
-    MotionRow& half = state_.half[i];
-    if (half.mass == 0.0) continue;
-    half.velocity = state_.motion[i].velocity - t * (half.mass * state_.load[i].force + setup_.gravity);
-    half.spin = state_.motion[i].spin - (t * half.material) * state_.load[i].torque;
+    const LoadRow& load = state_.load[i];
+    if (load.inverse_mass == 0.0) continue;
+    state_.half[i].velocity = state_.motion[i].velocity - t * (load.inverse_mass * load.force + setup_.gravity);
+    state_.half[i].spin = state_.motion[i].spin - (t * load.inverse_inertia) * load.torque;
   }
 }
 
@@ -121,8 +123,8 @@ void Simulation::add_halos() {
     for (std::size_t from = 0; from < chunks; ++from) {
       for (std::uint32_t h = s.halo_part[from * chunks + to]; h < s.halo_part[from * chunks + to + 1]; ++h) {
         LoadRow &share = s.load[n + h], &load = s.load[s.halo_owner[h]];
-        load.force += share.force;
-        load.torque += share.torque;
+        four(load.force.x) += four(share.force.x);
+        four(load.torque.x) += four(share.torque.x);
         share = {};
       }
     }
@@ -135,29 +137,27 @@ void Simulation::integrate() {
   const std::size_t chunks = s.chunks();
   chunk_displacement2_.assign(chunks, 0.0);
   team_.for_each(chunks, [&](std::size_t c) {
-    const Four fall{dt * setup_.gravity.x, dt * setup_.gravity.y, dt * setup_.gravity.z, 0.0};
+    // Whole rows at once; what rides in their fourth places stays as it is.
+    const Four step{dt, dt, dt, 0.0}, fourth{0.0, 0.0, 0.0, 1.0};
+    const Four gravity{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z, 0.0};
     double farthest = 0.0;
     for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
       MotionRow &half = s.half[i], &motion = s.motion[i];
       LoadRow& load = s.load[i];
-      // Whole rows at once: what rides in the fourth places (masses and the like) meets loads of zero there.
-      const double moves = half.mass > 0.0 ? 1.0 : 0.0;
-      const Four kick = (dt * half.mass) * four(load.force.x) + moves * fall;
-      const Four twist = (dt * half.material) * four(load.torque.x);
+      const Four force = four(load.force.x) + half.mass * gravity, torque = four(load.torque.x);
+      const Four kick = load.inverse_mass * (step * force), twist = load.inverse_inertia * (step * torque);
       const Four velocity = four(half.velocity.x) + kick, spin = four(half.spin.x) + twist;
       four(half.velocity.x) = velocity;
       four(half.spin.x) = spin;
-      const double mass = motion.mass, material = motion.material;
       four(motion.velocity.x) = velocity + 0.5 * kick;
       four(motion.spin.x) = spin + 0.5 * twist;
-      motion.mass = mass;
-      motion.material = material;
-      Vec3& at = s.position[i].at;
-      at += (moves * dt) * half.velocity;
-      const Vec3 moved = at - s.reference[i];
-      const double d2 = dot(moved, moved);
+      const Four at = four(s.position[i].at.x) + step * velocity;
+      four(s.position[i].at.x) = at;
+      const Four moved = at - four(s.reference[i].at.x), squared = moved * moved;
+      const double d2 = squared[0] + squared[1] + squared[2];
       farthest = d2 <= farthest ? farthest : d2;  // a NaN stays and forces a rebuild, which reports it
-      load = {};
+      four(load.force.x) = fourth * four(load.force.x);
+      four(load.torque.x) = fourth * torque;
     }
     chunk_displacement2_[c] = farthest;
   });
@@ -200,11 +200,11 @@ void Simulation::step() {
 
 MotionRow Simulation::motion(std::size_t i) const {
   const double t = 0.5 * setup_.time_step;
-  const MotionRow& half = state_.half[i];
-  MotionRow m = state_.motion[i];
-  if (half.mass == 0.0) return m;
-  m.velocity = half.velocity + t * (half.mass * state_.load[i].force + setup_.gravity);
-  m.spin = half.spin + (t * half.material) * state_.load[i].torque;
+  const LoadRow& load = state_.load[i];
+  MotionRow m = state_.half[i];
+  if (load.inverse_mass == 0.0) return m;
+  m.velocity += t * (load.inverse_mass * load.force + setup_.gravity);
+  m.spin += (t * load.inverse_inertia) * load.torque;
   return m;
 }
 
@@ -213,7 +213,7 @@ Energy Simulation::energy() const {
   for (std::size_t i = 0; i < state_.particles(); ++i) {
     const MotionRow m = motion(i);
     const PositionRow& p = state_.position[i];
-    if (state_.half[i].mass == 0.0) continue;
+    if (state_.load[i].inverse_mass == 0.0) continue;
     e.translation += 0.5 * m.mass * dot(m.velocity, m.velocity);
     e.rotation += 0.2 * m.mass * p.radius * p.radius * dot(m.spin, m.spin);
     e.gravity -= m.mass * dot(setup_.gravity, p.at);

@@ -30,10 +30,10 @@ struct Spheres {
   std::vector<double> radius;           ///< m, one for all or one each
   std::vector<double> density;          ///< kg/m3, one for all or one each
   std::vector<std::uint32_t> material;  ///< index into the laws' tables; empty: all 0
-  std::vector<std::uint8_t> frozen;     ///< 1: does not move, keeping its mass in contacts; empty: none
-  std::vector<Vec3> position;           ///< m
-  std::vector<Vec3> velocity;           ///< m/s, empty: at rest
-  std::vector<Vec3> spin;               ///< rad/s, empty: none
+  std::vector<std::uint8_t> frozen;  ///< 1: keeps its velocity whatever the load, and its mass in contacts; empty: none
+  std::vector<Vec3> position;        ///< m
+  std::vector<Vec3> velocity;        ///< m/s, empty: at rest
+  std::vector<Vec3> spin;            ///< rad/s, empty: none
 };
 
 struct Setup {

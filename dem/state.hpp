@@ -28,10 +28,10 @@ struct alignas(64) MotionRow {
   double material = 0.0;  ///< index into the tables of laws
 };
 struct alignas(64) LoadRow {
-  Vec3 force;  ///< N
-  double unused = 0.0;
-  Vec3 torque;  ///< N m
-  double unused_too = 0.0;
+  Vec3 force;                    ///< N
+  double inverse_mass = 0.0;     ///< 1/kg; 0 for a sphere that keeps its velocity whatever the load
+  Vec3 torque;                   ///< N m
+  double inverse_inertia = 0.0;  ///< 1/(kg m2)
 };
 /// A vector and a number, four lanes.
 struct alignas(32) VectorRow {
@@ -72,9 +72,9 @@ struct State {
   std::vector<PositionRow> position;
   std::vector<MotionRow> motion;  ///< at the time of `position`: what contacts see
   // particles
-  std::vector<MotionRow> half;  ///< half a step earlier: what is integrated; 1/mass and 1/inertia in place of the rest
-  std::vector<LoadRow> load;    ///< without gravity; beyond the particles, the halos
-  std::vector<Vec3> reference;  ///< position at the last rebuild
+  std::vector<MotionRow> half;         ///< half a step earlier: what is integrated
+  std::vector<LoadRow> load;           ///< without gravity; beyond the particles, the halos
+  std::vector<PositionRow> reference;  ///< position at the last rebuild
   std::vector<std::uint32_t> id;
   std::vector<Ghost> ghost;
   // pairs

@@ -145,6 +145,8 @@ BuiltRig build_stl_rig(const Case& c, std::uint64_t seed) {
   } else {
     check_packing(rig, built.bodies, 0.5 * c.material.diameter);
     built.position = rig.packing;
+    built.velocity = rig.velocity;
+    built.frozen = rig.frozen;
   }
   const Motion measured = built.bodies.empty() ? Motion{} : built.bodies[rig.measured].motion;
   const Vec3 axis = measured.axis, size = rig.high - rig.low;

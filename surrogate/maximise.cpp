@@ -13,6 +13,8 @@ namespace {
 
 using Eigen::Index;
 
+constexpr double reach = 2.0;  // of one step, in logarithms: a factor of 7
+
 /// Gradient without the components that push against a bound.
 Eigen::VectorXd projected_gradient(const Objective& objective, const Eigen::VectorXd& u,
                                    const Eigen::VectorXd& gradient) {
@@ -27,7 +29,6 @@ Eigen::VectorXd projected_gradient(const Objective& objective, const Eigen::Vect
 /// components that left the box are put on its faces and the rest solved again.
 Eigen::VectorXd model_step(const Objective& objective, const Eigen::VectorXd& u, const Eigen::VectorXd& gradient,
                            const Eigen::MatrixXd& information, double damping) {
-  constexpr double reach = 2.0;  // in logarithms: a factor of 7 in one step
   const Index count = u.size();
   const Eigen::VectorXd low = (objective.low - u).cwiseMax(-reach), high = (objective.high - u).cwiseMin(reach);
   Eigen::MatrixXd curvature = information;
@@ -53,6 +54,19 @@ Eigen::VectorXd model_step(const Objective& objective, const Eigen::VectorXd& u,
     if (!left_box) break;
   }
   return step;
+}
+
+/// What the quadratic model promises for the best step along one coordinate inside the box: a lower bound of what its
+/// maximiser gains.
+double best_single_gain(const Objective& objective, const Eigen::VectorXd& u, const Eigen::VectorXd& gradient,
+                        const Eigen::MatrixXd& curvature) {
+  double best = 0.0;
+  for (Index j = 0; j < u.size(); ++j) {
+    const double low = std::max(objective.low[j] - u[j], -reach), high = std::min(objective.high[j] - u[j], reach);
+    const double step = std::clamp(gradient[j] / curvature(j, j), low, high);
+    best = std::max(best, (gradient[j] - 0.5 * curvature(j, j) * step) * step);
+  }
+  return best;
 }
 
 /// The last pairs of step and gradient change: they turn the average information, which lacks the likelihood's second
@@ -182,8 +196,14 @@ StartOutcome maximise(const Objective& objective, const Eigen::VectorXd& start, 
     const Eigen::VectorXd step = model_step(objective, u, at.gradient, curvature, damping);
     const double expected = at.gradient.dot(step) - 0.5 * step.dot(curvature * step);
     if (expected < options.tolerance && damping <= 1.0) {
-      outcome.converged = true;
-      break;
+      if (best_single_gain(objective, u, at.gradient, curvature) < options.tolerance) {
+        outcome.converged = true;
+        break;
+      }
+      // The box cut the step to one that leads nowhere, while one coordinate alone would gain: shorten it.
+      damping = std::max(damping, 1e-3) * growth;
+      growth *= 2.0;
+      continue;
     }
     const Eigen::VectorXd next_u = (u + step).cwiseMax(objective.low).cwiseMin(objective.high);
     LikelihoodGradient next = evaluate(objective, next_u);

@@ -286,10 +286,12 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
     report.surrogates.push_back(fitted.report);
     for (const std::string& note : extrapolation_notes(study, fitted.rows))
       report.surrogates.back().notes.push_back(note);
+    const std::string name =
+        fitted.report.output + (fitted.report.material.empty() ? "" : " of " + fitted.report.material);
     if (fitted.report.verdict == "unusable")
-      report.warnings.push_back(fmt::format("the surrogate of {}{} is unusable: {}", fitted.report.output,
-                                            fitted.report.material.empty() ? "" : " of " + fitted.report.material,
-                                            fitted.report.finding));
+      report.warnings.push_back(fmt::format("the surrogate of {} is unusable: {}", name, fitted.report.finding));
+    if (!fitted.report.converged)
+      report.warnings.push_back(fmt::format("the fit of the surrogate of {} did not converge", name));
   }
 
   for (std::size_t index = 0; index < study.cases.size(); ++index) {

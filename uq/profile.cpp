@@ -72,13 +72,17 @@ Crossing find_crossing(const CaseModel& model, const Box& box, Held inside, Held
   return {.at = 0.5 * (inside.value + outside.value), .maximiser = warm};
 }
 
-/// Another unknown that sits at the end of its range, if one does.
-std::optional<int> pinned(const CaseModel& model, const Box& box, int k, const Eigen::VectorXd& at) {
+/// Another unknown that sits at the end of its range, if one does and the interval ends for that: were its range twice
+/// as wide, the deviance there would fall by half of the drop, to first order. One without influence ends nothing.
+std::optional<int> pinned(const CaseModel& model, const Box& box, int k, const Eigen::VectorXd& at, double drop) {
+  const Eigen::VectorXd slope = likelihood_of(model)(at).gradient;
   for (int other = 0; other < model.dimension(); ++other) {
     if (other == k) continue;
-    const double near = 1e-4 * (box.upper[other] - box.lower[other]);
-    const bool low = at[other] - box.lower[other] < near && !physical_low(model.slots[static_cast<std::size_t>(other)]);
-    if (low || box.upper[other] - at[other] < near) return other;
+    const double width = box.upper[other] - box.lower[other];
+    if (2.0 * std::abs(slope[other]) * width < 0.5 * drop) continue;
+    const bool low =
+        at[other] - box.lower[other] < 1e-4 * width && !physical_low(model.slots[static_cast<std::size_t>(other)]);
+    if (low || box.upper[other] - at[other] < 1e-4 * width) return other;
   }
   return {};
 }
@@ -145,7 +149,7 @@ void finish(const CaseModel& model, const Box& box, Profile& profile, const Maxi
   auto end = [&](Eigen::Index inside, Eigen::Index outside, std::optional<double>& at, std::optional<int>& by) {
     const Eigen::VectorXd start = profile.path.row(inside).transpose();
     const Crossing found = find_crossing(model, box, {k, profile.u[inside]}, {k, profile.u[outside]}, start, wanted);
-    by = pinned(model, box, k, found.maximiser);
+    by = pinned(model, box, k, found.maximiser, drop);
     if (!by) at = found.at;
   };
   if (first > 0) end(first, first - 1, profile.low, profile.low_pinned);

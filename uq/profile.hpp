@@ -5,7 +5,8 @@
 // by constrained optimisation (Raue et al., Bioinformatics 25:1923 (2009)). The 95 % interval is where it stays
 // below 3.84 (chi squared, one degree of freedom). An end is closed when the deviance crosses before the support ends,
 // open when the support's bound is met first: a bound is not a finding. Nor is an end that is there only because
-// another unknown has come to the end of its range, so that the ridge cannot go on (pinned): that side is open, too. A
+// another unknown has come to the end of its range, so that the ridge cannot go on (pinned): that side is open, too,
+// unless a wider range would hardly matter. A
 // bound at 0 that nature sets does close. The maximisers form a path along the ridge, if there is one.
 #include <Eigen/Dense>
 #include <optional>

@@ -83,9 +83,10 @@ def main():
     arguments.add_argument("binary")
     arguments.add_argument("--runs", default="64,256,1024")
     arguments.add_argument("--seeds", type=int, default=1)
-    arguments.add_argument("--peers", default="sklearn,openturns")
+    arguments.add_argument("--peers", default="sklearn,openturns", help="or none")
     arguments.add_argument("--json", help="file for the numbers")
     options = arguments.parse_args()
+    names = [] if options.peers == "none" else options.peers.split(",")
     peers = {"sklearn": sklearn_peer, "openturns": openturns_peer}
     rows = []
     for runs in (int(n) for n in options.runs.split(",")):
@@ -101,25 +102,25 @@ def main():
                 call = [options.binary, f"{folder}/train.csv", f"{folder}/test.csv"]
                 ours = json.loads(subprocess.check_output(call))
                 row = dict(runs=runs, seed=seed, demcal=dict(fit_s=ours["fit_s"], predict_s=ours["predict_s"], q2=q2(ours["mean"]),
-                                                             evidence=ours["evidence"], evaluations=ours["evaluations"]))
-                for name in options.peers.split(","):
+                                                             evidence=ours["evidence"], evaluations=ours["evaluations"], memory_mb=ours["memory_mb"]))
+                for name in names:
                     peer = peers[name](x, y, points, 1 if runs > 500 else 3, ours["nugget_factor"])
                     evidence = json.loads(subprocess.check_output(
                         call + ["--lengths", ",".join(f"{v:.17g}" for v in peer["lengths"]), "--signal", f"{peer['signal']:.17g}",
                                 "--nugget", f"{max(peer['nugget'], 1e-9):.17g}"]))["evidence"]
                     row[name] = dict(fit_s=peer["fit_s"], predict_s=peer["predict_s"], q2=q2(peer["mean"]), evidence=evidence)
             rows.append(row)
-            for name in ("demcal", *options.peers.split(",")):
+            for name in ("demcal", *names):
                 r = row[name]
                 print(f"{runs:5d} seed {seed:2d} {name:9s} fit {r['fit_s']:9.5f} s  predict {r['predict_s']:8.5f} s  "
                       f"Q2 {r['q2']:.6f}  log evidence {r['evidence']:.4f}"
                       + (f"  x{r['fit_s'] / row['demcal']['fit_s']:.1f} fit, x{r['predict_s'] / row['demcal']['predict_s']:.1f} predict"
-                         if name != "demcal" else f"  ({r['evaluations']} evaluations)"), flush=True)
+                         if name != "demcal" else f"  ({r['evaluations']} evaluations, {r['memory_mb']:.0f} MiB at most)"), flush=True)
     if options.seeds > 1:
         for runs in sorted({row["runs"] for row in rows}):
             print(f"{runs:5d} median Q2: " + ", ".join(
                 f"{name} {np.median([row[name]['q2'] for row in rows if row['runs'] == runs]):.6f}"
-                for name in ("demcal", *options.peers.split(","))))
+                for name in ("demcal", *names)))
     if options.json:
         with open(options.json, "w") as file:
             json.dump(rows, file, indent=1)

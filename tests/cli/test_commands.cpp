@@ -136,7 +136,7 @@ TEST_CASE("shipped rows and an observed point come out again", "[slow]") {
   const Row& point = observed.back();
   const nlohmann::json run =
       simulate(folder, {"--material", "zirconia-800", "--at", "friction=0.4,rpm=" + point.field.at("rpm"), "--seed",
-                        "40911", "--set", "training.standard_error=0.015", "--set", "run.longest=\"1.2 s\""});
+                        "40911", "--set", "training.standard_error=0.03", "--set", "run.longest=\"0.8 s\""});
   CHECK(std::abs(run["outputs"]["torque"]["mean"].get<double>() - point.number("torque")) <
         3.0 * point.number("torque_se"));
 }

@@ -86,7 +86,7 @@ std::string said(const SliceFolder& folder, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a slice given as STL runs like the slice itself: same steps, same torque within its error") {
+TEST_CASE("a slice given as STL runs like the slice itself: same steps, same torque within its error", "[slow]") {
   const SliceFolder folder;
   const data::StudyFile file = folder.study(rig + rest);
   dem::Case c = dem::read_case(file, "steel");
@@ -141,6 +141,11 @@ TEST_CASE("spheres start where a CSV says, and one outside the box or inside a m
   REQUIRE(built.position.size() == 2);
   CHECK(built.position[1].y == Approx(-5.5e-3));
   CHECK(dem::derive(dem::read_case(folder.study(text), "steel")).spheres == 2);
+  std::ofstream(folder.path / "at.csv") << "x,y,z,vx,vy,vz,frozen\n6,5.5,2,0,0,-0.1,0\n3,-5.5,3,0,0,1,1\n";
+  dem::Simulation s(dem::make_setup(dem::read_case(folder.study(text), "steel"), build(), 0, 1));
+  while (s.time() < 5e-3) s.step();
+  CHECK(scene::position_of(s, 0).z == Approx(2e-3 - 0.1 * s.time() - 0.5 * 9.81 * s.time() * s.time()).epsilon(1e-3));
+  CHECK(scene::position_of(s, 1).z == Approx(3e-3 + 1.0 * s.time()).epsilon(1e-12));  // keeps its velocity
   write("6,5.5,2\n3,-9,3\n");
   CHECK_THROWS_WITH(build(), Catch::Contains("sphere 2") && Catch::Contains("outside the box"));
   write("6,5.5,2\n3,6.9,3\n");

@@ -76,6 +76,24 @@ TEST_CASE("Newton on the average information and L-BFGS find the same maximum") 
   }
 }
 
+TEST_CASE("every start ends at a maximum, also where one input has no influence and the box cuts the steps") {
+  // Exact values of a function of the second input alone, replicated: the length scale of the first belongs on its
+  // bound, and the way there is along ridges.
+  TrainingSet training{scrambled_sobol(30, 2, 3), VectorXd(30), VectorXd::Constant(30, 1e-6)};
+  training.x.bottomRows(5) = training.x.topRows(5);
+  for (int i = 0; i < 30; ++i) training.y[i] = 3.0 + std::sin(1.0 + 5.0 * training.x(i, 1));
+  const GaussianProcess process = fit(training, {.seed = 3, .estimate = Estimate::maximum_likelihood});
+  const FitDiagnostics& diagnostics = process.diagnostics();
+  CHECK(diagnostics.agreeing_starts == 8);
+  for (const StartOutcome& start : diagnostics.starts) {
+    CHECK(start.converged);
+    CHECK(start.gradient_norm < 0.1);
+  }
+  REQUIRE_FALSE(diagnostics.bound_hits.empty());
+  CHECK(diagnostics.bound_hits[0].parameter == "length scale of input 1");
+  CHECK(diagnostics.bound_hits[0].harmless);
+}
+
 TEST_CASE("the unit of the output and a constant column do not change a fit") {
   const TrainingSet training = torque_runs(40, 7, 0.02, true);
   TrainingSet tiny{MatrixXd(40, 4), 1e-5 * training.y, 1e-10 * training.noise_variance};

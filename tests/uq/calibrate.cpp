@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "data/error.hpp"
+#include "uq/diagnostics.hpp"
 #include "uq/posterior_nc.hpp"
 
 using namespace uq;
@@ -187,4 +188,107 @@ TEST_CASE("a case that takes another's posterior is sampled jointly with it, and
   input.study.cases[0].priors.clear();
   input.study.cases[1].observe = {"bench"};
   CHECK(message_of(input).find("the data of 'bench' would count twice") != std::string::npos);
+}
+
+TEST_CASE("nuisances, a cut and the other sampler go from the study to the report", "[uq][slow]") {
+  Input input = other_code();
+  data::CalibrationCase& powder = input.study.cases[0];
+  const CalibrateOptions quick{.error_scan = {}, .quadrature = false};
+  const CaseReport plain = calibrate(input.study, input.table, quick).cases[0];
+  CHECK(plain.sampler == "mixture");
+  CHECK(plain.nuisances.empty());
+
+  // Two samplers, one posterior.
+  powder.sampler = data::Sampler::nuts;
+  const CaseReport nuts = calibrate(input.study, input.table, quick).cases[0];
+  CHECK(nuts.sampler == "nuts");
+  CHECK(nuts.converged);
+  CHECK(nuts.energy_fraction > 0.3);
+  CHECK(std::isnan(nuts.log_evidence));
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double error = std::hypot(nuts.parameters[k].mcse, plain.parameters[k].mcse);
+    CHECK(std::abs(nuts.parameters[k].mean - plain.parameters[k].mean) < 4.5 * error);
+    CHECK(nuts.parameters[k].sd == Approx(plain.parameters[k].sd).epsilon(0.08));
+    CHECK(nuts.parameters[k].verdict == plain.parameters[k].verdict);
+  }
+  powder.sampler = data::Sampler::mixture;
+
+  // A gain of 10 % widens what multiplies torque; the report lists it apart.
+  data::Parameter gain{.name = "gain", .target = "gain", .low = 0.4, .high = 1.6};
+  gain.prior = {.kind = data::PriorKind::normal, .low = 0.4, .high = 1.6, .mean = 1.0, .sd = 0.1};
+  powder.nuisances = {{data::NuisanceKind::gain, 0, gain}};
+  const CaseReport widened = calibrate(input.study, input.table, quick).cases[0];
+  REQUIRE(widened.nuisances.size() == 1);
+  CHECK(widened.nuisances[0].name == "gain");
+  CHECK(widened.nuisances[0].sd == Approx(0.1).epsilon(0.15));
+  CHECK(widened.parameters.size() == 2);
+  CHECK(widened.correlation.size() == 2);
+  CHECK(widened.fits);
+  powder.nuisances.clear();
+
+  // A case that takes friction, cut, from one whose data differ: friction keeps what the source made of it.
+  data::ObservationSet second = input.study.observations[0];
+  second.name = "bench2";
+  for (auto& point : second.points) point.values[0] *= 1.15;
+  input.study.observations.push_back(second);
+  data::CalibrationCase other = powder;
+  other.name = "other";
+  other.observe = {"bench2"};
+  data::Prior cut;
+  cut.kind = data::PriorKind::posterior;
+  cut.posterior_of = "powder";
+  cut.cut = true;
+  other.priors["friction"] = cut;
+  input.study.cases.push_back(other);
+  const Calibration found = calibrate_all(input.study, input.table, quick);
+  const CaseReport& source = found.report.cases[0];
+  const CaseReport& taken = found.report.cases[1];
+  CHECK(taken.cuts == std::vector<std::string>{"friction from powder"});
+  CHECK(taken.linked.empty());
+  CHECK(taken.sampler == "cut");
+  CHECK(taken.converged);
+  CHECK(found.cases[1].model->row_count() == 6);
+  const Eigen::MatrixXd kept = found.cases[1].draws.coordinate(0), given = found.cases[0].draws.coordinate(0);
+  CHECK(std::abs(kept.mean() - given.mean()) < 4.0 * std::hypot(mean_mcse(kept), mean_mcse(given)));
+  CHECK(taken.parameters[0].verdict == source.parameters[0].verdict);
+  CHECK(taken.parameters[0].mean == source.parameters[0].mean);
+  CHECK(taken.parameters[1].mean > source.parameters[1].mean);  // cohesion must explain the 15 %
+}
+
+TEST_CASE("a discrepancy takes what the model cannot explain, says how much, and leaves a fitting model little changed",
+          "[uq][slow]") {
+  Input input = other_code();
+  data::CalibrationCase& powder = input.study.cases[0];
+  const CalibrateOptions quick{.error_scan = {}, .quadrature = false};
+  // A torque with a hump that no friction or cohesion gives.
+  auto hump = input.study.observations[0];
+  for (std::size_t i = 0; i < hump.points.size(); ++i) hump.points[i].values[0] *= i == 2 || i == 3 ? 1.2 : 1.0;
+  const auto with_discrepancy = [&](const data::ObservationSet& set, bool on) {
+    input.study.observations[0] = set;
+    powder.nuisances.clear();
+    if (on) {
+      data::Parameter sd{.name = "discrepancy_sd", .target = "", .low = 0.0, .high = 0.5};
+      sd.prior = {.kind = data::PriorKind::truncated_normal, .low = 0.0, .high = 0.5, .mean = 0.0, .sd = 0.1};
+      data::Parameter length{
+          .name = "discrepancy_length", .target = "", .low = 0.05, .high = 5.0, .scale = data::Scale::log};
+      length.prior = {.kind = data::PriorKind::log_normal, .low = 0.05, .high = 5.0, .mean = 0.5, .sd = 0.7};
+      powder.nuisances = {{data::NuisanceKind::discrepancy_sd, {}, sd},
+                          {data::NuisanceKind::discrepancy_length, {}, length}};
+    }
+    return calibrate(input.study, input.table, quick).cases[0];
+  };
+  const data::ObservationSet good = input.study.observations[0];
+  const CaseReport off = with_discrepancy(hump, false), on = with_discrepancy(hump, true);
+  CHECK_FALSE(off.fits);
+  CHECK(on.fits);
+  CHECK(off.discrepancies.empty());
+  REQUIRE(on.discrepancies.size() == 1);
+  CHECK(on.discrepancies[0].share > 0.5);
+  CHECK(on.warnings.size() == 1);
+  const DiscrepancyBand& band = on.discrepancies[0];
+  CHECK(band.mean[band.mean.size() / 2] > 0.5);  // mN m: the hump is 2
+  const CaseReport fine = with_discrepancy(good, true), plain = with_discrepancy(good, false);
+  REQUIRE(fine.discrepancies.size() == 1);
+  CHECK(fine.discrepancies[0].share < on.discrepancies[0].share);
+  for (std::size_t k = 0; k < 2; ++k) CHECK(fine.parameters[k].sd >= 0.95 * plain.parameters[k].sd);
 }

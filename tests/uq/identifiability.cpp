@@ -167,6 +167,61 @@ TEST_CASE("verdicts follow when parameters are renamed, reordered and given in o
   CHECK(second.traded[0].combination == "eta * theta");
 }
 
+TEST_CASE("verdicts are the same words for 95 of 100 data sets where no threshold is near", "[uq][slow]") {
+  // Four truths of one formula, from a pair that is told apart to a pair of which only the sum is known.
+  struct Setting {
+    Formula formula;
+    double error;
+    std::pair<Verdict, Verdict> verdicts;
+  };
+  const Formula nearly_alike = [](const Eigen::VectorXd& p, double x) { return 1.0 + p[0] + p[1] * (1.0 + 0.05 * x); };
+  const Formula sum = [](const Eigen::VectorXd& p, double x) { return (p[0] + p[1]) * (1.0 + x); };
+  const Formula one_hidden = [](const Eigen::VectorXd& p, double x) {
+    return 1.0 + p[0] * x + 0.002 * p[1] * (1.0 - x);
+  };
+  const std::vector<Setting> settings = {
+      {told_apart, 0.01, {Verdict::identified, Verdict::identified}},
+      {nearly_alike, 0.02, {Verdict::not_identified, Verdict::not_identified}},
+      {sum, 0.01, {Verdict::not_identified, Verdict::not_identified}},
+      {one_hidden, 0.02, {Verdict::identified, Verdict::not_identified}},
+  };
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    const Setting& setting = settings[k];
+    int same = 0, unfit = 0;
+    for (std::uint32_t set = 0; set < 100; ++set) {
+      const uq::CaseModel model =
+          make_synthetic({{"p"}, {"q"}}, setting.formula, six, Eigen::Vector2d(0.45, 0.55), setting.error, 1000 + set);
+      const uq::Draws draws = uq::sample_mixture(uq::posterior_target(std::make_shared<const uq::CaseModel>(model)),
+                                                 {.draws = 400, .stop = {.ess_bulk = 600.0}, .seed = set});
+      REQUIRE(draws.converged);
+      const uq::Identification found = uq::identify(model, draws.pooled());
+      unfit += found.fits ? 0 : 1;
+      if (found.parameters[0].verdict == setting.verdicts.first &&
+          found.parameters[1].verdict == setting.verdicts.second)
+        ++same;
+    }
+    INFO("setting " << k << ": " << same << " of 100 the same, " << unfit << " do not fit");
+    CHECK(same >= 95);
+  }
+}
+
+TEST_CASE("verdicts change places when truths and names do", "[uq][slow]") {
+  // Only the second acts enough to be seen; then only the first.
+  const Formula second = [](const Eigen::VectorXd& p, double x) { return 1.0 + 0.01 * p[0] * (1.0 - x) + p[1] * x; };
+  const Formula first = [](const Eigen::VectorXd& p, double x) { return 1.0 + 0.01 * p[1] * (1.0 - x) + p[0] * x; };
+  const uq::Identification a =
+      identified(make_synthetic({{"friction"}, {"hamaker"}}, second, six, Eigen::Vector2d(0.3, 0.6), 0.02, 8));
+  const uq::Identification b =
+      identified(make_synthetic({{"friction"}, {"hamaker"}}, first, six, Eigen::Vector2d(0.6, 0.3), 0.02, 8));
+  for (std::size_t k = 0; k < 2; ++k) {
+    INFO(a.parameters[k].sentence << '\n' << b.parameters[1 - k].sentence);
+    CHECK(a.parameters[k].verdict == b.parameters[1 - k].verdict);
+    CHECK(a.parameters[k].reason == b.parameters[1 - k].reason);
+  }
+  CHECK(a.parameters[0].verdict == Verdict::not_identified);
+  CHECK(a.parameters[1].verdict == Verdict::identified);
+}
+
 TEST_CASE("the combination that points share is named by the form that keeps nearer to them", "[uq]") {
   Eigen::MatrixXd hyperbola(9, 2), line(9, 2);
   for (Eigen::Index i = 0; i < 9; ++i) {
