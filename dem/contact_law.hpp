@@ -19,11 +19,10 @@
 //             smallest delta. Counted as N - A with A = 3/2 pi w R*, its pull-off force; damped as Hertz.
 //             Elastic + damping force may pull, or is clamped at 0 (`floor`; then the restitution is another).
 // tangential  linear: spring s, projected into the contact plane (not rescaled: the loss is of second order in the turn
-//             of the normal per step). It is kept half a step after the force: s(n) = s(n-1/2) + u_t(n) dt/2 gives the
-//             force, s(n+1/2) = s(n) + u_t(n) dt/2 is remembered, so that the spring neither leads nor lags the slip
-//             (with s += u_t dt before the force it leads by dt/2, which damps it as a dashpot kt dt/2 would).
-//             Sticking: T = -kt s - ct u_t; where kt |s(n)| > cap the contact slides: T = -cap s/|s|, no dashpot, s(n)
-//             cut back to cap / kt. (The history kept is kt s.)
+//             of the normal per step), then s += u_t dt. Sticking: T = -kt s - ct u_t; where kt |s| > cap the contact
+//             slides: T = -cap s/|s|, no dashpot, s cut back to cap / kt. (The history kept is kt s.) The spring so
+//             leads the slip by half a step, which damps it as a dashpot of kt dt / 2 would: first order, and never a
+//             gain of energy.
 //             Mindlin: kt = 8 G* a, the elastic force is kept and grows by kt u_t dt; when the contact unloads (a
 //             shrinks) it is scaled by a / a_before, else unloading would create energy (C. Thornton, S. Cummins, P.
 //             Cleary, Powder Technol. 233:30 (2013)); ct = damping ratio sqrt(kt m*) alike.
@@ -201,17 +200,16 @@ struct JkrNormal {
 template <class T>
 struct SlipForce {
   Vector3<T> force;  ///< N, on the sphere
-  Vector3<T> kept;   ///< N, elastic part half a step later, of opposite sign
+  Vector3<T> kept;   ///< N, elastic part, of opposite sign
 };
 
 template <class T>
 SlipForce<T> slide(Vector3<T> before, Vector3<T> slip_velocity, T stiffness, T damping, T cap, double time_step) {
-  const Vector3<T> half = T(0.5 * time_step * stiffness) * slip_velocity;
-  const Vector3<T> elastic = before + half;
+  const Vector3<T> elastic = before + T(stiffness * time_step) * slip_velocity;
   const T size = square_root(dot(elastic, elastic));
   const auto sliding = size > cap;
-  const Vector3<T> now = select(sliding, T(cap / size), T(1.0)) * elastic;
-  return {-now - select(sliding, T(0.0), damping) * slip_velocity, now + half};
+  const Vector3<T> kept = select(sliding, T(cap / size), T(1.0)) * elastic;
+  return {-kept - select(sliding, T(0.0), damping) * slip_velocity, kept};
 }
 
 struct LinearTangential {
@@ -340,10 +338,10 @@ struct SpringResistance {
       const Vector3<T> turned = before.roll - dot(before.roll, n) * n;
       const SlipForce<T> f = slide<T>(turned, velocity, T(stiffness), T(damping), rolling * load, time_step);
       const T area = radius * radius, along = dot(spin, n);
-      const T half = 0.5 * time_step * stiffness * area * along, twist = before.twist + half;
-      const T cap = twisting * radius * load, now = smaller(larger(twist, T(-cap)), cap);
-      const T dashpot = select(now == twist, T(damping * area * along), T(0.0));
-      return {T(radius) * cross(n, f.force) - T(now + dashpot) * n, f.kept, now + half};
+      const T twist = before.twist + stiffness * area * along * time_step, cap = twisting * radius * load;
+      const T kept = smaller(larger(twist, T(-cap)), cap);
+      const T dashpot = select(kept == twist, T(damping * area * along), T(0.0));
+      return {T(radius) * cross(n, f.force) - T(kept + dashpot) * n, f.kept, kept};
     }
     template <class T>
     T energy(const Vector3<T>& roll, T twist) const {
