@@ -29,8 +29,8 @@
 // cap         mu max(0, N + b A), b = -1, 0, +1: net force (a), repulsion (b), Thornton's net + 2 A (c).
 // rolling     spring-dashpot: v_r = R* w x n (rolling slip), force f += kr v_r dt, cut at mu_r (cap's load), torque
 //             R* n x (f + gr v_r) (S. Luding, Granular Matter 10:235 (2008)); constant torque: mu_r R* load against the
-//             rolling part of w, and never more than stops it in a step (J. Ai et al., Powder Technol. 206:269 (2011),
-//             A).
+//             rolling part of w, and never more than stops it in four steps (J. Ai et al., Powder Technol. 206:269
+//             (2011), A): stopped in one, a sphere on a wall, or between many, would spin to and fro for ever.
 // twisting    with either: spring kr R*^2 and dashpot on w.n, or constant, cut at mu_t R* load.
 // attraction  Tanaka et al., PARTICLES 2011, eq. (1): A = A_c (h_min / h)^2, h = max(gap, h_min), zero beyond the
 //             cut-off, A_c = H L / (12 h_min^2) in contact; L is proportional to R* (4 R*: the diameter of equal
@@ -306,7 +306,7 @@ struct ConstantResistance {
       const T along = dot(spin, n), least = T(std::numeric_limits<double>::min());
       const Vector3<T> across = spin - along * n;
       const T rate = larger(norm(across), least), turn = larger(larger(along, T(-along)), least);
-      const T most = inertia / time_step;
+      const T most = 0.25 * inertia / time_step;
       const T roll = smaller(T(rolling * load / rate), most), twist = smaller(T(twisting * load / turn), most);
       return {-(roll * across) - T(twist * along) * n, {}, T(0.0)};
     }
