@@ -19,7 +19,7 @@ TEST_CASE("no grazing or oblique hit gains energy, under any law, elastic or not
       const double radius = 0.5 * c.material.diameter, step = scene::contact_duration(c, 0.1) / 30.0;
       const dem::Derived d = dem::derive(c);
       double most = -1.0;
-      for (int k = 0; k < 60; ++k) {
+      for (int k = 0; k < 24; ++k) {
         dem::Encounter e;
         e.sphere = scene::ball(c.material.density, radius);
         e.sphere.velocity = random_vector(random, 0.1);

@@ -88,14 +88,14 @@ TEST_CASE("Chung & Ooi 2: a sphere on a rigid wall, elastic, has the force, over
   scene::row("C&O 2 duration [us]", 731.6, 1e6 * r.duration, {0.005});
 }
 
-TEST_CASE("Chung & Ooi 3: a sphere rebounds from a wall with the restitution that was put in", "[table]") {
+TEST_CASE("Chung & Ooi 3: a sphere rebounds from a wall with the restitution that was put in", "[slow][table]") {
   for (const double e : {0.2, 0.4, 0.6, 0.8, 1.0}) {
     const dem::Case c = hertz(oxide, 2.5e-3, e, 0.0);
     const dem::Encounter shot_at = onto_wall(c, {0.0, 0.0, -3.9});
     const double duration = contact_duration(c, shot_at);
     double worst[2];
     for (const int fine : {0, 1}) {
-      const int steps = fine ? 300 : 30;
+      const int steps = fine ? 120 : 30;
       const scene::Phases p = scene::over_phases(scene::bed_for(c, shot_at), shot_at, duration / steps, e);
       scene::row(fmt::format("C&O 3 restitution {}, duration/{}, mean of 40 phases (worst {:.2f} %)", e, steps,
                              100.0 * p.worst),
@@ -105,8 +105,8 @@ TEST_CASE("Chung & Ooi 3: a sphere rebounds from a wall with the restitution tha
                              : 0.03});
       worst[fine] = p.worst;
     }
-    // First order in the step: a tenth of it has a tenth of the worst miss.
-    if (e < 1.0) CHECK(worst[1] < 0.15 * worst[0]);
+    // First order in the step: a quarter of it has a quarter of the worst miss.
+    if (e < 1.0) CHECK(worst[1] < 0.35 * worst[0]);
   }
 }
 
