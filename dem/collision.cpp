@@ -14,7 +14,7 @@
 namespace dem {
 namespace {
 
-constexpr double tolerance = 1e-10;
+constexpr double tolerance = 1e-9;
 constexpr double patience = 1e3;  // time scales after which a pair that has not parted is said to stick
 
 /// Units in which everything that happens is of order one.
@@ -318,14 +318,28 @@ FoundDamping damping_for(const WantedRestitution& wanted, const BedCoefficients&
     if (found.collision.restitution > wanted.restitution - 1e-6) found.damping_ratio = 0.0;
     return found;
   }
+  // False position (Illinois), restarted by halves where the pair sticks and the restitution says no more.
   double low = 0.0, high = 1.0;
-  while (with(high).restitution > wanted.restitution && high < 1e3) high *= 2.0;
-  for (int k = 0; k < 40; ++k) {
-    const double middle = 0.5 * (low + high);
-    (with(middle).restitution > wanted.restitution ? low : high) = middle;
+  double above = found.collision.restitution - wanted.restitution, below = with(high).restitution - wanted.restitution;
+  while (below > 0.0 && high < 1e3) below = with(high *= 2.0).restitution - wanted.restitution;
+  double zeta = 0.0;
+  for (int k = 0; k < 60; ++k) {
+    const bool stuck = below <= -wanted.restitution;
+    zeta = stuck ? 0.5 * (low + high) : (low * below - high * above) / (below - above);
+    const double miss = with(zeta).restitution - wanted.restitution;
+    if (std::abs(miss) < 1e-8) break;
+    if (miss > 0.0) {
+      low = zeta;
+      above = miss;
+      below *= stuck ? 1.0 : 0.5;
+    } else {
+      high = zeta;
+      below = miss;
+      above *= stuck ? 1.0 : 0.5;
+    }
   }
-  found.damping_ratio = low;
-  found.collision = with(low);
+  found.damping_ratio = zeta;
+  found.collision = with(zeta);
   return found;
 }
 

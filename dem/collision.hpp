@@ -61,8 +61,8 @@ struct FoundDamping {
   Collision collision;                  ///< with it; where none does, with zero damping
 };
 
-/// The damping ratio zeta of this pair (of `bed`, whose own is not read) that gives the wanted restitution head on, by
-/// bisection to rounding. The pair's radii and masses are those of the encounter; its velocities are not read.
+/// The damping ratio zeta of this pair (of `bed`, whose own is not read) that gives the wanted restitution head on,
+/// within 1e-8. The pair's radii and masses are those of the encounter; its velocities are not read.
 FoundDamping damping_for(const WantedRestitution& wanted, const BedCoefficients& bed, Encounter encounter);
 
 }  // namespace dem

@@ -20,21 +20,24 @@
 //             Elastic + damping force may pull, or is clamped at 0 (`floor`; then the restitution is another).
 // tangential  linear: spring s, projected into the contact plane (not rescaled: the loss is of second order in the turn
 //             of the normal per step), then s += u_t dt. Sticking: T = -kt s - ct u_t; where kt |s| > cap the contact
-//             slides: T = -cap s/|s|, no dashpot, s cut back to cap / kt. (The history kept is kt s.)
+//             slides: T = -cap s/|s|, no dashpot, s cut back to cap / kt. (The history kept is kt s.) The spring so
+//             leads the slip by half a step, which damps it as a dashpot of kt dt / 2 would: first order, and never a
+//             gain of energy.
 //             Mindlin: kt = 8 G* a, the elastic force is kept and grows by kt u_t dt; when the contact unloads (a
 //             shrinks) it is scaled by a / a_before, else unloading would create energy (C. Thornton, S. Cummins, P.
 //             Cleary, Powder Technol. 233:30 (2013)); ct = damping ratio sqrt(kt m*) alike.
 // cap         mu max(0, N + b A), b = -1, 0, +1: net force (a), repulsion (b), Thornton's net + 2 A (c).
 // rolling     spring-dashpot: v_r = R* w x n (rolling slip), force f += kr v_r dt, cut at mu_r (cap's load), torque
 //             R* n x (f + gr v_r) (S. Luding, Granular Matter 10:235 (2008)); constant torque: mu_r R* load against the
-//             rolling part of w, and never more than stops it in a step (J. Ai et al., Powder Technol. 206:269 (2011),
-//             A).
+//             rolling part of w, and never more than stops it in four steps (J. Ai et al., Powder Technol. 206:269
+//             (2011), A): stopped in one, a sphere on a wall, or between many, would spin to and fro for ever.
 // twisting    with either: spring kr R*^2 and dashpot on w.n, or constant, cut at mu_t R* load.
 // attraction  Tanaka et al., PARTICLES 2011, eq. (1): A = A_c (h_min / h)^2, h = max(gap, h_min), zero beyond the
 //             cut-off, A_c = H L / (12 h_min^2) in contact; L is proportional to R* (4 R*: the diameter of equal
 //             spheres, or 2 R*). DMT: A_c = 2 pi w R* in contact only (B. Derjaguin, V. Muller, Y. Toporov 1975).
 //
-// force on the sphere = (N - A) n + T.
+// force on the sphere = (N - A) n + T. What a contact dissipates in a step is the work done against T, the couples and
+// the normal dashpot, less what springs store more than before: whatever is cut, scaled or projected is in it.
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -83,6 +86,7 @@ struct LinearNormal {
                           floor);
     }
     double energy(double overlap, double) const { return overlap > 0.0 ? 0.5 * stiffness * overlap * overlap : 0.0; }
+    double released(double) const { return 0.0; }
   };
   template <class C, class Get>
   static At<C> at(Get get, C mass, C) {
@@ -113,6 +117,7 @@ struct HertzNormal {
     double energy(double overlap, double) const {
       return overlap > 0.0 ? 8.0 / 15.0 * modulus * std::sqrt(radius * overlap) * overlap * overlap : 0.0;
     }
+    double released(double) const { return 0.0; }
   };
   template <class C, class Get>
   static At<C> at(Get get, C mass, C radius) {
@@ -164,6 +169,8 @@ struct JkrNormal {
     double energy(double overlap, double radius_before) const {
       return radius_before > 0.0 ? energy_at(root(larger(overlap / scale, -0.5 * break_root))) : 0.0;
     }
+    /// J, of the broken contact.
+    double released(double radius_before) const { return radius_before > 0.0 ? energy_at(break_root) : 0.0; }
     C energy_at(double y) const {
       const auto integral = [](double r) {  // of (y^6 - y^3) d(y^4 - 2/3 y)
         return 2.0 / 5.0 * std::pow(r, 10) - 2.0 / 3.0 * std::pow(r, 7) + 1.0 / 6.0 * std::pow(r, 4);
@@ -194,24 +201,15 @@ template <class T>
 struct SlipForce {
   Vector3<T> force;  ///< N, on the sphere
   Vector3<T> kept;   ///< N, elastic part, of opposite sign
-  T dissipated{};    ///< J in this step
-};
-
-/// A spring's stiffness [N/m] and 1 / (2 stiffness): energy is force^2 times that.
-template <class T>
-struct Spring {
-  T stiffness, half_softness;
 };
 
 template <class T>
-SlipForce<T> slide(Vector3<T> before, Vector3<T> slip_velocity, Spring<T> spring, T damping, T cap, double time_step) {
-  const Vector3<T> elastic = before + T(spring.stiffness * time_step) * slip_velocity;
-  const T size2 = dot(elastic, elastic), size = square_root(size2);
+SlipForce<T> slide(Vector3<T> before, Vector3<T> slip_velocity, T stiffness, T damping, T cap, double time_step) {
+  const Vector3<T> elastic = before + T(stiffness * time_step) * slip_velocity;
+  const T size = square_root(dot(elastic, elastic));
   const auto sliding = size > cap;
-  const T cut = select(sliding, T(cap / size), T(1.0)), dashpot = select(sliding, T(0.0), damping);
-  const Vector3<T> kept = cut * elastic;
-  const T lost = select(sliding, T((size2 - cap * cap) * spring.half_softness), T(0.0));
-  return {-kept - dashpot * slip_velocity, kept, lost + dashpot * time_step * dot(slip_velocity, slip_velocity)};
+  const Vector3<T> kept = select(sliding, T(cap / size), T(1.0)) * elastic;
+  return {-kept - select(sliding, T(0.0), damping) * slip_velocity, kept};
 }
 
 struct LinearTangential {
@@ -225,7 +223,7 @@ struct LinearTangential {
     template <class T>
     SlipForce<T> operator()(Vector3<T> before, Vector3<T> velocity, const NormalForce<T>&, T /*radius_before*/, T load,
                             double time_step) const {
-      return slide<T>(before, velocity, {T(stiffness), T(half_softness)}, T(damping), friction * load, time_step);
+      return slide<T>(before, velocity, T(stiffness), T(damping), friction * load, time_step);
     }
     template <class T>
     T energy(const Vector3<T>& kept, T /*radius*/) const {
@@ -252,13 +250,9 @@ struct MindlinTangential {
     SlipForce<T> operator()(Vector3<T> before, Vector3<T> velocity, const NormalForce<T>& normal, T radius_before,
                             T load, double time_step) const {
       const T a = larger(normal.radius, T(std::numeric_limits<double>::min()));
-      const T stiffness = 8.0 * modulus * a;
       const T scale = select(normal.radius < radius_before, T(normal.radius / radius_before), T(1.0));
-      SlipForce<T> f = slide<T>(scale * before, velocity, {stiffness, T(0.5 / stiffness)}, T(damping * square_root(a)),
-                                friction * load, time_step);
-      // Energy given up by the change of stiffness: E = F^2 / (2 kt).
-      f.dissipated = f.dissipated + energy(before, radius_before) - energy(scale * before, a);
-      return f;
+      return slide<T>(scale * before, velocity, T(8.0 * modulus * a), T(damping * square_root(a)), friction * load,
+                      time_step);
     }
     template <class T>
     T energy(const Vector3<T>& kept, T radius) const {
@@ -278,7 +272,6 @@ struct Couple {
   Vector3<T> torque;  ///< N m, on the sphere; the partner has the opposite
   Vector3<T> roll;    ///< N, kept
   T twist{};          ///< N m, kept
-  T dissipated{};     ///< J in this step
 };
 
 struct NoResistance {
@@ -289,7 +282,10 @@ struct NoResistance {
     Couple<T> operator()(const Vector3<T>&, const Vector3<T>&, const History<T>&, T, double) const {
       return {};
     }
-    double energy(Vec3, double) const { return 0.0; }
+    template <class T>
+    T energy(const Vector3<T>&, T) const {
+      return T(0.0);
+    }
   };
   template <class C, class Get>
   static At<C> at(Get, C, C) {
@@ -310,12 +306,14 @@ struct ConstantResistance {
       const T along = dot(spin, n), least = T(std::numeric_limits<double>::min());
       const Vector3<T> across = spin - along * n;
       const T rate = larger(norm(across), least), turn = larger(larger(along, T(-along)), least);
-      const T most = inertia / time_step;
+      const T most = 0.25 * inertia / time_step;
       const T roll = smaller(T(rolling * load / rate), most), twist = smaller(T(twisting * load / turn), most);
-      return {
-          -(roll * across) - T(twist * along) * n, {}, T(0.0), time_step * (roll * rate * rate + twist * turn * turn)};
+      return {-(roll * across) - T(twist * along) * n, {}, T(0.0)};
     }
-    double energy(Vec3, double) const { return 0.0; }
+    template <class T>
+    T energy(const Vector3<T>&, T) const {
+      return T(0.0);
+    }
   };
   template <class C, class Get>
   static At<C> at(Get get, C mass, C radius) {
@@ -338,16 +336,15 @@ struct SpringResistance {
                          double time_step) const {
       const Vector3<T> velocity = T(radius) * cross(spin, n);
       const Vector3<T> turned = before.roll - dot(before.roll, n) * n;
-      const SlipForce<T> f =
-          slide<T>(turned, velocity, {T(stiffness), T(0.5 / stiffness)}, T(damping), rolling * load, time_step);
+      const SlipForce<T> f = slide<T>(turned, velocity, T(stiffness), T(damping), rolling * load, time_step);
       const T area = radius * radius, along = dot(spin, n);
       const T twist = before.twist + stiffness * area * along * time_step, cap = twisting * radius * load;
       const T kept = smaller(larger(twist, T(-cap)), cap);
       const T dashpot = select(kept == twist, T(damping * area * along), T(0.0));
-      const T lost = (twist * twist - kept * kept) / (2.0 * stiffness * area) + dashpot * along * time_step;
-      return {T(radius) * cross(n, f.force) - T(kept + dashpot) * n, f.kept, kept, f.dissipated + lost};
+      return {T(radius) * cross(n, f.force) - T(kept + dashpot) * n, f.kept, kept};
     }
-    double energy(Vec3 roll, double twist) const {
+    template <class T>
+    T energy(const Vector3<T>& roll, T twist) const {
       return (dot(roll, roll) + twist * twist / (radius * radius)) / (2.0 * stiffness);
     }
   };
@@ -459,20 +456,28 @@ struct ContactLaw {
       const Vector3<T> turned = before.slip - dot(before.slip, m.normal) * m.normal;
       const SlipForce<T> slip = tangential(turned, slip_velocity, push, before.radius, load, time_step);
       const Couple<T> couple = resistance(m.normal, m.spin, before, load, time_step);
-      return {push.total - pull,
-              push.touch * slip.force,
-              push.touch * couple.torque,
-              {push.touch * slip.kept, push.radius, push.touch * couple.roll, T(push.touch * couple.twist)},
-              push.touch,
-              (push.elastic - push.total) * normal_velocity * time_step + push.released +
-                  select(push.touch > 0.0, T(slip.dissipated + couple.dissipated),
-                         tangential.energy(before.slip, before.radius))};
+      Reaction<T> r{push.total - pull,
+                    push.touch * slip.force,
+                    push.touch * couple.torque,
+                    {push.touch * slip.kept, push.radius, push.touch * couple.roll, T(push.touch * couple.twist)},
+                    push.touch,
+                    T(0.0)};
+      const T taken =
+          (push.elastic - push.total) * normal_velocity - dot(r.tangential, slip_velocity) - dot(r.couple, m.spin);
+      r.dissipated = taken * time_step + push.released + stored(before) - stored(r.history);
+      return r;
     }
 
+    /// J, of the springs beside the normal one.
+    template <class T>
+    T stored(const History<T>& h) const {
+      return tangential.energy(h.slip, h.radius) + resistance.energy(h.roll, h.twist);
+    }
+    /// J, lost with a contact that is no more.
+    double given_up(const History<double>& h) const { return normal.released(h.radius) + stored(h); }
     /// J, elastic, and of the attraction (which is negative).
     double elastic_energy(double overlap, const History<double>& h) const {
-      return normal.energy(overlap, h.radius) + tangential.energy(h.slip, h.radius) +
-             resistance.energy(h.roll, h.twist);
+      return normal.energy(overlap, h.radius) + stored(h);
     }
     double attraction_energy(double overlap) const { return attraction.energy(-overlap); }
   };

@@ -145,6 +145,17 @@ class LawPass final : public ForcePass {
     VectorRow slip, roll;  ///< its history, in the body's frame
   };
 
+  /// J, in the memories that no contact takes over.
+  double given_up(const State& s, const WallSlot& slot, std::uint32_t lost) const {
+    const auto law =
+        wall(s.motion[slot.particle], slot.body).at(s.motion[slot.particle].mass, s.position[slot.particle].radius);
+    double sum = 0.0;
+    for (std::uint32_t k = 0; k < slot.touching; ++k) {
+      if ((lost >> k & 1u) != 0) sum += law.given_up(history_of(slot.contact[k].slip, slot.contact[k].roll));
+    }
+    return sum;
+  }
+
   /// Contacts of the chunk's spheres with one body: found one by one, evaluated in lanes.
   void meet_body(State& s, const Surroundings& around, std::uint32_t begin, std::uint32_t end, StepSums& sums) const {
     constexpr std::size_t batch = 64;
@@ -155,6 +166,7 @@ class LawPass final : public ForcePass {
       WallSlot& slot = s.wall[w];
       find(s, around, slot, touches);
       const std::size_t first = count;
+      std::uint32_t lost = (1u << slot.touching) - 1u;
       for (int t = 0; t < touches.count; ++t) {
         const Touch& touch = touches.touch[t];
         WallHit& hit = hits[count++];
@@ -162,8 +174,10 @@ class LawPass final : public ForcePass {
         if (const WallMemory* m = remembered(slot, touch.normal)) {
           hit.slip = m->slip;
           hit.roll = m->roll;
+          lost &= ~(1u << (m - slot.contact));
         }
       }
+      if (lost != 0) sums.dissipated += given_up(s, slot, lost);
       for (std::size_t k = first; k < count; ++k) slot.contact[k - first].normal = hits[k].normal.v;
       slot.touching = static_cast<std::uint32_t>(touches.count);
       if (count >= batch) {

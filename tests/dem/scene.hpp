@@ -1,5 +1,7 @@
 #pragma once
 // Small scenes for the tests: a few spheres, a plane of triangles, and a contact law from a Case's coefficients.
+#include <xxhash.h>
+
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -65,6 +67,23 @@ inline std::size_t row_of(const dem::Simulation& s, std::uint32_t id) {
 inline dem::MotionRow motion_of(const dem::Simulation& s, std::uint32_t id) { return s.motion(row_of(s, id)); }
 inline dem::Vec3 position_of(const dem::Simulation& s, std::uint32_t id) {
   return s.state().position[row_of(s, id)].at;
+}
+
+/// Of everything that moves: who is where, how fast, and pushed how.
+inline std::uint64_t hash(const dem::State& s) {
+  std::uint64_t h = XXH3_64bits(s.id.data(), s.id.size() * sizeof s.id[0]);
+  const auto add = [&](dem::Vec3 v) {
+    const double x[3] = {v.x, v.y, v.z};
+    h = XXH3_64bits_withSeed(x, sizeof x, h);
+  };
+  for (std::size_t i = 0; i < s.id.size(); ++i) {
+    add(s.position[i].at);
+    add(s.half[i].velocity);
+    add(s.half[i].spin);
+    add(s.load[i].force);
+    add(s.load[i].torque);
+  }
+  return h;
 }
 
 }  // namespace scene

@@ -1,8 +1,6 @@
 // The auger slice as a whole: balances, bits, and what a run hands out.
 #include <catch2/catch.hpp>
 
-#include <xxhash.h>
-
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "dem/run.hpp"
@@ -25,22 +23,6 @@ dem::Case small_case() {
   c.run.shortest = 0.03;
   c.run.longest = 0.05;
   return c;
-}
-
-std::uint64_t hash(const dem::State& s) {
-  std::uint64_t h = XXH3_64bits(s.id.data(), s.id.size() * sizeof s.id[0]);
-  const auto add = [&](dem::Vec3 v) {
-    const double x[3] = {v.x, v.y, v.z};
-    h = XXH3_64bits_withSeed(x, sizeof x, h);
-  };
-  for (std::size_t i = 0; i < s.id.size(); ++i) {
-    add(s.position[i].at);
-    add(s.half[i].velocity);
-    add(s.half[i].spin);
-    add(s.load[i].force);
-    add(s.load[i].torque);
-  }
-  return h;
 }
 
 }  // namespace
@@ -106,7 +88,7 @@ TEST_CASE("the slice has the same bits with 1, 2 and 4 threads, in one chunk and
       dem::Simulation s(scene::rig(c, 1, 0, threads));
       for (int k = 0; k < 800; ++k) s.step();
       CHECK(s.state().rebuilds > 3);
-      hashes.push_back(hash(s.state()));
+      hashes.push_back(scene::hash(s.state()));
     }
     CHECK(hashes[0] == hashes[1]);
     CHECK(hashes[0] == hashes[2]);
@@ -130,7 +112,7 @@ TEST_CASE("a run stopped and gone on from its checkpoint ends with the same bits
   second.resume = &middle;
   second.threads = 2;
   const dem::RunResult resumed = dem::run(c, 1, second);
-  CHECK(hash(resumed.checkpoint.state) == hash(whole.checkpoint.state));
+  CHECK(scene::hash(resumed.checkpoint.state) == scene::hash(whole.checkpoint.state));
   CHECK(resumed.series.torque == whole.series.torque);
   CHECK(resumed.summary.mean[0].mean == whole.summary.mean[0].mean);
 }
