@@ -9,7 +9,8 @@ namespace uq {
 namespace {
 
 constexpr int degrees_of_freedom = 8;
-constexpr double inflation = 1.1;  // s^2
+constexpr double inflation = 1.1;                               // s^2
+constexpr double defensive_share = 0.1, defensive_scale = 2.0;  // of the weight; times the sd of all points
 
 /// A Gaussian mixture while it is being fitted.
 struct Gaussians {
@@ -139,7 +140,7 @@ Gaussians maximise(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights
 
 /// Responsibilities under a mixture that was fitted before (its tails as they are).
 Eigen::ArrayXXd responsibilities(const Mixture& before, const Eigen::MatrixXd& points, const Eigen::VectorXd& weights) {
-  Eigen::ArrayXXd share = before.log_terms(points);
+  Eigen::ArrayXXd share = before.log_terms(points).leftCols(before.fitted);
   const Eigen::ArrayXd largest = largest_of_rows(share);
   Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(points.rows());
   for (Eigen::Index k = 0; k < share.cols(); ++k) {
@@ -204,7 +205,7 @@ Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weight
   };
   Gaussians best;
   double best_criterion = std::numeric_limits<double>::infinity();
-  const int known = before ? static_cast<int>(before->components.size()) : 0;
+  const int known = before ? before->fitted : 0;
   if (known > 0) {
     best = maximise(points, normalised, pooled, responsibilities(*before, points, normalised), options);
     best_criterion = criterion_of(best, known);
@@ -233,6 +234,13 @@ Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weight
   }
   double total = 0.0;
   for (const auto& component : mixture.components) total += component.weight;
+  mixture.fitted = static_cast<int>(mixture.components.size());
+  if (mixture.fitted > 1) {
+    mixture.components.push_back({.weight = defensive_share / (1.0 - defensive_share) * total,
+                                  .mean = mean,
+                                  .factor = pooled_factor * defensive_scale});
+    total /= 1.0 - defensive_share;
+  }
   const double constant = std::lgamma(0.5 * (degrees_of_freedom + dimension)) - std::lgamma(0.5 * degrees_of_freedom) -
                           0.5 * dimension * std::log(degrees_of_freedom * std::numbers::pi);
   for (auto& component : mixture.components) {

@@ -5,7 +5,9 @@
 //   q(x) = sum_k w_k t_nu(x; m_k, s^2 C_k),   nu = 8,  s^2 = 1.1
 // m_k, C_k, w_k are a Gaussian mixture's by expectation maximisation (Dempster, Laird, Rubin 1977), its number of
 // components by the Bayesian information criterion. The t's heavier tails and the inflation s keep the ratio p / q
-// bounded where a posterior has tails that the points did not reach (Hesterberg 1995).
+// bounded where a posterior has tails that the points did not reach; so does, beside several components, a wide one of
+// a tenth of the weight over them all (T. Hesterberg, "Weighted average importance sampling and defensive mixture
+// distributions", Technometrics 37 (1995) 185).
 #include <Eigen/Dense>
 #include <vector>
 
@@ -22,6 +24,7 @@ struct MixtureComponent {
 
 struct Mixture {
   std::vector<MixtureComponent> components;
+  int fitted = 0;  ///< of them; one more, if there is, is the wide one
   double log_density(const Eigen::VectorXd& x) const;
   Eigen::VectorXd log_densities(const Eigen::MatrixXd& points) const;  ///< of each row
   Eigen::ArrayXXd log_terms(const Eigen::MatrixXd& points) const;      ///< points x components

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 namespace uq {
 namespace {
@@ -119,6 +120,30 @@ Combination find_combination(const std::string& first, const std::string& second
   return best;
 }
 
+namespace {
+
+/// Square root of the share of y's variance that lies between bins of x of equal numbers of draws: |correlation| for a
+/// straight relation, and as large for a bent one (K. Pearson's correlation ratio, 1905).
+double correlation_ratio(const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
+  constexpr Eigen::Index bins = 20;
+  const Eigen::Index n = x.size();
+  if (n < 10 * bins) return 0.0;
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return x[a] < x[b]; });
+  const double mean = y.mean();
+  double between = 0.0;
+  for (Eigen::Index bin = 0; bin < bins; ++bin) {
+    const Eigen::Index begin = bin * n / bins, end = (bin + 1) * n / bins;
+    double sum = 0.0;
+    for (Eigen::Index i = begin; i < end; ++i) sum += y[order[static_cast<std::size_t>(i)]] - mean;
+    between += sum * sum / static_cast<double>(end - begin);
+  }
+  return std::sqrt(between / (y.array() - mean).square().sum());
+}
+
+}  // namespace
+
 std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::MatrixXd& draws,
                                           const std::vector<Profile>& profiles, const std::vector<bool>& identified,
                                           const VerdictThresholds& thresholds) {
@@ -138,7 +163,8 @@ std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::M
         const double of_logs = correlation(first.array().log(), second.array().log());
         if (std::abs(of_logs) > std::abs(strongest)) strongest = of_logs;
       }
-      if (!(std::abs(strongest) >= thresholds.traded_correlation)) continue;
+      const double bent = std::max(correlation_ratio(first, second), correlation_ratio(second, first));
+      if (!(std::max(std::abs(strongest), bent) >= thresholds.traded_correlation)) continue;
 
       const std::vector<const Profile*> both = {&profiles[static_cast<std::size_t>(a)],
                                                 &profiles[static_cast<std::size_t>(b)]};

@@ -1,9 +1,9 @@
 #pragma once
 // Which parameters are traded against each other, and as what combination the data know them.
 //
-// A pair is traded when its posterior correlation, plain or of logarithms, is at least a threshold and not both are
-// identified. Along the ridge (points of the profile paths within the deviance drop) two forms are fitted by total
-// least squares:
+// A pair is traded when its posterior correlation, plain or of logarithms, or its correlation ratio, which sees a bent
+// ridge too, is at least a threshold and not both are identified. Along the ridge (points of the profile paths within
+// the deviance drop) two forms are fitted by total least squares:
 //   power law   a * b^q = const:  log a + q log b constant
 //   linear      a + c b = const
 // and the one that keeps nearer to the ridge, in the scaled coordinates, is named; a ridge that bends away from both is

@@ -56,7 +56,7 @@ std::vector<std::pair<std::string, std::string>> describe(const VerdictThreshold
       {"posterior predictive p for a fit", fmt::format("at least {:g}", thresholds.predictive_p)},
       {"chi-squared tail of the best fit for a fit", fmt::format("at least {:g}", thresholds.best_fit_p)},
       {"correlation of a traded pair",
-       fmt::format("at least {:g} (plain or of logarithms)", thresholds.traded_correlation)},
+       fmt::format("at least {:g} (plain, of logarithms, or as a correlation ratio)", thresholds.traded_correlation)},
       {"structural",
        fmt::format("at least {:g} of the interval is left with the measurement error {:.3g} times smaller",
                    thresholds.noise_free_share, 1.0 / std::sqrt(thresholds.noise_free_factor))},

@@ -26,7 +26,7 @@ struct VerdictThresholds {
   double predictive_p = 0.01;           ///< a case below does not fit
   double best_fit_p = 0.001;  ///< chi-squared tail of the best fit; a case below does not fit. The predictive p is
                               ///< conservative with few data, since the same data chose the parameters
-  double traded_correlation = 0.8;         ///< of a pair, plain or in logarithms, at least
+  double traded_correlation = 0.8;         ///< of a pair, plain, in logarithms or as a ratio, at least
   double noise_free_factor = 1.0 / 900.0;  ///< of the measurement variance: 30 times better
   double noise_free_share = 0.5;           ///< of the interval that is left by such a measurement, at least: structural
   double surrogate_share =
