@@ -15,9 +15,7 @@ namespace cli {
 namespace {
 
 /// The value that is typed with five digits in the unit, so that table, terminal and simulation mean the same point.
-double rounded(double si, const data::Unit& unit) {
-  return unit.to_si(fmt::format("{:.5g}", unit.from_si(si)));
-}
+double rounded(double si, const data::Unit& unit) { return unit.to_si(fmt::format("{:.5g}", unit.from_si(si))); }
 
 double scaled(const data::Parameter& p, double u) {
   return p.scale == data::Scale::log ? p.low * std::pow(p.high / p.low, u) : p.low + (p.high - p.low) * u;

@@ -24,13 +24,11 @@ struct Options {
 
 nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
   const dem::Derived derived = dem::derive(case_at(workspace, point));
-  nlohmann::json json{{"material", point.material},
-                      {"seed", workspace.study.seed},
-                      {"isa", data::built_isa()},
-                      {"settings", settings_hash(workspace, point.material)},
-                      {"bond_number", derived.bond},
-                      {"time_step", {{"s", derived.time_step}, {"from", derived.duration_of}}},
-                      {"warnings", result.warnings}};
+  nlohmann::json json{
+      {"material", point.material},  {"seed", workspace.study.seed},
+      {"isa", data::built_isa()},    {"settings", settings_hash(workspace, point.material)},
+      {"bond_number", derived.bond}, {"time_step", {{"s", derived.time_step}, {"from", derived.duration_of}}},
+      {"warnings", result.warnings}};
   for (const dem::ContactKind& kind : derived.kinds)
     json["contacts"].push_back({{"between", {kind.first, kind.second}},
                                 {"pull_off_N", kind.pull_off},

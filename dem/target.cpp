@@ -249,8 +249,7 @@ Binding of_component(std::string_view component, const ComponentKey& key) {
   };
   const auto unused = [=, which = std::string(key.key)](const Case& c) -> std::string {
     const auto it = find(c.components);
-    if (it == c.components.end())
-      return fmt::format("is of no component of this bed ({})", listed(grain_names(c)));
+    if (it == c.components.end()) return fmt::format("is of no component of this bed ({})", listed(grain_names(c)));
     if (which == "diameter" && !it->material.sizes.empty()) return "is not read with a list of sizes";
     return which == "young_modulus" || which == "poisson_ratio" ? unread(c.contact, which) : "";
   };
