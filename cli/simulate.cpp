@@ -43,7 +43,7 @@ nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem
   for (std::size_t i = 0; i < row.outputs.size(); ++i) {
     const data::Output& output = workspace.study.outputs[i];
     json["outputs"][output.name] = {{"unit", output.unit.symbol},
-                                    {"mean", output.unit.from_si(row.outputs[i])},
+                                    {"mean", std::stod(output.unit.digits(row.outputs[i]))},  // as a table has it
                                     {"standard_error", row.standard_errors[i] / output.unit.factor}};
   }
   return json;
