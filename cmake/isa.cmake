@@ -23,4 +23,7 @@ if(NOT DEMCAL_ISA_USED MATCHES "^x86-64(-v3|-v4)?$")
   message(FATAL_ERROR "DEMCAL_ISA is '${DEMCAL_ISA}': choose auto, x86-64, x86-64-v3 or x86-64-v4")
 endif()
 set(DEMCAL_ISA_FLAGS -march=${DEMCAL_ISA_USED})
+if(DEMCAL_ISA_USED STREQUAL x86-64-v4)
+  list(APPEND DEMCAL_ISA_FLAGS -Wno-maybe-uninitialized)  # GCC 12's own AVX-512 headers
+endif()
 message(STATUS "instruction set: ${DEMCAL_ISA_USED}")
