@@ -83,6 +83,15 @@ Idle find_idle(const Options& options, const data::TorqueLog& log, const std::ve
   return idle;
 }
 
+/// Of one row, without the idle torque. A value that is taken off every row has an error common to all, which is stated
+/// beside the rows; that of a log at each speed is the row's own.
+data::MeanTorque observed_torque(const data::Plateau& plateau, const Idle& idle, std::size_t i) {
+  data::MeanTorque found{plateau.torque.mean, plateau.torque.standard_error};
+  if (idle.kind != Idle::Kind::none) found.value -= idle.at[i].value;
+  if (idle.kind == Idle::Kind::log) found.error = std::hypot(found.error, idle.at[i].error);
+  return found;
+}
+
 std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus) {
   std::vector<std::string> warnings;
   if (log.missing > 0) warnings.push_back(fmt::format("{} samples without all three values are left out", log.missing));
@@ -125,12 +134,11 @@ std::string to_csv(const Options& options, const data::TorqueLog& log, const std
                       data::csv_field(options.output), options.output, options.control);
   for (std::size_t i = 0; i < plateaus.size(); ++i) {
     const data::Plateau& plateau = plateaus[i];
-    const data::MeanTorque off = idle.kind == Idle::Kind::none ? data::MeanTorque{} : idle.at[i];
-    const double error = idle.kind == Idle::Kind::log ? std::hypot(plateau.torque.standard_error, off.error)
-                                                      : plateau.torque.standard_error;
+    const data::MeanTorque found = observed_torque(plateau, idle, i);
+    const double off = idle.kind == Idle::Kind::none ? 0.0 : idle.at[i].value;
     text += fmt::format("{:.6g},{:.6g},{:.3g},{:.6g},{:.6g},{:.6g},{:.0f},{:.3g}\n",
-                        log.speed_unit.from_si(plateau.speed), (plateau.torque.mean - off.value) / unit.factor,
-                        error / unit.factor, off.value / unit.factor, log.time[plateau.used_from],
+                        log.speed_unit.from_si(plateau.speed), found.value / unit.factor, found.error / unit.factor,
+                        off / unit.factor, log.time[plateau.used_from],
                         log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
                         plateau.torque.effective_samples, plateau.speed_sd / log.speed_unit.factor);
   }
@@ -168,15 +176,17 @@ data::ExitStatus observe(Options options) {
   nlohmann::json json{{"observations", out.string()}, {"rows", nlohmann::json::array()}};
   for (std::size_t i = 0; i < plateaus.size(); ++i) {
     const data::Plateau& plateau = plateaus[i];
-    const double mean = (plateau.torque.mean - (off.empty() ? 0.0 : off[i])) / unit.factor;
-    const double error = plateau.torque.standard_error / unit.factor;
+    const data::MeanTorque found = observed_torque(plateau, idle, i);
+    const double mean = found.value / unit.factor, error = found.error / unit.factor;
     say(options.common,
         fmt::format("{:>8.4g} {}: {:.4g} +- {:.2g} {} ({:.4g} s, {:.0f} independent samples)",
                     log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, mean, error, unit.symbol,
                     log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
                     plateau.torque.effective_samples));
-    json["rows"].push_back(
-        {{options.control, log.speed_unit.from_si(plateau.speed)}, {options.output, mean}, {"unit", unit.symbol}});
+    json["rows"].push_back({{options.control, log.speed_unit.from_si(plateau.speed)},
+                            {options.output, mean},
+                            {options.output + "_se", error},
+                            {"unit", unit.symbol}});
   }
   const std::vector<std::string> warnings = warnings_of(log, plateaus);
   for (const std::string& warning : warnings) say(options.common, "warning: " + warning);
