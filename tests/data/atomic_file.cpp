@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
-#include "tests/data/temporary.hpp"
+#include "tests/temporary.hpp"
 
 namespace {
 std::size_t files_in(const std::string& folder) {

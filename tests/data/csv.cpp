@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/data/temporary.hpp"
+#include "tests/temporary.hpp"
 
 namespace {
 std::string failure(const std::string& text) {

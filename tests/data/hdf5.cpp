@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "data/atomic_file.hpp"
-#include "tests/data/temporary.hpp"
+#include "tests/temporary.hpp"
 
 TEST_CASE("numbers, texts and attributes come back from HDF5 as they went in") {
   const TemporaryFolder folder;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "data/hash.hpp"
-#include "tests/data/temporary.hpp"
+#include "tests/temporary.hpp"
 
 TEST_CASE("version, instruction set and time say what made a result") {
   CHECK_FALSE(data::program_version().empty());

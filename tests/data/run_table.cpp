@@ -5,7 +5,7 @@
 
 #include "data/hdf5.hpp"
 #include "data/random.hpp"
-#include "tests/data/temporary.hpp"
+#include "tests/temporary.hpp"
 
 namespace {
 

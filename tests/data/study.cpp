@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "tests/data/temporary.hpp"
+#include "tests/temporary.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "data/edit_distance.hpp"
-#include "tests/data/temporary.hpp"
+#include "tests/temporary.hpp"
 
 namespace {
 

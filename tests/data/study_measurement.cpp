@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "data/study.hpp"
-#include "tests/data/temporary.hpp"
+#include "tests/temporary.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "data/random.hpp"
-#include "tests/data/temporary.hpp"
+#include "tests/temporary.hpp"
 
 namespace {
 

@@ -2,14 +2,10 @@
 // refused by name where it cannot be.
 #include <catch2/catch.hpp>
 
-#include <filesystem>
-#include <fstream>
-
 #include "data/error.hpp"
 #include "dem/read_case.hpp"
 #include "dem/target.hpp"
-
-namespace fs = std::filesystem;
+#include "tests/temporary.hpp"
 
 namespace {
 
@@ -20,16 +16,14 @@ struct Reading {
 
 /// As the program reads it: the case, then every problem at once.
 Reading reading(const std::string& text, const std::string& material = "mix") {
-  const fs::path path = fs::temp_directory_path() / "demcal-test-contact-keys.toml";
-  std::ofstream(path) << text;
-  const data::StudyFile file = data::StudyFile::open(path.string());
+  const TemporaryFolder folder;
+  const data::StudyFile file = data::StudyFile::open(folder.write("study.toml", text));
   Reading r{dem::read_case(file, material), ""};
   try {
     file.finish();
   } catch (const data::InputError& error) {
     r.said = error.what();
   }
-  fs::remove(path);
   return r;
 }
 

@@ -2,12 +2,12 @@
 #include <catch2/catch.hpp>
 
 #include <cstring>
-#include <filesystem>
 
 #include "data/error.hpp"
 #include "dem/mesh_check.hpp"
 #include "dem/slice.hpp"
 #include "dem/stl.hpp"
+#include "tests/temporary.hpp"
 
 namespace {
 
@@ -77,10 +77,10 @@ std::string refusal(const std::string& bytes) {
 
 TEST_CASE("a mesh written as STL is read back with the same triangles, to single precision") {
   const dem::TriangleMesh mesh = dem::auger_mesh({});
-  const std::string path = (std::filesystem::temp_directory_path() / "demcal-test-mesh.stl").string();
+  const TemporaryFolder folder;
+  const std::string path = folder.path("mesh.stl");
   dem::write_stl(mesh, path);
   const dem::CheckedMesh back = dem::check_mesh(dem::read_stl(path, 1.0), "auger");
-  std::filesystem::remove(path);
   CHECK(back.mesh.vertices.size() == mesh.vertices.size());
   REQUIRE(back.mesh.triangles.size() == mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

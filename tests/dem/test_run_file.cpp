@@ -1,31 +1,17 @@
 // run.h5 and the study's DEM sections.
 #include <catch2/catch.hpp>
 
-#include <filesystem>
-#include <fstream>
-
 #include "data/error.hpp"
 #include "dem/read_case.hpp"
 #include "dem/run_file.hpp"
 #include "dem/target.hpp"
-
-namespace fs = std::filesystem;
+#include "tests/temporary.hpp"
 
 namespace {
 
-struct TemporaryFolder {
-  fs::path path;
-  TemporaryFolder()
-      : path(fs::temp_directory_path() /
-             ("demcal-test-dem-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)))) {
-    fs::create_directories(path);
-  }
-  ~TemporaryFolder() { fs::remove_all(path); }
-};
-
 data::StudyFile study(const TemporaryFolder& folder, const std::string& text) {
-  std::ofstream(folder.path / "study.toml") << text;
-  return data::StudyFile::open(folder.path.string());
+  folder.write("study.toml", text);
+  return data::StudyFile::open(folder.path());
 }
 
 const std::string text = R"(
@@ -122,7 +108,7 @@ TEST_CASE("a run file gives back the run, and its checkpoint goes on with the sa
   };
   const dem::RunResult part = dem::run(c, 9, options);
   REQUIRE(part.status == dem::RunStatus::interrupted);
-  const std::string path = (folder.path / "run.h5").string();
+  const std::string path = folder.path("run.h5");
   dem::write_run(path, c, part);
   const dem::SavedRun saved = dem::read_run(path);
   CHECK(saved.settings == dem::settings_text(c));
@@ -139,7 +125,7 @@ TEST_CASE("a run file gives back the run, and its checkpoint goes on with the sa
 
 TEST_CASE("a run file that is cut short, or is something else, is refused by name") {
   const TemporaryFolder folder;
-  const std::string path = (folder.path / "run.h5").string();
+  const std::string path = folder.path("run.h5");
   std::ofstream(path) << "not HDF5";
   try {
     dem::read_run(path);
@@ -148,5 +134,5 @@ TEST_CASE("a run file that is cut short, or is something else, is refused by nam
     CHECK(error.status == data::ExitStatus::bad_data);
     CHECK_THAT(std::string(error.what()), Catch::Contains("run.h5"));
   }
-  CHECK_THROWS_AS(dem::read_run((folder.path / "none.h5").string()), data::InputError);
+  CHECK_THROWS_AS(dem::read_run(folder.path("none.h5")), data::InputError);
 }

@@ -1,9 +1,6 @@
 // Rigs of the user's own meshes: what a study says reaches the run, packings keep clear, mistakes are named.
 #include <catch2/catch.hpp>
 
-#include <filesystem>
-#include <fstream>
-
 #include "data/error.hpp"
 #include "dem/read_case.hpp"
 #include "dem/run.hpp"
@@ -12,25 +9,19 @@
 #include "dem/stl_rig.hpp"
 #include "dem/target.hpp"
 #include "scene.hpp"
-
-namespace fs = std::filesystem;
+#include "tests/temporary.hpp"
 
 namespace {
 
 /// A folder with the default slice's mixer and trough as STL.
-struct SliceFolder {
-  fs::path path;
-  SliceFolder()
-      : path(fs::temp_directory_path() /
-             ("demcal-test-rig-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)))) {
-    fs::create_directories(path);
-    dem::write_stl(dem::auger_mesh({}), (path / "mixer.stl").string());
-    dem::write_stl(dem::trough_mesh({}, 0.06), (path / "trough.stl").string());
+struct SliceFolder : TemporaryFolder {
+  SliceFolder() {
+    dem::write_stl(dem::auger_mesh({}), path("mixer.stl"));
+    dem::write_stl(dem::trough_mesh({}, 0.06), path("trough.stl"));
   }
-  ~SliceFolder() { fs::remove_all(path); }
   data::StudyFile study(const std::string& text) const {
-    std::ofstream(path / "study.toml") << text;
-    return data::StudyFile::open(path.string());
+    write("study.toml", text);
+    return data::StudyFile::open(path());
   }
 };
 
@@ -134,7 +125,7 @@ TEST_CASE(
 
 TEST_CASE("spheres start where a CSV says, and one outside the box or inside a mesh is named") {
   const SliceFolder folder;
-  const auto write = [&](const char* rows) { std::ofstream(folder.path / "at.csv") << "x,y,z\n" << rows; };
+  const auto write = [&](const char* rows) { folder.write("at.csv", std::string("x,y,z\n") + rows); };
   const std::string text = replaced(rig, "fill = 400", "packing = \"at.csv\"\npacking_unit = \"mm\"") + rest;
   const auto build = [&] { return dem::build_rig(dem::read_case(folder.study(text), "steel"), 1); };
   write("6,5.5,2\n3,-5.5,3\n");
@@ -142,7 +133,7 @@ TEST_CASE("spheres start where a CSV says, and one outside the box or inside a m
   REQUIRE(built.position.size() == 2);
   CHECK(built.position[1].y == Approx(-5.5e-3));
   CHECK(dem::derive(dem::read_case(folder.study(text), "steel")).spheres == 2);
-  std::ofstream(folder.path / "at.csv") << "x,y,z,vx,vy,vz,frozen\n6,5.5,2,0,0,-0.1,0\n3,-5.5,3,0,0,1,1\n";
+  folder.write("at.csv", "x,y,z,vx,vy,vz,frozen\n6,5.5,2,0,0,-0.1,0\n3,-5.5,3,0,0,1,1\n");
   dem::Simulation s(dem::make_setup(dem::read_case(folder.study(text), "steel"), build(), 0, 1));
   while (s.time() < 5e-3) s.step();
   CHECK(scene::position_of(s, 0).z == Approx(2e-3 - 0.1 * s.time() - 0.5 * 9.81 * s.time() * s.time()).epsilon(1e-3));
@@ -232,7 +223,7 @@ TEST_CASE("what is wrong with a rig from STL is named with its place, value and 
   CHECK_THAT(with("periodic = [\"x\"]", "periodic = [\"w\"]"), Contains("'w' is no axis"));
   CHECK_THAT(with("low = [\"0 mm\", \"-7.1 mm\", \"-7.1 mm\"]", "low = [\"0 mm\", \"-7.1 mm\"]"),
              Contains("has 2 numbers"));
-  std::ofstream(folder.path / "mixer.stl") << "solid broken\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n";
+  folder.write("mixer.stl", "solid broken\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n");
   const std::string both = with("periodic = [\"x\"]", "periodic = [\"w\"]");
   CHECK_THAT(both, Contains("mixer.stl:4") && Contains("'w' is no axis"));
 }

@@ -1,14 +1,13 @@
 #include "surrogate/storage.hpp"
 
-#include <unistd.h>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
 
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "surrogate/design.hpp"
 #include "surrogate/fit.hpp"
+#include "tests/temporary.hpp"
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -26,18 +25,10 @@ TrainingSet small_set() {
   return training;
 }
 
-struct Folder {
-  std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("demcal-storage-" + std::to_string(::getpid()));
-  Folder() { std::filesystem::create_directories(path); }
-  ~Folder() { std::filesystem::remove_all(path); }
-  std::string file(const char* name) const { return (path / name).string(); }
-};
-
 }  // namespace
 
 TEST_CASE("a saved process predicts the same bits when it is read again") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const MatrixXd points = scrambled_sobol(8, 3, 5);
   ProcessSet processes;
   processes.emplace("plain", SavedProcess{fit(small_set(), {.starts = 2}), std::nullopt, "judged \"good\""});
@@ -48,8 +39,8 @@ TEST_CASE("a saved process predicts the same bits when it is read again") {
                                                    .starts = 2,
                                                    .hyper_uncertainty = HyperUncertainty::integrated})});
   const SurrogateKey key{"study", "table"};
-  save_processes(folder.file("surrogate.h5"), processes, key);
-  const LoadedProcesses loaded = load_processes(folder.file("surrogate.h5"), key);
+  save_processes(folder.path("surrogate.h5"), processes, key);
+  const LoadedProcesses loaded = load_processes(folder.path("surrogate.h5"), key);
   REQUIRE(loaded.processes);
   REQUIRE(loaded.processes->size() == 2);
   for (const auto& [name, saved] : processes) {
@@ -66,13 +57,13 @@ TEST_CASE("a saved process predicts the same bits when it is read again") {
 }
 
 TEST_CASE("a two-level process predicts the same bits when it is read again") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const MatrixXd points = scrambled_sobol(8, 3, 5);
   TrainingSet dear{scrambled_sobol(5, 3, 9), VectorXd(5), {}};
   for (int i = 0; i < 5; ++i) dear.y[i] = 3.0 + dear.x(i, 0) + 0.2 * std::sin(7.0 * dear.x(i, 1));
   const TwoLevelProcess process = fit_two_level(fit(small_set(), {.starts = 1}), dear);
-  save_processes(folder.file("two.h5"), {{"torque", SavedProcess{process.low(), process.high()}}}, {"study", "table"});
-  const LoadedProcesses loaded = load_processes(folder.file("two.h5"), {"study", "table"});
+  save_processes(folder.path("two.h5"), {{"torque", SavedProcess{process.low(), process.high()}}}, {"study", "table"});
+  const LoadedProcesses loaded = load_processes(folder.path("two.h5"), {"study", "table"});
   REQUIRE(loaded.processes);
   const SavedProcess& saved = loaded.processes->at("torque");
   REQUIRE(saved.high);
@@ -83,21 +74,21 @@ TEST_CASE("a two-level process predicts the same bits when it is read again") {
 }
 
 TEST_CASE("a surrogate of another study or table is stale, and says so") {
-  const Folder folder;
+  const TemporaryFolder folder;
   ProcessSet processes;
   processes.emplace("torque", SavedProcess{fit(small_set(), {.starts = 1})});
-  save_processes(folder.file("surrogate.h5"), processes, {"study", "table"});
-  CHECK_FALSE(load_processes(folder.file("surrogate.h5"), {"study", "other"}).processes);
-  CHECK(load_processes(folder.file("surrogate.h5"), {"study", "other"}).reason.find("table") != std::string::npos);
-  CHECK(load_processes(folder.file("surrogate.h5"), {"other", "table"}).reason.find("study") != std::string::npos);
-  CHECK_FALSE(load_processes(folder.file("none.h5"), {"study", "table"}).processes);
+  save_processes(folder.path("surrogate.h5"), processes, {"study", "table"});
+  CHECK_FALSE(load_processes(folder.path("surrogate.h5"), {"study", "other"}).processes);
+  CHECK(load_processes(folder.path("surrogate.h5"), {"study", "other"}).reason.find("table") != std::string::npos);
+  CHECK(load_processes(folder.path("surrogate.h5"), {"other", "table"}).reason.find("study") != std::string::npos);
+  CHECK_FALSE(load_processes(folder.path("none.h5"), {"study", "table"}).processes);
 }
 
 TEST_CASE("a truncated surrogate file is bad data, not a crash") {
-  const Folder folder;
+  const TemporaryFolder folder;
   ProcessSet processes;
   processes.emplace("torque", SavedProcess{fit(small_set(), {.starts = 1})});
-  const std::string path = folder.file("surrogate.h5");
+  const std::string path = folder.path("surrogate.h5");
   save_processes(path, processes, {"study", "table"});
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   CHECK_THROWS_AS(load_processes(path, {"study", "table"}), data::InputError);

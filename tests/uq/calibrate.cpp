@@ -6,10 +6,10 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
 
 #include "data/csv.hpp"
 #include "data/error.hpp"
+#include "tests/temporary.hpp"
 #include "uq/diagnostics.hpp"
 #include "uq/posterior_nc.hpp"
 #include "uq/prior.hpp"
@@ -68,7 +68,8 @@ TEST_CASE("the study on another code's runs is calibrated: both parameters cover
   CHECK(powder.curves[0].x.front() >= 50.0);
 
   // The draws as netCDF: dimensions, values and what ArviZ looks for.
-  const std::string path = (std::filesystem::temp_directory_path() / "demcal-test-posterior.nc").string();
+  const TemporaryFolder folder;
+  const std::string path = folder.path("posterior.nc");
   write_posterior(path, input.study, found.cases[0], 7);
   int file = -1, group = -1, variable = -1, dimensions[3] = {};
   REQUIRE(nc_open(path.c_str(), NC_NOWRITE, &file) == NC_NOERR);
@@ -91,7 +92,6 @@ TEST_CASE("the study on another code's runs is calibrated: both parameters cover
   REQUIRE(nc_inq_ncid(file, "log_likelihood", &group) == NC_NOERR);
   CHECK(nc_inq_varid(group, "bench_torque", &variable) == NC_NOERR);
   nc_close(file);
-  std::filesystem::remove(path);
 }
 
 TEST_CASE("a calibration is the same for any number of threads", "[uq][slow]") {

@@ -7,11 +7,11 @@
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "report_fixture.hpp"
+#include "tests/temporary.hpp"
 #include "uq/report_density.hpp"
 #include "uq/report_plot.hpp"
 
 using namespace uq;
-using report_fixture::TemporaryFolder;
 
 namespace {
 
@@ -120,7 +120,7 @@ TEST_CASE("traded pairs are drawn first, then pairs by falling correlation") {
 }
 
 TEST_CASE("what gnuplot says is shown when it fails") {
-  const TemporaryFolder folder("demcal-figures");
+  const TemporaryFolder folder;
   const Figure broken{.stem = "broken", .script = "plot nonsense(", .data = "", .alt = ""};
   try {
     draw(broken, folder.path(), {});

@@ -1,11 +1,7 @@
 #include "report_fixture.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "data/random.hpp"
 
@@ -300,22 +296,6 @@ CalibrationReport misfit() {
   result.remedy = "Check the fill and the offset of the torque sensor.";
   report.cases = {result};
   return report;
-}
-
-TemporaryFolder::TemporaryFolder(const std::string& name)
-    : path_(std::filesystem::temp_directory_path() / (name + "-" + std::to_string(getpid()))) {
-  std::filesystem::remove_all(path_);
-  std::filesystem::create_directories(path_);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-std::string read(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 std::size_t count(const std::string& text, const std::string& piece) {

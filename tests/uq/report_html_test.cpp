@@ -8,17 +8,17 @@
 
 #include "data/error.hpp"
 #include "report_fixture.hpp"
+#include "tests/temporary.hpp"
 
 using namespace uq;
 using report_fixture::count;
-using report_fixture::TemporaryFolder;
 
 namespace {
 
 std::string page_of(const CalibrationReport& report) {
-  const TemporaryFolder folder("demcal-report-html");
+  const TemporaryFolder folder;
   write_report_html(report, folder.path());
-  return report_fixture::read(folder / "report.html");
+  return folder.read("report.html");
 }
 
 /// The page of the three cases, made once.
@@ -66,10 +66,10 @@ TEST_CASE("each case gives its verdict in words before its first figure") {
 }
 
 TEST_CASE("every figure keeps its script and data beside it") {
-  const TemporaryFolder folder("demcal-report-html");
+  const TemporaryFolder folder;
   write_report_html(report_fixture::three_cases(), folder.path());
   std::size_t figures = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder / "figures")) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path("figures"))) {
     if (entry.path().extension() != ".svg") continue;
     ++figures;
     CHECK(std::filesystem::exists(std::filesystem::path(entry.path()).replace_extension(".gp")));
@@ -77,12 +77,12 @@ TEST_CASE("every figure keeps its script and data beside it") {
   }
   // Three against rpm, two joint, five profiles, two for each of two surrogates.
   CHECK(figures == 14);
-  CHECK(count(report_fixture::read(folder / "report.html"), "<svg") == figures);
+  CHECK(count(folder.read("report.html"), "<svg") == figures);
 }
 
 TEST_CASE("markup and commands in names appear as text and do nothing") {
-  const TemporaryFolder folder("demcal-report-html");
-  const std::string evil = "<script>alert(1)</script>'\"`touch " + (folder / "pwned") + "`@x\\";
+  const TemporaryFolder folder;
+  const std::string evil = "<script>alert(1)</script>'\"`touch " + folder.path("pwned") + "`@x\\";
   CalibrationReport report = report_fixture::three_cases();
   report.study_name = report.study_description = report.study_file = evil;
   report.warnings = report.notes = {evil};
@@ -117,10 +117,10 @@ TEST_CASE("markup and commands in names appear as text and do nothing") {
     }
   }
   write_report_html(report, folder.path());
-  const std::string page = report_fixture::read(folder / "report.html");
+  const std::string page = folder.read("report.html");
   CHECK_FALSE(has(page, "<script"));
   CHECK(has(page, "&lt;script&gt;alert(1)&lt;/script&gt;"));
-  CHECK_FALSE(std::filesystem::exists(folder / "pwned"));
+  CHECK_FALSE(std::filesystem::exists(folder.path("pwned")));
 }
 
 TEST_CASE("warnings stand before everything else on the page") {
@@ -176,7 +176,7 @@ TEST_CASE("without curves the band is drawn through the predictive points") {
 }
 
 TEST_CASE("a missing gnuplot is named with what to install") {
-  const TemporaryFolder folder("demcal-report-html");
+  const TemporaryFolder folder;
   HtmlOptions options;
   options.gnuplot.program = "no-such-gnuplot";
   try {
@@ -186,5 +186,5 @@ TEST_CASE("a missing gnuplot is named with what to install") {
     CHECK(error.status == data::ExitStatus::missing_program);
     CHECK(has(error.what(), "gnuplot-nox"));
   }
-  CHECK_FALSE(std::filesystem::exists(folder / "report.html"));
+  CHECK_FALSE(std::filesystem::exists(folder.path("report.html")));
 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "report_fixture.hpp"
+#include "tests/temporary.hpp"
 
 using namespace uq;
 using nlohmann::ordered_json;
@@ -24,9 +25,9 @@ bool holds_no_text(const ordered_json& json, const std::string& text) {
 }  // namespace
 
 TEST_CASE("report.json holds every key of format 1") {
-  const report_fixture::TemporaryFolder folder("demcal-report-json");
-  write_report_json(report_fixture::three_cases(), folder / "report.json");
-  const auto json = ordered_json::parse(report_fixture::read(folder / "report.json"));
+  const TemporaryFolder folder;
+  write_report_json(report_fixture::three_cases(), folder.path("report.json"));
+  const auto json = ordered_json::parse(folder.read("report.json"));
   has_keys(json, {"format", "demcal", "status", "study", "surrogates", "cases", "plan", "provenance"});
   CHECK(json["format"] == 1);
   CHECK(json["demcal"] == "0.1.0");
@@ -78,9 +79,9 @@ TEST_CASE("an empty report is still valid report.json") {
 }
 
 TEST_CASE("bytes that are not UTF-8 do not stop report.json") {
-  const report_fixture::TemporaryFolder folder("demcal-report-json");
+  const TemporaryFolder folder;
   CalibrationReport report;
   report.study_name = "caf\xe9";
-  write_report_json(report, folder / "report.json");
-  CHECK(ordered_json::parse(report_fixture::read(folder / "report.json"))["study"] == "caf\ufffd");
+  write_report_json(report, folder.path("report.json"));
+  CHECK(ordered_json::parse(folder.read("report.json"))["study"] == "caf\ufffd");
 }

@@ -9,10 +9,10 @@
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "report_fixture.hpp"
+#include "tests/temporary.hpp"
 #include "uq/report_fields.hpp"
 
 using namespace uq;
-using report_fixture::TemporaryFolder;
 
 namespace {
 
@@ -93,16 +93,16 @@ TEST_CASE("every field of the results is saved (one added to results.hpp belongs
 }
 
 TEST_CASE("results come back from their file to the last bit") {
-  const TemporaryFolder folder("demcal-results");
+  const TemporaryFolder folder;
   for (const CalibrationReport& report : {report_fixture::three_cases(), report_fixture::four_parameters(),
                                           report_fixture::misfit(), CalibrationReport{}}) {
-    save_results(report, folder / "results.json");
-    CHECK(same(load_results(folder / "results.json"), report));
+    save_results(report, folder.path("results.json"));
+    CHECK(same(load_results(folder.path("results.json")), report));
   }
 }
 
 TEST_CASE("any double comes back to the last bit, NaN and the infinities too") {
-  const TemporaryFolder folder("demcal-results");
+  const TemporaryFolder folder;
   CalibrationReport report;
   report.cases.resize(1);
   std::vector<double> values = {0.0,
@@ -118,31 +118,32 @@ TEST_CASE("any double comes back to the last bit, NaN and the infinities too") {
   data::RandomStream random(5, data::Purpose::test);
   while (values.size() < 5000) values.push_back(std::bit_cast<double>(random()));
   report.cases[0].draws_for_plot = {values};
-  save_results(report, folder / "results.json");
-  CHECK(same(load_results(folder / "results.json").cases[0].draws_for_plot[0], values));
+  save_results(report, folder.path("results.json"));
+  CHECK(same(load_results(folder.path("results.json")).cases[0].draws_for_plot[0], values));
 }
 
 TEST_CASE("a field that an older file lacks keeps its default") {
-  const TemporaryFolder folder("demcal-results");
-  std::ofstream(folder / "results.json")
+  const TemporaryFolder folder;
+  std::ofstream(folder.path("results.json"))
       << R"({"format": 1, "results": {"study_name": "old", "cases": [{"name": "c"}]}})";
-  const CalibrationReport report = load_results(folder / "results.json");
+  const CalibrationReport report = load_results(folder.path("results.json"));
   CHECK(report.study_name == "old");
   CHECK(report.cases.at(0).fits);
 }
 
 TEST_CASE("missing, damaged and foreign results files are told apart with their place") {
-  const TemporaryFolder folder("demcal-results");
+  const TemporaryFolder folder;
   std::string message;
-  CHECK(status_of_loading(folder / "none.json", message) == data::ExitStatus::missing_input);
-  std::ofstream(folder / "cut.json") << R"({"format": 1, "results": {"study_na)";
-  CHECK(status_of_loading(folder / "cut.json", message) == data::ExitStatus::bad_data);
+  CHECK(status_of_loading(folder.path("none.json"), message) == data::ExitStatus::missing_input);
+  std::ofstream(folder.path("cut.json")) << R"({"format": 1, "results": {"study_na)";
+  CHECK(status_of_loading(folder.path("cut.json"), message) == data::ExitStatus::bad_data);
   CHECK(message.find("cut.json") != std::string::npos);
-  std::ofstream(folder / "later.json") << R"({"format": 9, "results": {}})";
-  CHECK(status_of_loading(folder / "later.json", message) == data::ExitStatus::bad_data);
-  std::ofstream(folder / "list.json") << "[]";
-  CHECK(status_of_loading(folder / "list.json", message) == data::ExitStatus::bad_data);
-  std::ofstream(folder / "kind.json") << R"({"format": 1, "results": {"cases": [{"parameters": [{"mean": "much"}]}]}})";
-  CHECK(status_of_loading(folder / "kind.json", message) == data::ExitStatus::bad_data);
+  std::ofstream(folder.path("later.json")) << R"({"format": 9, "results": {}})";
+  CHECK(status_of_loading(folder.path("later.json"), message) == data::ExitStatus::bad_data);
+  std::ofstream(folder.path("list.json")) << "[]";
+  CHECK(status_of_loading(folder.path("list.json"), message) == data::ExitStatus::bad_data);
+  std::ofstream(folder.path("kind.json"))
+      << R"({"format": 1, "results": {"cases": [{"parameters": [{"mean": "much"}]}]}})";
+  CHECK(status_of_loading(folder.path("kind.json"), message) == data::ExitStatus::bad_data);
   CHECK(message.find("results.cases[0].parameters[0].mean") != std::string::npos);
 }
