@@ -34,6 +34,12 @@ void visit_fields(Visit&& visit, T& s) {
   visit("predicted", s.predicted);
   visit("standardised", s.standardised);
   visit("observed_se", s.observed_se);
+  visit("coverage_left_out", s.coverage_left_out);
+  visit("coverage_held_out", s.coverage_held_out);
+  visit("fold_distance", s.fold_distance);
+  visit("fold_runs", s.fold_runs);
+  visit("fold_probability", s.fold_probability);
+  visit("pivoted_errors", s.pivoted_errors);
   visit("notes", s.notes);
   visit("converged", s.converged);
   visit("low_runs", s.low_runs);

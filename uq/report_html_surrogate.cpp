@@ -18,6 +18,39 @@ std::string name_of(const SurrogateReport& surrogate) {
 
 std::string two_digits(double share) { return format_value(share, {.exponent = 0, .decimals = 3}, "", pretty); }
 
+/// Coverage at three levels, and the held-out folds by Bastos & O'Hagan.
+std::string held_out_tables(const SurrogateReport& surrogate) {
+  std::string out;
+  if (surrogate.coverage_left_out.size() == 3 && surrogate.coverage_held_out.size() == 3) {
+    Table table{.caption = "Share of the runs inside the central intervals.",
+                .head = {{"Runs"}, number("50\u00a0%"), number("90\u00a0%"), number("95\u00a0%")},
+                .rows = {}};
+    for (const auto& [name, shares] : {std::pair{"left out one by one", &surrogate.coverage_left_out},
+                                       std::pair{"held out in folds", &surrogate.coverage_held_out}}) {
+      table.rows.push_back({{name}});
+      for (const double share : *shares) table.rows.back().push_back(number(two_digits(share)));
+    }
+    out += html(table);
+  }
+  if (surrogate.fold_distance.empty()) return out;
+  const auto large = std::count_if(surrogate.pivoted_errors.begin(), surrogate.pivoted_errors.end(),
+                                   [](double error) { return std::abs(error) > 2.0; });
+  Table table{
+      .caption = fmt::format("Folds predicted by the others, hyper-parameters fitted again: Mahalanobis distance of "
+                             "the errors, about the number of runs if the covariance is right, and the chance of "
+                             "one as far off. {} of {} uncorrelated (pivoted Cholesky) errors lie beyond "
+                             "\u00b12; about one in twenty should.",
+                             large, surrogate.pivoted_errors.size()),
+      .head = {{"Fold"}, number("Runs"), number("Mahalanobis distance"), number("Probability")},
+      .rows = {}};
+  for (std::size_t i = 0; i < surrogate.fold_distance.size(); ++i)
+    table.rows.push_back({{std::to_string(i + 1)},
+                          number(fmt::format("{:.0f}", surrogate.fold_runs.at(i))),
+                          number(significant(surrogate.fold_distance[i], 3, pretty)),
+                          number(significant(surrogate.fold_probability.at(i), 2, pretty))});
+  return out + "<details><summary>Held-out folds</summary>\n" + html(table) + "</details>\n";
+}
+
 std::string one_surrogate(const SurrogateReport& surrogate, std::size_t index, const Context& context) {
   std::string out = fmt::format("<h3>{}</h3>\n<div class=\"verdict\"><dl>\n", text(name_of(surrogate)));
   const std::pair<const char*, const std::string*> entries[] = {
@@ -66,6 +99,7 @@ std::string one_surrogate(const SurrogateReport& surrogate, std::size_t index, c
     }
     out += html(table);
   }
+  out += held_out_tables(surrogate);
   if (!surrogate.notes.empty()) {
     out += "<ul class=\"note\">\n";
     for (const std::string& note : surrogate.notes) out += "<li>" + text(note) + "</li>\n";

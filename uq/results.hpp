@@ -30,10 +30,14 @@ struct SurrogateReport {
   std::vector<double> total_order, total_order_sd;        ///< with their sd from the surrogate's uncertainty
   std::vector<double> observed, predicted, standardised;  ///< leave-one-out, per run
   std::vector<double> observed_se;
-  std::vector<std::string> notes;  ///< hyper-parameter on its bound, jitter, multi-start outcomes
-  bool converged = true;           ///< the maximisation of the likelihood
-  int low_runs = 0;                ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
-  double rho = 0.0, rho_sd = 0.0;  ///< this level's output per the cheaper one's
+  std::vector<double> coverage_left_out, coverage_held_out;  ///< of the 50, 90 and 95 % intervals
+  // Held-out folds (Bastos & O'Hagan 2009): Mahalanobis distance, runs in the fold, tail probability of the distance.
+  std::vector<double> fold_distance, fold_runs, fold_probability;
+  std::vector<double> pivoted_errors;  ///< pivoted Cholesky errors, fold after fold, each in pivoting order
+  std::vector<std::string> notes;      ///< hyper-parameter on its bound, jitter, multi-start outcomes
+  bool converged = true;               ///< the maximisation of the likelihood
+  int low_runs = 0;                    ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
+  double rho = 0.0, rho_sd = 0.0;      ///< this level's output per the cheaper one's
 };
 
 struct ParameterReport {

@@ -96,6 +96,15 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   report.q2 = found.q2_leave_one_out;
   report.q2_held_out = found.q2_held_out;
   report.coverage95 = found.coverage_leave_one_out.observed[2];
+  report.coverage_left_out.assign(found.coverage_leave_one_out.observed.begin(),
+                                  found.coverage_leave_one_out.observed.end());
+  report.coverage_held_out.assign(found.coverage_held_out.observed.begin(), found.coverage_held_out.observed.end());
+  for (const surrogate::HeldOutFold& fold : found.folds) {
+    report.fold_distance.push_back(fold.mahalanobis);
+    report.fold_runs.push_back(static_cast<double>(fold.runs.size()));
+    report.fold_probability.push_back(fold.probability);
+    report.pivoted_errors.insert(report.pivoted_errors.end(), fold.pivoted_errors.begin(), fold.pivoted_errors.end());
+  }
   const surrogate::HyperParameters hyper = fitted.process->hyper_parameters();
   // On the log scale the nugget is relative; shown at the mean output.
   const bool logarithmic = fit_options.scale == surrogate::OutputScale::log;
