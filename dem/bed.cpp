@@ -153,8 +153,7 @@ BedCoefficients make_bed(const Case& c, const std::vector<BodyLabel>& bodies) {
     }
   }
   bed.choice.normal = c.contact.normal;
-  const bool hertzian = c.contact.normal != NormalLaw::linear;
-  bed.choice.tangential = c.contact.tangential.value_or(hertzian ? TangentialLaw::mindlin : TangentialLaw::linear);
+  bed.choice.tangential = c.contact.tangential_law();
   bed.choice.resistance = c.contact.resistance;
   const auto pulls = [](const PairCoefficients& p) { return p.pull_off > 0.0; };
   const bool attracts =

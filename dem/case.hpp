@@ -98,6 +98,10 @@ struct Contact {
   std::optional<double> wall_work_of_adhesion;  ///< J/m2
   std::optional<double> true_stiffness;         ///< N/m (linear) of the real grain: attraction scaled by sqrt(k / it)
   std::optional<double> true_young_modulus;  ///< Pa (hertz, jkr) of the real grain: attraction scaled by (E / it)^0.4
+
+  TangentialLaw tangential_law() const {
+    return tangential.value_or(normal == NormalLaw::linear ? TangentialLaw::linear : TangentialLaw::mindlin);
+  }
 };
 
 /// What contacts between two materials have of their own; the rest is the contact law's. The names are those of

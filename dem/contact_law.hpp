@@ -19,10 +19,12 @@
 //             smallest delta. Counted as N - A with A = 3/2 pi w R*, its pull-off force; damped as Hertz.
 //             Elastic + damping force may pull, or is clamped at 0 (`floor`; then the restitution is another).
 // tangential  linear: spring s, projected into the contact plane (not rescaled: the loss is of second order in the turn
-//             of the normal per step), then s += u_t dt. Sticking: T = -kt s - ct u_t; where kt |s| > cap the contact
-//             slides: T = -cap s/|s|, no dashpot, s cut back to cap / kt. (The history kept is kt s.) The spring so
-//             leads the slip by half a step, which damps it as a dashpot of kt dt / 2 would: first order, and never a
-//             gain of energy.
+//             of the normal per step). Spring and dashpot side by side, behind a slider: T = -kt s - ct u_t while that
+//             is below the cap; else the contact slides, T has the cap's size, and the spring follows as fast as the
+//             dashpot lets it: ds/dt = (|T| - kt s) / ct, s = cap / kt at once without a dashpot. (The history kept is
+//             kt s.) Steps: s is kept half a step ahead and its mean over the step is what pulls, second order; as u_t
+//             is extrapolated that alone would feed an oscillation, so the spring leads the mean by a of a step's
+//             slip more, a = 7/2 kt dt^2 / m*, the square of the phase of a step: enough for eight contacts a sphere.
 //             Mindlin: kt = 8 G* a, the elastic force is kept and grows by kt u_t dt; when the contact unloads (a
 //             shrinks) it is scaled by a / a_before, else unloading would create energy (C. Thornton, S. Cummins, P.
 //             Cleary, Powder Technol. 233:30 (2013)); ct = damping ratio sqrt(kt m*) alike.
@@ -196,20 +198,26 @@ struct JkrNormal {
   }
 };
 
-/// Elastic tangential force with a Coulomb slider.
-template <class T>
+/// Spring and dashpot side by side, behind a slider: in the contact plane, in rolling (V a vector [N]) and in twisting
+/// (V a number [N m]).
+template <class V>
 struct SlipForce {
-  Vector3<T> force;  ///< N, on the sphere
-  Vector3<T> kept;   ///< N, elastic part, of opposite sign
+  V force;  ///< on the sphere
+  V kept;   ///< elastic part, of opposite sign
 };
 
-template <class T>
-SlipForce<T> slide(Vector3<T> before, Vector3<T> slip_velocity, T stiffness, T damping, T cap, double time_step) {
-  const Vector3<T> elastic = before + T(stiffness * time_step) * slip_velocity;
-  const T size = square_root(dot(elastic, elastic));
-  const auto sliding = size > cap;
-  const Vector3<T> kept = select(sliding, T(cap / size), T(1.0)) * elastic;
-  return {-kept - select(sliding, T(0.0), damping) * slip_velocity, kept};
+/// `stiffness_per_inertia` [1/s2] is that of the fastest oscillation of a free pair on this spring.
+template <class V, class T>
+SlipForce<V> slide(const V& before, const V& velocity, T stiffness, T damping, T cap, T stiffness_per_inertia,
+                   double time_step) {
+  const T lead = smaller(T(time_step * time_step * stiffness_per_inertia), T(0.5));
+  const T reach = stiffness * time_step, drag = (0.5 + lead) * reach + damping;
+  const V wanted = before + drag * velocity;
+  const T size = norm(wanted);
+  const V force = select(size > cap, T(cap / size), T(1.0)) * wanted;
+  // What is beyond the cap the spring does not follow, but for what the dashpot holds.
+  const T share = reach / larger(T(reach + damping), T(std::numeric_limits<double>::min()));
+  return {-force, before + reach * velocity - share * (wanted - force)};
 }
 
 struct LinearTangential {
@@ -219,11 +227,11 @@ struct LinearTangential {
 
   template <class C>
   struct At {
-    C stiffness, half_softness, damping, friction;
+    C stiffness, half_softness, damping, friction, stiffness_per_inertia;
     template <class T>
-    SlipForce<T> operator()(Vector3<T> before, Vector3<T> velocity, const NormalForce<T>&, T /*radius_before*/, T load,
-                            double time_step) const {
-      return slide<T>(before, velocity, T(stiffness), T(damping), friction * load, time_step);
+    SlipForce<Vector3<T>> operator()(Vector3<T> before, Vector3<T> velocity, const NormalForce<T>&, T /*radius_before*/,
+                                     T load, double time_step) const {
+      return slide(before, velocity, T(stiffness), T(damping), T(friction * load), T(stiffness_per_inertia), time_step);
     }
     template <class T>
     T energy(const Vector3<T>& kept, T /*radius*/) const {
@@ -234,7 +242,8 @@ struct LinearTangential {
   static At<C> at(Get get, C mass) {
     const C k = get(&LinearTangential::stiffness);
     return {k, C(0.5 / larger(k, C(std::numeric_limits<double>::min()))),
-            C(get(&LinearTangential::damping) * square_root(mass)), get(&LinearTangential::friction)};
+            C(get(&LinearTangential::damping) * square_root(mass)), get(&LinearTangential::friction),
+            C(3.5 * k / mass)};
   }
 };
 
@@ -246,13 +255,15 @@ struct MindlinTangential {
   template <class C>
   struct At {
     C modulus, damping, friction;  // damping: ratio sqrt(8 G* m*)
+    C mobility;                    // 1/kg, 7/2 1/m*
     template <class T>
-    SlipForce<T> operator()(Vector3<T> before, Vector3<T> velocity, const NormalForce<T>& normal, T radius_before,
-                            T load, double time_step) const {
+    SlipForce<Vector3<T>> operator()(Vector3<T> before, Vector3<T> velocity, const NormalForce<T>& normal,
+                                     T radius_before, T load, double time_step) const {
       const T a = larger(normal.radius, T(std::numeric_limits<double>::min()));
       const T scale = select(normal.radius < radius_before, T(normal.radius / radius_before), T(1.0));
-      return slide<T>(scale * before, velocity, T(8.0 * modulus * a), T(damping * square_root(a)), friction * load,
-                      time_step);
+      const T stiffness = 8.0 * modulus * a;
+      return slide(Vector3<T>(scale * before), velocity, stiffness, T(damping * square_root(a)), T(friction * load),
+                   T(mobility * stiffness), time_step);
     }
     template <class T>
     T energy(const Vector3<T>& kept, T radius) const {
@@ -263,7 +274,7 @@ struct MindlinTangential {
   static At<C> at(Get get, C mass) {
     const C g = get(&MindlinTangential::modulus);
     return {g, C(get(&MindlinTangential::damping_ratio) * square_root(C(8.0 * g * mass))),
-            get(&MindlinTangential::friction)};
+            get(&MindlinTangential::friction), C(3.5 / mass)};
   }
 };
 
@@ -331,17 +342,18 @@ struct SpringResistance {
   template <class C>
   struct At {
     C rolling, twisting, stiffness, damping, radius;
+    C stiffness_per_inertia;  // 1/s2, of rolling and twisting, whose mass is 2/5 m*
     template <class T>
     Couple<T> operator()(const Vector3<T>& n, const Vector3<T>& spin, const History<T>& before, T load,
                          double time_step) const {
       const Vector3<T> velocity = T(radius) * cross(spin, n);
       const Vector3<T> turned = before.roll - dot(before.roll, n) * n;
-      const SlipForce<T> f = slide<T>(turned, velocity, T(stiffness), T(damping), rolling * load, time_step);
-      const T area = radius * radius, along = dot(spin, n);
-      const T twist = before.twist + stiffness * area * along * time_step, cap = twisting * radius * load;
-      const T kept = smaller(larger(twist, T(-cap)), cap);
-      const T dashpot = select(kept == twist, T(damping * area * along), T(0.0));
-      return {T(radius) * cross(n, f.force) - T(kept + dashpot) * n, f.kept, kept};
+      const T area = radius * radius, fastest = stiffness_per_inertia;
+      const SlipForce<Vector3<T>> roll =
+          slide(turned, velocity, T(stiffness), T(damping), T(rolling * load), fastest, time_step);
+      const SlipForce<T> twist = slide(before.twist, T(dot(spin, n)), T(stiffness * area), T(damping * area),
+                                       T(twisting * radius * load), fastest, time_step);
+      return {T(radius) * cross(n, roll.force) + twist.force * n, roll.kept, twist.kept};
     }
     template <class T>
     T energy(const Vector3<T>& roll, T twist) const {
@@ -350,8 +362,12 @@ struct SpringResistance {
   };
   template <class C, class Get>
   static At<C> at(Get get, C mass, C radius) {
-    return {get(&SpringResistance::rolling_friction), get(&SpringResistance::twisting_friction),
-            get(&SpringResistance::stiffness), C(get(&SpringResistance::damping) * square_root(mass)), radius};
+    return {get(&SpringResistance::rolling_friction),
+            get(&SpringResistance::twisting_friction),
+            get(&SpringResistance::stiffness),
+            C(get(&SpringResistance::damping) * square_root(mass)),
+            radius,
+            C(2.5 * get(&SpringResistance::stiffness) / mass)};
   }
 };
 
@@ -454,7 +470,7 @@ struct ContactLaw {
       const T pull = attraction(T(-m.overlap)) + push.pull;
       const T load = push.touch * larger(T(push.total + cap_weight * pull), T(0.0));
       const Vector3<T> turned = before.slip - dot(before.slip, m.normal) * m.normal;
-      const SlipForce<T> slip = tangential(turned, slip_velocity, push, before.radius, load, time_step);
+      const SlipForce<Vector3<T>> slip = tangential(turned, slip_velocity, push, before.radius, load, time_step);
       const Couple<T> couple = resistance(m.normal, m.spin, before, load, time_step);
       Reaction<T> r{push.total - pull,
                     push.touch * slip.force,

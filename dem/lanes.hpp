@@ -36,6 +36,8 @@ template <class T>
 T norm(Vector3<T> a) {
   return square_root(dot(a, a));
 }
+inline double norm(double a) { return std::abs(a); }
+inline Lane norm(Lane a) { return stdx::abs(a); }
 /// The same vector in every lane.
 inline Vector3<Lane> spread(Vec3 a) { return {Lane(a.x), Lane(a.y), Lane(a.z)}; }
 /// One bit per lane, the first lane lowest.

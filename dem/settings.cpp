@@ -1,9 +1,6 @@
 // A case as text, complete: what decides a run is in it.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <utility>
-
 #include "dem/grains.hpp"
 #include "dem/rig.hpp"
 #include "dem/target.hpp"
@@ -11,9 +8,8 @@
 namespace dem {
 namespace {
 
-/// What says nothing while it equals what it follows.
-constexpr std::pair<std::string_view, std::string_view> followers[]{{"contact.wall_restitution", "contact.restitution"},
-                                                                    {"contact.true_stiffness", "contact.stiffness"}};
+/// Of the DEM's equations: raised where the same settings come to give other torques, so that runs are not mixed.
+constexpr int model = 2;
 
 struct Text {
   std::string lines;
@@ -23,11 +19,6 @@ struct Text {
   template <class Choice>
   void choice(std::string_view name, Choice value, std::initializer_list<const char*> names) {
     lines += fmt::format("{} = {}\n", name, names.begin()[static_cast<std::size_t>(value)]);
-  }
-  /// Left out at the default.
-  template <class Choice>
-  void later_choice(std::string_view name, Choice value, std::initializer_list<const char*> names) {
-    if (value != Choice{}) choice(name, value, names);
   }
 };
 
@@ -45,14 +36,8 @@ void add_sizes(const Material& m, Text& text) {
 }  // namespace
 
 std::string settings_text(const Case& c) {
-  Text text{fmt::format("rig.kind = {}\n", c.rig.stl ? "stl" : "slice")};
-  for (const std::string& name : quantities_of(c)) {
-    const auto* const follower =
-        std::find_if(std::begin(followers), std::end(followers), [&](const auto& f) { return f.first == name; });
-    const double value = get_target(c, name);
-    if (follower != std::end(followers) && value == get_target(c, follower->second)) continue;
-    text.number(name, value, target(name).unit);
-  }
+  Text text{fmt::format("model = {}\nrig.kind = {}\n", model, c.rig.stl ? "stl" : "slice")};
+  for (const std::string& name : quantities_of(c)) text.number(name, get_target(c, name), target(name).unit);
   const Contact& k = c.contact;
   const RunControl& r = c.run;
   text.lines += rig_settings(c);
@@ -61,8 +46,15 @@ std::string settings_text(const Case& c) {
   text.choice("contact.hamaker_of", k.hamaker_of, {"simulation", "original"});
   text.choice("contact.length_scale", k.length_scale, {"diameter", "radius"});
   text.choice("contact.wall_attraction", k.wall_attraction, {"as_grains", "derjaguin"});
+  text.choice("contact.normal", k.normal, {"linear", "hertz", "jkr"});
+  text.choice("contact.tangential", k.tangential_law(), {"linear", "mindlin"});
+  text.choice("contact.resistance", k.resistance, {"none", "constant", "spring"});
+  text.choice("contact.cohesion", k.cohesion, {"van_der_waals", "dmt"});
+  if (k.restitution_at) text.number("contact.restitution_at", *k.restitution_at, "m/s");
   text.number("run.gravity", r.gravity, "m/s2");
   text.number("run.steps_per_contact", r.steps_per_contact, "1");
+  if (r.time_step) text.number("run.time_step", *r.time_step, "s");
+  text.number("run.overlap_limit", r.overlap_limit, "1");
   text.number("run.skin", r.skin, "1");
   text.number("run.settle", r.settle, "s");
   text.number("run.start_up", r.start_up, "s");
@@ -72,15 +64,6 @@ std::string settings_text(const Case& c) {
   text.number("run.shortest", r.shortest, "s");
   text.number("run.shortest_turns", r.shortest_turns, "1");
   text.number("run.longest", r.longest, "s");
-
-  text.later_choice("contact.normal", k.normal, {"linear", "hertz", "jkr"});
-  if (k.tangential && k.normal == NormalLaw::hertz)
-    text.choice("contact.tangential", *k.tangential, {"linear", "mindlin"});
-  text.later_choice("contact.resistance", k.resistance, {"none", "constant", "spring"});
-  text.later_choice("contact.cohesion", k.cohesion, {"van_der_waals", "dmt"});
-  if (k.restitution_at) text.number("contact.restitution_at", *k.restitution_at, "m/s");
-  if (r.time_step) text.number("run.time_step", *r.time_step, "s");
-  if (r.overlap_limit != RunControl{}.overlap_limit) text.number("run.overlap_limit", r.overlap_limit, "1");
   for (const Component& part : components_of(c)) add_sizes(part.material, text);
   return text.lines;
 }

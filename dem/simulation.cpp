@@ -135,17 +135,20 @@ void Simulation::integrate() {
   State& s = state_;
   const double dt = setup_.time_step;
   const std::size_t chunks = s.chunks();
-  chunk_displacement2_.assign(chunks, 0.0);
+  chunk_steps_.assign(chunks, {});
   team_.for_each(chunks, [&](std::size_t c) {
     // Whole rows at once; what rides in their fourth places stays as it is.
     const Four step{dt, dt, dt, 0.0}, fourth{0.0, 0.0, 0.0, 1.0};
     const Four gravity{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z, 0.0};
+    Four late{};  // force * (v*(n) - v(n)) and the same of torque and spin
     double farthest = 0.0;
     for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
       MotionRow &half = s.half[i], &motion = s.motion[i];
       LoadRow& load = s.load[i];
       const Four force = four(load.force.x) + half.mass * gravity, torque = four(load.torque.x);
       const Four kick = load.inverse_mass * (step * force), twist = load.inverse_inertia * (step * torque);
+      late += four(load.force.x) * (four(motion.velocity.x) - four(half.velocity.x) - 0.5 * kick) +
+              torque * (four(motion.spin.x) - four(half.spin.x) - 0.5 * twist);
       const Four velocity = four(half.velocity.x) + kick, spin = four(half.spin.x) + twist;
       four(half.velocity.x) = velocity;
       four(half.spin.x) = spin;
@@ -159,10 +162,13 @@ void Simulation::integrate() {
       four(load.force.x) = fourth * four(load.force.x);
       four(load.torque.x) = fourth * torque;
     }
-    chunk_displacement2_[c] = farthest;
+    chunk_steps_[c] = {farthest, late[0] + late[1] + late[2]};
   });
   max_displacement2_ = 0.0;
-  for (const double d2 : chunk_displacement2_) max_displacement2_ = d2 <= max_displacement2_ ? max_displacement2_ : d2;
+  for (const ChunkStep& moved : chunk_steps_) {
+    max_displacement2_ = moved.displacement2 <= max_displacement2_ ? max_displacement2_ : moved.displacement2;
+    s.dissipated += dt * moved.late_power;
+  }
   ++s.step;
 }
 

@@ -109,7 +109,11 @@ class Simulation {
   double max_displacement2_ = 0.0;  ///< m2
   StepSums sums_;
   std::vector<StepSums> chunk_sums_;
-  std::vector<double> chunk_displacement2_;
+  struct ChunkStep {
+    double displacement2 = 0.0;  ///< m2, since the rebuild
+    double late_power = 0.0;     ///< W, of the loads on v*(n) less that on v(n), which are known only after the forces
+  };
+  std::vector<ChunkStep> chunk_steps_;
   Team team_;
 
   // What a rebuild hands from step to step, kept to spare its memory.

@@ -30,8 +30,7 @@ std::string unread(const Contact& k, std::string_view key) {
     return std::find(keys.begin(), keys.end(), key) != keys.end();
   };
   const bool hertzian = k.normal != NormalLaw::linear;
-  const bool mindlin =
-      k.tangential.value_or(hertzian ? TangentialLaw::mindlin : TangentialLaw::linear) == TangentialLaw::mindlin;
+  const bool mindlin = k.tangential_law() == TangentialLaw::mindlin;
   if (is({"stiffness", "wall_stiffness"}) && hertzian && mindlin)
     return "is read by normal = \"linear\" or tangential = \"linear\" only";
   if (key == "true_stiffness" && hertzian) return "is read by normal = \"linear\" only";

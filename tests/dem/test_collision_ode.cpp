@@ -143,6 +143,7 @@ TEST_CASE("the simulated collision goes to CVODE's as the time step is refined, 
         dem::Encounter e = head_on(c, 0.1, wall);
         e.sphere.velocity.x = slip;
         e.sphere.spin = {20.0, -10.0, 30.0};
+        CAPTURE(name, wall, slip);
         const dem::Collision exact = reference(c, e);
         REQUIRE(exact.end == dem::CollisionEnd::parted);
         const double radius = e.sphere.radius, speed = std::hypot(0.1, slip);
