@@ -117,6 +117,95 @@ Flow incline(const dem::Case& c, double angle, double inertial, double start_up,
   return f;
 }
 
+/// Plane shear without gravity between two layers of frozen spheres, periodic along x and y: the upper one moves along
+/// x at `rate` [1/s] times the height, and comes down until the pressure reaches `pressure` [Pa]; from then on the
+/// volume is kept, and the pressure found decides the inertial number. Friction = shear / normal force on the upper
+/// layer.
+Flow shear(const dem::Case& c, double rate, double pressure, double strain) {
+  const double d = c.material.diameter;
+  constexpr int nx = 10, ny = 6, layers = 12;
+  const double spacing = 1.12 * d, area = nx * ny * spacing * spacing;
+  dem::Setup s = scene::box(c, {}, {});
+  s.low = {0.0, 0.0, -2.0 * d};
+  s.high = {nx * spacing, ny * spacing, 1.5 * layers * d};
+  s.periodic = {true, true, false};
+  s.gravity = {};
+  dem::BedCoefficients bed = dem::make_bed(c, 1);
+  bed.equal_mass = bed.equal_radius = 0.0;
+  s.laws = dem::make_force_pass(bed);
+  s.spheres.radius.clear();
+  data::RandomStream random(3, data::Purpose::test);
+  for (int layer = 0; layer < layers; ++layer) {
+    const bool frozen = layer == 0 || layer == layers - 1;
+    for (int k = 0; k < nx * ny; ++k) {
+      const double z = layer * spacing + (frozen ? 0.5 : 0.02) * d * (random.uniform() - 0.5);
+      s.spheres.radius.push_back((0.4 + 0.2 * random.uniform()) * d);
+      s.spheres.position.push_back({(k % nx + 0.5) * spacing, (k / nx + 0.5) * spacing, z});
+      s.spheres.velocity.push_back(
+          {rate * (frozen ? layer * spacing : z), 0.0, layer == layers - 1 ? -2.0 * rate * d : 0.0});
+      s.spheres.frozen.push_back(frozen ? 1 : 0);
+    }
+  }
+  const auto load = [](const dem::Simulation& sim) {  // on the upper layer
+    dem::Vec3 sum;
+    for (std::size_t i = 0; i < sim.state().particles(); ++i) {
+      if (sim.state().load[i].inverse_mass == 0.0 && sim.state().motion[i].velocity.x > 0.0)
+        sum += sim.state().load[i].force;
+    }
+    return sum;
+  };
+  dem::Setup kept = s;
+  kept.spheres.spin.resize(s.spheres.position.size());
+  {
+    dem::Simulation sim(std::move(s));
+    for (double mean = 0.0; mean < pressure * area && sim.time() < 3.0 / rate;) {
+      sim.step();
+      mean += 0.002 * (load(sim).z - mean);
+    }
+    for (std::size_t i = 0; i < sim.state().particles(); ++i) {
+      const dem::MotionRow m = sim.motion(i);
+      const std::uint32_t id = sim.state().id[i];
+      kept.spheres.position[id] = sim.state().position[i].at;
+      kept.spheres.velocity[id] = {m.velocity.x, m.velocity.y, kept.spheres.frozen[id] ? 0.0 : m.velocity.z};
+      kept.spheres.spin[id] = m.spin;
+    }
+  }
+  dem::Simulation sim(std::move(kept));
+  while (sim.time() < 0.5 * strain / rate) sim.step();
+  const double height = sim.setup().spheres.position.back().z, thick = height / 8.0;
+  constexpr int quarters = 4;
+  double shear_force[quarters] = {}, normal[quarters] = {}, samples = 0.0, count[8] = {}, speed[8] = {}, volume = 0.0;
+  const double from = sim.time(), window = strain / rate;
+  for (std::uint64_t k = 0; sim.time() < from + window; ++k) {
+    sim.step();
+    if (k % 20 != 0) continue;
+    const int q = std::min(quarters - 1, static_cast<int>(quarters * (sim.time() - from) / window));
+    const dem::Vec3 force = load(sim);
+    shear_force[q] -= force.x;
+    normal[q] += force.z;
+    ++samples;
+    for (std::size_t i = 0; i < sim.state().particles(); ++i) {
+      const int bin = static_cast<int>(sim.state().position[i].at.z / thick);
+      if (bin < 1 || bin > 6) continue;
+      ++count[bin];
+      speed[bin] += sim.state().motion[i].velocity.x;
+      volume += sim.state().motion[i].mass / c.material.density;
+    }
+  }
+  Flow f;
+  double x = 0.0, z = 0.0;
+  for (int q = 0; q < quarters; ++q) {
+    x += shear_force[q];
+    z += normal[q];
+  }
+  f.friction = x / z;
+  for (int q = 0; q < quarters; ++q) f.spread = std::max(f.spread, std::abs(shear_force[q] / normal[q] - f.friction));
+  const double found = (speed[6] / count[6] - speed[1] / count[1]) / (5.0 * thick);
+  f.inertial = found * d / std::sqrt(z / samples / area / c.material.density);
+  f.volume_fraction = volume / samples / (6.0 * thick * area);
+  return f;
+}
+
 dem::Case glass() {
   dem::Case c;
   c.material.density = 2500.0;
@@ -235,6 +324,20 @@ TEST_CASE("a layer flowing down an incline has the friction of the published mu(
     CHECK(cohesive.inertial > 0.01);
     CHECK(cohesive.friction - published(cohesive.inertial) > f.friction - published(f.inertial) + 0.01);
     CHECK(cohesive.inertial < 0.9 * f.inertial);
+  }
+}
+
+TEST_CASE("slow plane shear has the friction of the published mu(I) law", "[slow][table]") {
+  struct Point {
+    double rate, pressure;  // 1/s, Pa
+  };
+  for (const auto& [rate, pressure] : {Point{3.0, 700.0}, Point{8.0, 400.0}, Point{20.0, 130.0}}) {
+    const Flow f = shear(glass(), rate, pressure, 3.0);
+    INFO("at " << rate << " 1/s: I " << f.inertial << ", mu " << f.friction << " +- " << f.spread
+               << ", volume fraction " << f.volume_fraction);
+    scene::row(fmt::format("mu at I = {:.3f} (+- {:.3f}), plane shear, volume fraction {:.3f}", f.inertial, f.spread,
+                           f.volume_fraction),
+               published(f.inertial), f.friction, {0.0, 0.04});
   }
 }
 
