@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "uq/calibrate.hpp"
+#include "uq/contradiction.hpp"
 #include "uq/diagnostics.hpp"
 #include "uq/discrepancy.hpp"
 #include "uq/posterior.hpp"
@@ -219,7 +220,15 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.discrepancies = discrepancy_bands(study, model, draws, seed);
   if (options.quadrature && model.dimension() <= 2 && report.cuts.empty())
     add_quadrature(report, sampled, draws, options);
-  const Words words = summarise(model, found, options.identify.thresholds);
+  Words words = summarise(model, found, options.identify.thresholds);
+  if (!found.fits) {
+    const Contradiction sets =
+        describe_contradiction(fits_alone(study, model, found.best_fit.x), options.identify.thresholds.best_fit_p);
+    if (!sets.finding.empty()) {
+      words.finding += " " + sets.finding;
+      words.remedy = sets.remedy + " " + words.remedy;
+    }
+  }
   report.finding = words.finding;
   report.consequence = words.consequence;
   report.remedy = words.remedy;

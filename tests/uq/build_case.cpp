@@ -6,6 +6,7 @@
 
 #include "tests/temporary.hpp"
 #include "uq/calibrate.hpp"
+#include "uq/contradiction.hpp"
 #include "uq/diagnostics.hpp"
 
 namespace {
@@ -195,4 +196,26 @@ TEST_CASE("linked cases keep a meter's offset each, or share it, and the posteri
                Catch::Contains("78: ") && Catch::Contains("offset is cut from another case") &&
                    Catch::Contains("cut parameters only"));
   }
+}
+
+TEST_CASE("cases whose data contradict each other are told from data that fit nowhere", "[uq]") {
+  const TemporaryFolder folder;
+  folder.write("first.csv", readings);
+  const auto finding = [&](const std::string& second) {
+    folder.write("second.csv", "speed,fill,torque,torque_se\n" + second);
+    const data::Study study =
+        read(folder, head + observe("first") + observe("second") + calibrate("one", "first") +
+                         calibrate("two", "second", "priors = { friction = { posterior = \"one\" } }\n"));
+    const uq::CaseReport report = uq::report_case(study, sample(study, 1), {.error_scan = {}, .quadrature = false});
+    CHECK_FALSE(report.fits);
+    CHECK(report.parameters.at(0).verdict == uq::Verdict::does_not_fit);
+    return report.finding + " " + report.remedy;
+  };
+  // 0.3 N m apart, 15 sd.
+  CHECK_THAT(finding("1,100,0.78,0.04\n2,100,0.82,0.04\n3,100,0.83,0.04\n4,100,0.77,0.04\n"),
+             Catch::Contains("On its own each of first and second fits: they contradict each other.") &&
+                 Catch::Contains("the same powder, rig and units"));
+  // The second set contradicts itself.
+  CHECK_THAT(finding("1,100,0.2,0.04\n2,100,0.8,0.04\n3,100,0.2,0.04\n4,100,0.8,0.04\n"),
+             Catch::Contains("On its own first fits; second does not. ") && Catch::Contains("Look at second first."));
 }
