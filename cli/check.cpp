@@ -5,8 +5,23 @@
 #include "dem/derived.hpp"
 #include "dem/rig.hpp"
 #include "dem/target.hpp"
+#include "uq/surrogates.hpp"
 
 namespace cli {
+namespace {
+
+/// What a calibration would refuse of the runs that there are.
+std::vector<std::string> too_few_runs(const data::Study& study, const TrainingRows& rows) {
+  if (rows.table.rows.empty()) return {};
+  try {
+    uq::training_rows(study, rows.table, rows.low);
+  } catch (const data::InputError& error) {
+    return {error.what()};
+  }
+  return {};
+}
+
+}  // namespace
 
 Action add_check(CLI::App& program) {
   const auto common = std::make_shared<Common>();
@@ -19,6 +34,7 @@ Action add_check(CLI::App& program) {
     std::vector<std::string> warnings = rows.notes;
     for (const data::Problem& problem : data::outside_training_range(study))
       warnings.push_back(data::describe({problem}));
+    for (std::string& warning : too_few_runs(study, rows)) warnings.push_back(std::move(warning));
     for (const auto& [material, unused] : workspace.cases) {
       const dem::Case c = case_at(workspace, parse_point(workspace, material, {}));
       if (auto found = dem::problems(c); !found.empty())

@@ -7,6 +7,8 @@
 #include <set>
 
 #include "data/error.hpp"
+#include "uq/build_measurement.hpp"
+#include "uq/linked_cases.hpp"
 
 namespace uq {
 namespace {
@@ -15,27 +17,6 @@ using data::CalibrationCase;
 using data::ExitStatus;
 using data::Problem;
 using data::Study;
-
-const CalibrationCase* find_case(const Study& study, const std::string& name) {
-  for (const auto& item : study.cases)
-    if (item.name == name) return &item;
-  return nullptr;
-}
-
-const data::Nuisance* find_nuisance(const CalibrationCase& item, const std::string& name) {
-  for (const auto& nuisance : item.nuisances)
-    if (nuisance.parameter.name == name) return &nuisance;
-  return nullptr;
-}
-
-/// Case that an unknown belongs to, links followed, and its name there; no case: the whole study's.
-struct Home {
-  const CalibrationCase* owner = nullptr;
-  std::string name;
-  bool operator==(const Home&) const = default;
-};
-
-bool joins(const data::Prior& prior) { return prior.kind == data::PriorKind::posterior && !prior.cut; }
 
 Acts acts_of(data::NuisanceKind kind) {
   using data::NuisanceKind;
@@ -47,19 +28,18 @@ Acts acts_of(data::NuisanceKind kind) {
 class Builder {
  public:
   Builder(const Study& study, const std::vector<Emulator>& emulators, const CalibrationCase& wanted)
-      : study_(study), emulators_(emulators), wanted_(wanted) {}
+      : study_(study), emulators_(emulators), wanted_(wanted), links_(study, wanted), problems_(links_.problems()) {}
 
   CaseModel build() {
-    include(wanted_, {});
     stop_on_problems();
     CaseModel model{.name = wanted_.name, .slots = {}, .groups = {}, .linked = {}, .observed_sets = wanted_.observe};
-    for (const auto* item : included_) {
+    for (const auto* item : links_.cases()) {
       if (item != &wanted_) model.linked.push_back(item->name);
       for (const auto& name : item->free) add_slot(model, *item, name);
       add_nuisances(model, *item);
     }
     stop_on_problems();
-    for (const auto* item : included_) add_rows(model, *item);
+    for (const auto* item : links_.cases()) add_rows(model, *item);
     check_slots_used(model);
     stop_on_problems();
     for (auto& group : model.groups) {
@@ -76,67 +56,6 @@ class Builder {
   }
   void stop_on_problems() const {
     if (!problems_.empty()) throw data::InputError(ExitStatus::bad_study, problems_);
-  }
-
-  /// Adds a case and those whose posteriors it takes; `path` is the way from the wanted case.
-  void include(const CalibrationCase& item, std::vector<std::string> path) {
-    if (std::find(path.begin(), path.end(), item.name) != path.end()) {
-      std::string circle;
-      for (const auto& name : path) circle += name + " -> ";
-      problem(item.place, fmt::format("the priors of the cases run in a circle: {}{}", circle, item.name),
-              "give one of them a prior of its own");
-      return;
-    }
-    path.push_back(item.name);
-    if (std::find(included_.begin(), included_.end(), &item) == included_.end()) included_.push_back(&item);
-    for (const auto& [name, prior] : item.priors) follow(name, prior, path);
-    for (const auto& nuisance : item.nuisances) follow(nuisance.parameter.name, nuisance.parameter.prior, path);
-  }
-
-  /// Includes the case whose posterior an unknown takes.
-  void follow(const std::string& name, const data::Prior& prior, const std::vector<std::string>& path) {
-    if (prior.kind != data::PriorKind::posterior) return;
-    const CalibrationCase* other = find_case(study_, prior.posterior_of);
-    if (other == nullptr) {
-      problem(prior.place,
-              fmt::format("there is no case '{}' whose posterior could be the prior of {}", prior.posterior_of, name),
-              "name one of the [[calibrate]] cases");
-    } else if (std::find(other->free.begin(), other->free.end(), name) == other->free.end() &&
-               find_nuisance(*other, name) == nullptr) {
-      problem(prior.place, fmt::format("{} is not free in case '{}', so it has no posterior there", name, other->name),
-              fmt::format("free it in '{}', or fix it here", other->name));
-    } else if (!prior.cut) {
-      include(*other, path);
-    } else if (path.size() > 1) {
-      problem(prior.place,
-              fmt::format("case '{}' cuts {} from '{}', but is itself sampled jointly with case '{}'", path.back(),
-                          name, other->name, wanted_.name),
-              fmt::format("cut the posterior of '{}' in '{}', too", path.back(), wanted_.name));
-    }
-  }
-
-  const data::Prior& prior_of(const CalibrationCase& item, const std::string& name) const {
-    if (const auto* nuisance = find_nuisance(item, name)) return nuisance->parameter.prior;
-    const auto own = item.priors.find(name);
-    return own == item.priors.end() ? study_.parameters[study_.parameter_index(name).value()].prior : own->second;
-  }
-
-  Home home(const CalibrationCase& item, const std::string& name) const {
-    const data::Prior& prior = prior_of(item, name);
-    return joins(prior) ? home(*find_case(study_, prior.posterior_of), name) : Home{&item, name};
-  }
-
-  /// The density that an unknown had before any data: through cuts, too.
-  const data::Prior& first_prior(const CalibrationCase& item, const std::string& name) const {
-    const data::Prior& prior = prior_of(item, name);
-    if (prior.kind != data::PriorKind::posterior) return prior;
-    return first_prior(*find_case(study_, prior.posterior_of), name);
-  }
-
-  const data::Nuisance& first_nuisance(const CalibrationCase& item, const std::string& name) const {
-    const data::Nuisance& nuisance = *find_nuisance(item, name);
-    if (nuisance.parameter.prior.kind != data::PriorKind::posterior) return nuisance;
-    return first_nuisance(*find_case(study_, nuisance.parameter.prior.posterior_of), name);
   }
 
   /// An unknown that is not there yet.
@@ -156,10 +75,10 @@ class Builder {
 
   void add_slot(CaseModel& model, const CalibrationCase& item, const std::string& name) {
     const data::Parameter& parameter = study_.parameters[study_.parameter_index(name).value()];
-    const data::Prior& prior = prior_of(item, name);
-    add_unknown(model, home(item, name),
+    const data::Prior& prior = links_.prior_of(item, name);
+    add_unknown(model, links_.home(item, name),
                 {.label = label_of(item, name),
-                 .prior = ScaledPrior(parameter, first_prior(item, name)),
+                 .prior = ScaledPrior(parameter, links_.first_prior(item, name)),
                  .own = &item == &wanted_,
                  .nuisance = Acts::none,
                  .cut_from = prior.cut ? prior.posterior_of : "",
@@ -184,7 +103,7 @@ class Builder {
                 "cut parameters only; give it a prior, or the posterior without cut");
         continue;
       }
-      add_nuisance(model, home(item, name), label_of(item, name), first_nuisance(item, name));
+      add_nuisance(model, links_.home(item, name), label_of(item, name), links_.first_nuisance(item, name));
     }
     for (const auto& set_name : item.observe) {
       const data::ObservationSet& set = study_.observations[study_.observation_index(set_name).value()];
@@ -294,96 +213,13 @@ class Builder {
       group->variance[before + i] = point.standard_errors[column] * point.standard_errors[column];
       group->origin.push_back({.set = set_index, .point = static_cast<std::size_t>(i), .output = set.outputs[column]});
     }
-    add_measurement(*group, item, set, {before, set.outputs[column]});
-  }
-
-  /// What is known of the meter and the settings of the rows just added.
-  void add_measurement(RowGroup& group, const CalibrationCase& item, const data::ObservationSet& set,
-                       const std::pair<Eigen::Index, std::size_t>& first_and_output) {
-    const auto [first, output] = first_and_output;
-    ReadSet read{.first = first, .count = group.base.rows() - first, .factors = {}, .settings = {}};
-    if (set.of_machine && study_.scale && study_.scale->unknown) {
-      read.factors.push_back(slot_of({nullptr, "scale"}));
-    } else if (set.of_machine && study_.scale) {
-      read.factor = study_.scale->value;
-    }
-    int discrepancy_sd = -1, discrepancy_length = -1;
-    for (const auto& nuisance : item.nuisances) {
-      if (nuisance.output.value_or(output) != output) continue;
-      const int s = slot_of(home(item, nuisance.parameter.name));
-      switch (nuisance.kind) {
-        case data::NuisanceKind::offset:
-          read.offset = s;
-          break;
-        case data::NuisanceKind::gain:
-          read.factors.push_back(s);
-          break;
-        case data::NuisanceKind::noise_scale:
-        case data::NuisanceKind::noise_sd:
-          read.noise = s;
-          read.noise_is_sd = nuisance.kind == data::NuisanceKind::noise_sd;
-          break;
-        case data::NuisanceKind::discrepancy_sd:
-          discrepancy_sd = s;
-          break;
-        case data::NuisanceKind::discrepancy_length:
-          discrepancy_length = s;
-          break;
-        case data::NuisanceKind::scale:
-        case data::NuisanceKind::setting:
-          break;  // of the rig or the set, not of the case
-      }
-    }
-    for (const auto& error : set.common_errors)
-      if (error.output == output) {
-        read.common_absolute = error.spread.absolute;
-        read.common_relative = error.spread.relative;
-      }
-    for (const auto& error : set.setting_errors) add_setting(read, group, set, error);
-    const bool plain = read.factor == 1.0 && read.factors.empty() && read.offset < 0 && read.noise < 0 &&
-                       read.common_absolute == 0.0 && read.common_relative == 0.0 && read.settings.empty();
-    if (!plain) group.measurement.sets.push_back(read);
-    if (discrepancy_sd >= 0) add_discrepancy(group, set, read, {discrepancy_sd, discrepancy_length});
-  }
-
-  void add_setting(ReadSet& read, const RowGroup& group, const data::ObservationSet& set,
-                   const data::SettingError& error) {
-    const data::Control& control = study_.controls[error.control];
-    const auto& inputs = group.emulator.inputs;
-    const auto found = std::find_if(inputs.begin(), inputs.end(), [&](const EmulatorInput& input) {
-      return input.kind == InputKind::control && input.index == error.control;
-    });
-    if (found == inputs.end()) {
-      problem(error.place,
-              fmt::format("the runs of material '{}' do not vary {}, so its uncertainty's effect is not known",
-                          set.material, control.name),
-              fmt::format("vary it in training, or state its effect as common_error of '{}'", set.name));
-      return;
-    }
-    if (error.unknown) return;
-    SettingShift shift{.column = static_cast<int>(found - inputs.begin()), .error = Eigen::VectorXd(read.count)};
-    for (Eigen::Index i = 0; i < read.count; ++i) {
-      const double value = set.points[static_cast<std::size_t>(i)].controls[error.control];
-      shift.error[i] = std::hypot(error.spread.absolute, error.spread.relative * value) / (control.high - control.low);
-      shift.common = shift.common && value == set.points.front().controls[error.control];
-    }
-    read.settings.push_back(std::move(shift));
-  }
-
-  /// The case's discrepancy over the rows just added, one process with the case's other rows of the group.
-  void add_discrepancy(RowGroup& group, const data::ObservationSet& set, const ReadSet& read,
-                       const std::pair<int, int>& unknowns) {
-    auto& all = group.measurement.discrepancies;
-    if (all.empty() || all.back().sd != unknowns.first)
-      all.push_back({.first = read.first, .sd = unknowns.first, .length = unknowns.second, .controls = {}});
-    DiscrepancyRows& part = all.back();
-    part.controls.conservativeResize(part.count + read.count, static_cast<Eigen::Index>(study_.controls.size()));
-    for (Eigen::Index i = 0; i < read.count; ++i)
-      for (std::size_t c = 0; c < study_.controls.size(); ++c)
-        part.controls(part.count + i, static_cast<Eigen::Index>(c)) =
-            (set.points[static_cast<std::size_t>(i)].controls[c] - study_.controls[c].low) /
-            (study_.controls[c].high - study_.controls[c].low);
-    part.count += read.count;
+    MeterUnknowns unknowns;
+    for (const auto& nuisance : item.nuisances)
+      unknowns.nuisances.push_back(slot_of(links_.home(item, nuisance.parameter.name)));
+    if (set.of_machine && study_.scale && study_.scale->unknown) unknowns.scale = slot_of({nullptr, "scale"});
+    const std::vector<Problem> unknowable =
+        add_measurement(*group, study_, item, {set, set.outputs[column], before}, unknowns);
+    problems_.insert(problems_.end(), unknowable.begin(), unknowable.end());
   }
 
   void fill_control(RowGroup& group, const Emulator& emulator, const data::ObservationSet& set, Eigen::Index before,
@@ -417,7 +253,7 @@ class Builder {
   Value value_of(const CalibrationCase& item, const data::ObservationSet& set, std::size_t parameter_index) {
     const data::Parameter& parameter = study_.parameters[parameter_index];
     if (std::find(item.free.begin(), item.free.end(), parameter.name) != item.free.end()) {
-      return {.slot = slot_of(home(item, parameter.name)), .scaled = 0.0};
+      return {.slot = slot_of(links_.home(item, parameter.name)), .scaled = 0.0};
     }
     std::optional<double> value;
     if (const auto fixed = item.fixed.find(parameter.name); fixed != item.fixed.end()) value = fixed->second;
@@ -472,7 +308,7 @@ class Builder {
   const Study& study_;
   const std::vector<Emulator>& emulators_;
   const CalibrationCase& wanted_;
-  std::vector<const CalibrationCase*> included_;
+  LinkedCases links_;
   std::vector<Home> homes_;  // of each slot
   std::set<std::size_t> used_sets_;
   std::vector<Problem> problems_;

@@ -1,4 +1,4 @@
-// One case of the page: verdict in words, its numbers, the output against its control, what is traded, profiles.
+// One case of the page: verdict in words, its numbers, the output against its control, profiles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -202,106 +202,6 @@ std::string comparison_part(const CaseReport& result) {
 }
 
 /// The model's mean at each equivalent point, set by set.
-std::string equivalent_figures(const CaseReport& result, const TradedPair& traded, const std::string& stem,
-                               const Context& context) {
-  std::vector<const PredictiveCurve*> drawn;
-  std::string out;
-  for (const PredictiveCurve& curve : traded.curves) {
-    const bool known = std::any_of(drawn.begin(), drawn.end(), [&](const PredictiveCurve* other) {
-      return other->observation_set == curve.observation_set && other->output == curve.output;
-    });
-    if (known) continue;
-    drawn.push_back(&curve);
-    out += figure(equivalent_figure(result, traded, curve, fmt::format("{}-{}", stem, drawn.size())),
-                  fmt::format("{} at the equivalent points ({}): where the curves part, a measurement would tell them "
-                              "apart.",
-                              text(curve.output), text(curve.observation_set)),
-                  context);
-  }
-  return out;
-}
-
-std::string equivalent_table(const CaseReport& result, const TradedPair& traded) {
-  if (traded.equivalent.empty()) return {};
-  Table table{
-      .caption = "Equivalent points: the observations cannot tell these apart.", .head = {{"Point"}}, .rows = {}};
-  std::vector<const ParameterReport*> columns;
-  std::vector<plot::Axis> axes;
-  for (const ParameterReport& parameter : result.parameters) {
-    const bool given = std::any_of(traded.equivalent.begin(), traded.equivalent.end(),
-                                   [&](const auto& point) { return point.contains(parameter.name); });
-    if (!given) continue;
-    columns.push_back(&parameter);
-    double largest = 0.0;
-    for (const auto& point : traded.equivalent) {
-      if (const auto found = point.find(parameter.name); found != point.end())
-        largest = std::max(largest, std::abs(found->second));
-    }
-    axes.push_back(plot::axis_for(parameter.name, parameter.unit, largest));
-    table.head.push_back(number(text(axes.back().label)));
-  }
-  int index = 0;
-  for (const auto& point : traded.equivalent) {
-    std::vector<Cell> row{{std::to_string(++index)}};
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const auto found = point.find(columns[i]->name);
-      row.push_back(number(found == point.end() ? "" : significant(found->second * axes[i].scale, 3, pretty)));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return html(table);
-}
-
-std::string joint_part(const CaseReport& result, const std::string& id, const Context& context) {
-  if (result.parameters.size() < 2) return {};
-  std::string out = "<h3>What is known together</h3>\n";
-  for (const TradedPair& traded : result.traded) {
-    out += fmt::format(
-        "<p><strong>{}</strong> and <strong>{}</strong> are traded against each other (correlation {}): the "
-        "observations fix only <strong>{}</strong>.</p>\n",
-        text(traded.first), text(traded.second),
-        format_value(traded.correlation, {.exponent = 0, .decimals = 3}, "", pretty), text(traded.combination));
-  }
-  if (result.traded.empty()) out += "<p>No pair of parameters is traded against each other.</p>\n";
-  if (!result.draws_for_plot.empty()) {
-    const auto pairs = pairs_to_draw(result, context.options.joint_figures);
-    std::string small;
-    for (const auto& pair : pairs) {
-      const std::string names =
-          text(result.parameters[pair.first].name) + " and " + text(result.parameters[pair.second].name);
-      const std::string stem = fmt::format("{}-joint-{}-{}", id, pair.first + 1, pair.second + 1);
-      if (pairs.size() == 1 || are_traded(result, pair)) {
-        out += figure(
-            joint_figure(result, pair, FigureSize::wide, stem),
-            fmt::format("Joint posterior of {}: draws, the smallest regions that hold 50 and 90\u00a0% of them, and "
-                        "the prior's range. Numbered points, if any, fit alike.",
-                        names),
-            context);
-      } else {
-        small +=
-            figure(joint_figure(result, pair, FigureSize::half, stem), "Joint posterior of " + names + ".", context);
-      }
-    }
-    if (!small.empty()) out += "<div class=\"pair\">\n" + small + "</div>\n";
-  }
-  for (std::size_t i = 0; i < result.traded.size(); ++i)
-    out += equivalent_table(result, result.traded[i]) +
-           equivalent_figures(result, result.traded[i], fmt::format("{}-equivalent-{}", id, i + 1), context);
-  if (result.correlation.size() == result.parameters.size()) {
-    Table table{.caption = "Posterior correlation.", .head = {{""}}, .rows = {}};
-    for (std::size_t i = 0; i < result.parameters.size(); ++i) {
-      table.head.push_back(number(text(result.parameters[i].name)));
-      std::vector<Cell> row{{text(result.parameters[i].name)}};
-      for (const double r : result.correlation[i]) {
-        row.push_back(number(format_value(r, {.exponent = 0, .decimals = 3}, "", pretty)));
-      }
-      table.rows.push_back(std::move(row));
-    }
-    out += html(table);
-  }
-  return out;
-}
-
 std::string profile_part(const CaseReport& result, const std::string& id, const Context& context) {
   std::string figures;
   std::size_t drawn = 0;

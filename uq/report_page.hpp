@@ -1,5 +1,5 @@
 #pragma once
-// Pieces of report.html, for report_html.cpp and report_html_case.cpp alone. Every piece of text that a file or a user
+// Pieces of report.html, for report_html*.cpp alone. Every piece of text that a file or a user
 // supplied goes through text().
 #include <string>
 #include <string_view>
@@ -41,6 +41,8 @@ std::string badge(const std::string& surrogate_verdict);
 /// A case's place in the page: "case-2-carrier". The index keeps two names with one slug apart.
 std::string case_id(std::size_t index, const CaseReport& result);
 
+/// Of a case: its parameters' joint posterior and what is traded; `id` as in case_id.
+std::string joint_part(const CaseReport& result, const std::string& id, const Context& context);
 std::string case_section(const CaseReport& result, std::size_t index, const Context& context);
 std::string surrogate_section(const std::vector<SurrogateReport>& surrogates, const Context& context);
 

@@ -23,14 +23,15 @@ struct SobolIndex {
 };
 
 struct SensitivityOptions {
-  int points_max = 1500;  ///< of the grid; decides the nodes per input
+  int points_max = 1500;  ///< of the grid; decides the nodes per input, of which there are three at least
   int nodes_max = 24;     ///< per input
   int draws = 200;        ///< of the response
   std::uint64_t seed = 1;
 };
 
-/// The most inputs whose grid still has three nodes in each.
-inline constexpr int sensitivity_inputs_max = 6;
+/// The most inputs: three nodes in each of seven are 2,187 points, whose joint covariance takes about a second; two
+/// nodes would not see curvature.
+inline constexpr int sensitivity_inputs_max = 7;
 
 /// Indices of a response whose joint prediction at points (one per row, unit cube) `predict` gives; empty for more
 /// inputs than sensitivity_inputs_max, or where the response does not vary.

@@ -144,6 +144,9 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
     report.total_order.push_back(index.total);
     report.total_order_sd.push_back(index.total_sd);
   }
+  if (rows.inputs.size() > static_cast<std::size_t>(sensitivity_inputs_max))
+    report.notes.push_back(fmt::format("no Sobol indices: they are for {} inputs at most, and this surrogate has {}",
+                                       sensitivity_inputs_max, rows.inputs.size()));
   if (fitted.two_level) add_levels(report, fitted, output);
   name_inputs(report);
   return report;

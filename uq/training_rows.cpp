@@ -141,7 +141,9 @@ std::vector<TrainingRows> training_rows(const data::Study& study, const data::Ru
                             fmt::format("{} has {} runs of {}{}, fewer than the {} that {} inputs need at the very "
                                         "least",
                                         name, rows, study.outputs[output].name, level, needed, found.inputs.size()),
-                            "run `demcal train` for more, ten per input is a good start"});
+                            study.training.engine == "none"
+                                ? "add rows to the table, ten per input is a good start"
+                                : "run `demcal train` for more, ten per input is a good start"});
       };
       const std::size_t needed = found.inputs.size() + 2;
       demand(high.y.size(), found.low ? 3 : needed, "");

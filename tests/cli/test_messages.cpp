@@ -85,3 +85,91 @@ TEST_CASE("a study without training runs says how to get them") {
   CHECK(outcome.status == 66);
   CHECK_THAT(outcome.err, Contains("demcal train"));
 }
+
+TEST_CASE("a study with nothing to calibrate against is refused with what to add") {
+  const Folder folder;
+  folder.study("other-code");
+  const std::string text = folder.read("study/study.toml");
+  SECTION("no observations") {
+    folder.write("study/study.toml", text.substr(0, text.find("[[observe]]")));
+    for (const char* command : {"calibrate", "sample", "fit"}) {
+      const auto outcome = folder.demcal({command, "study", "--out", "out"});
+      CHECK(outcome.status == 78);
+      CHECK_THAT(outcome.err, Contains("has no measurements to calibrate against (add [[observe]]"));
+    }
+    const auto check = folder.demcal({"check", "study"});
+    CHECK(check.status == 2);
+    CHECK_THAT(check.err, Contains("there is no [[calibrate]] case yet"));
+  }
+  SECTION("a case that observes nothing") {
+    folder.replace("study/study.toml", "observe = [\"bench\"]", "observe = []");
+    const auto outcome = folder.demcal({"calibrate", "study", "--out", "out"});
+    CHECK(outcome.status == 78);
+    CHECK_THAT(outcome.err, Contains("study.toml:25: calibrate.powder.observe: is an empty list (name at least one)"));
+  }
+  SECTION("an observation file without rows") {
+    folder.write("study/bench.csv", "speed,torque,torque_se\n");
+    const auto outcome = folder.demcal({"calibrate", "study", "--out", "out"});
+    CHECK(outcome.status == 65);
+    CHECK_THAT(outcome.err, Contains("bench.csv: has a header but no rows (add the measured points)"));
+  }
+}
+
+TEST_CASE("an observation outside the runs is a warning of check, and refused by calibrate with its line") {
+  const Folder folder;
+  folder.study("other-code");
+  folder.replace("study/bench.csv", "\n300,", "\n600,");
+  const auto check = folder.demcal({"check", "study"});
+  CHECK(check.status == 2);
+  CHECK_THAT(check.err, Contains("bench.csv:10: speed: 600 rpm is outside the training range, 50 to 300 rpm"));
+  const auto outcome = folder.demcal({"sample", "study", "--out", "out"});
+  CHECK(outcome.status == 78);
+  CHECK_THAT(outcome.err, Contains("bench.csv:10: speed is 600 rpm") && Contains("leave the point out, or train in"));
+}
+
+TEST_CASE("fewer runs than a surrogate needs are named by check and calibrate, with how to get more") {
+  const Folder folder;
+  folder.study("other-code");
+  std::string runs = folder.read("study/runs.csv");
+  std::size_t end = runs.find("friction,");
+  for (int line = 0; line < 5; ++line) end = runs.find('\n', end) + 1;  // the header and four runs
+  folder.write("study/runs.csv", runs.substr(0, end));
+  for (const auto& [command, status] : {std::pair{"check", 2}, {"calibrate", 65}}) {
+    const auto outcome = folder.demcal({command, "study", "--out", "out"});
+    CHECK(outcome.status == status);
+    CHECK_THAT(outcome.err, Contains("runs.csv: the study has 4 runs of torque, fewer than the 5 that 3 inputs need") &&
+                                Contains("add rows to the table"));
+  }
+}
+
+TEST_CASE("a prior that the data exclude is refused before sampling, with the values it allows") {
+  const Folder folder;
+  folder.study("other-code");
+  folder.replace("study/study.toml", "free = [\"friction\", \"cohesion\"]",
+                 "free = [\"friction\"]\nfixed = { cohesion = 0.5 }\n"
+                 "priors = { friction = { kind = \"normal\", mean = 0.12, sd = 0.002 } }");
+  const auto outcome = folder.demcal({"sample", "study", "--out", "out"});
+  CHECK(outcome.status == 78);
+  CHECK_THAT(outcome.err, Contains("bench.csv:10: case 'powder': the priors of friction only allow") &&
+                              Contains("but 11.24 mN m was measured; the parameters' ranges would allow it (widen or "
+                                       "move the priors)"));
+}
+
+TEST_CASE(
+    "a sampler that does not exist, and a number of data sets that proves nothing, are refused with what may be") {
+  const Folder folder;
+  const std::string study = DEMCAL_SOURCE_DIR "/data/other-code";
+  for (const char* number : {"0", "19", "-5", "100001", "many", "50.5"}) {
+    const auto outcome = folder.demcal({"sample", study, "--sbc", number});
+    INFO(number << ": " << outcome.err);
+    CHECK(outcome.status == 64);
+    CHECK_THAT(outcome.err, Contains("--sbc") && Contains(number) && Contains("20 to 100000"));
+  }
+  for (const char* command : {"sample", "calibrate"}) {
+    const auto outcome = folder.demcal({command, study, "--sampler", "gibbs"});
+    CHECK(outcome.status == 64);
+    CHECK_THAT(outcome.err, Contains("--sampler") && Contains("gibbs") && Contains("mixture") && Contains("nuts"));
+  }
+  CHECK(folder.demcal({"sample", study, "--sbc"}).status == 64);
+  CHECK_FALSE(std::filesystem::exists(folder.path / "other-code"));
+}

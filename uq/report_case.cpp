@@ -1,0 +1,239 @@
+// From a case's draws to what is told of it: verdicts, convergence, bands, warnings.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/calibrate.hpp"
+#include "uq/contradiction.hpp"
+#include "uq/diagnostics.hpp"
+#include "uq/discrepancy.hpp"
+#include "uq/posterior.hpp"
+#include "uq/quadrature.hpp"
+
+namespace uq {
+namespace {
+
+/// Convergence of each parameter, and the Monte Carlo error of its mean in the study's unit.
+void add_diagnostics(CaseReport& report, const SampledCase& sampled) {
+  for (std::size_t k = 0; k < report.parameters.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    ParameterReport& parameter = report.parameters[k];
+    parameter.rhat = sampled.draws.rhat[column];
+    parameter.ess_bulk = sampled.draws.ess_bulk[column];
+    parameter.ess_tail = sampled.draws.ess_tail[column];
+    const data::Parameter& source = sampled.model->slots[k].prior.parameter();
+    Eigen::MatrixXd values = sampled.draws.coordinate(static_cast<int>(k));
+    for (double& value : values.reshaped()) value = source.unit.from_si(from_scaled(source, value));
+    parameter.mcse = mean_mcse(values);
+  }
+}
+
+void add_nuisances(CaseReport& report, const SampledCase& sampled) {
+  for (int k = 0; k < sampled.model->dimension(); ++k) {
+    const Slot& slot = sampled.model->slots[static_cast<std::size_t>(k)];
+    if (slot.nuisance == Acts::none) continue;
+    const data::Unit& unit = slot.prior.parameter().unit;
+    const Eigen::MatrixXd u = sampled.draws.coordinate(k);
+    Eigen::VectorXd values = u.reshaped();
+    for (double& value : values) value = unit.from_si(slot.value(value));
+    const double mean = values.mean();
+    report.nuisances.push_back(
+        {.name = slot.label,
+         .unit = unit.symbol,
+         .prior_mean = unit.from_si(slot.prior.value_mean()),
+         .prior_sd = slot.prior.value_sd() / unit.factor,
+         .mean = mean,
+         .sd = std::sqrt((values.array() - mean).square().sum() / static_cast<double>(values.size() - 1)),
+         .q05 = quantile(values, 0.05),
+         .q50 = quantile(values, 0.50),
+         .q95 = quantile(values, 0.95),
+         .rhat = sampled.draws.rhat[k],
+         .ess_bulk = sampled.draws.ess_bulk[k],
+         .ess_tail = sampled.draws.ess_tail[k]});
+  }
+}
+
+/// Draws of the case's own parameters in the study's units, and their correlation.
+void add_draws(CaseReport& report, const CaseModel& model, const Eigen::MatrixXd& draws) {
+  const Eigen::Index own = model.own_count();
+  Eigen::MatrixXd values = draws.leftCols(own);
+  for (Eigen::Index k = 0; k < own; ++k) {
+    const data::Parameter& parameter = model.slots[static_cast<std::size_t>(k)].prior.parameter();
+    for (Eigen::Index i = 0; i < values.rows(); ++i)
+      values(i, k) = parameter.unit.from_si(from_scaled(parameter, values(i, k)));
+  }
+  const Eigen::MatrixXd centred = values.rowwise() - values.colwise().mean();
+  const Eigen::VectorXd length = centred.colwise().norm();
+  report.correlation.assign(static_cast<std::size_t>(own), std::vector<double>(static_cast<std::size_t>(own), 1.0));
+  for (Eigen::Index a = 0; a < own; ++a)
+    for (Eigen::Index b = 0; b < own; ++b)
+      if (a != b)
+        report.correlation[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =
+            centred.col(a).dot(centred.col(b)) / (length[a] * length[b]);
+  const Eigen::MatrixXd plotted = thinned(values, 1500);
+  for (Eigen::Index i = 0; i < plotted.rows(); ++i) {
+    std::vector<double> row;
+    for (Eigen::Index k = 0; k < own; ++k) row.push_back(plotted(i, k));
+    report.draws_for_plot.push_back(std::move(row));
+  }
+}
+
+/// Largest difference of mean and sd between draws and quadrature, in posterior sd.
+double difference(const Eigen::MatrixXd& draws, const Quadrature& exact) {
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < draws.cols(); ++k) {
+    const double mean = draws.col(k).mean();
+    const double sd = std::sqrt((draws.col(k).array() - mean).square().mean());
+    largest =
+        std::max({largest, std::abs(mean - exact.mean[k]) / exact.sd[k], std::abs(sd - exact.sd[k]) / exact.sd[k]});
+  }
+  return largest;
+}
+
+void add_quadrature(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
+                    const CalibrateOptions& options) {
+  const Quadrature exact = integrate(
+      posterior_target(sampled.model),
+      {.tolerance = 1e-4, .evaluations_max = 60000, .threads = options.threads, .guides = thinned(draws, 1000)});
+  if (!exact.resolved) return;
+  report.grid_difference = difference(draws, exact);
+  // The draws' own error is 1 / sqrt(ESS) sd; beyond five of these the two disagree.
+  double least = sampled.draws.ess_bulk.minCoeff();
+  least = std::min(least, sampled.draws.ess_tail.minCoeff());
+  if (*report.grid_difference > 5.0 / std::sqrt(least))
+    report.warnings.push_back(fmt::format("case {}: sampler and grid quadrature differ by {:.2g} posterior sd",
+                                          report.name, *report.grid_difference));
+}
+
+/// What is known of a cut parameter is what its own case says.
+void take_cut_verdicts(Identification& found, const SampledCase& sampled, const CalibrateOptions& options) {
+  for (const auto& source : sampled.cut_sources) {
+    const Identification of_source = identify(*source->model, source->draws.pooled(), options.identify);
+    for (std::size_t k = 0; k < found.parameters.size(); ++k) {
+      if (sampled.model->slots[k].cut_from != source->model->name) continue;
+      for (const ParameterReport& known : of_source.parameters)
+        if (known.name == found.parameters[k].name) {
+          found.parameters[k] = known;
+          found.parameters[k].sentence += fmt::format(
+              " This is the posterior of case {}, cut: the data of this case do not change it.", source->model->name);
+        }
+    }
+  }
+}
+
+void add_sampler_warnings(CaseReport& report, const Draws& draws) {
+  for (const auto& chain : draws.chains)
+    if (chain.energy.size() > 0) {
+      const double fraction = energy_fraction(chain.energy);
+      if (!(report.energy_fraction <= fraction)) report.energy_fraction = fraction;
+    }
+  if (report.divergences > 0)
+    report.warnings.push_back(fmt::format(
+        "case {}: {} divergent trajectories: the draws may miss a sharp corner of the posterior (sampler = \"mixture\" "
+        "does not follow gradients)",
+        report.name, report.divergences));
+  if (report.energy_fraction < 0.3)
+    report.warnings.push_back(fmt::format("case {}: E-BFMI {:.2f} is below 0.3: the chains explore the energies slowly",
+                                          report.name, report.energy_fraction));
+  const bool has_evidence = !std::isnan(report.log_evidence);
+  if (has_evidence && !(report.log_evidence_error < 0.2))
+    report.warnings.push_back(
+        fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
+}
+
+void add_warnings(CaseReport& report, const SampledCase& sampled) {
+  if (!report.converged)
+    report.warnings.push_back(
+        fmt::format("case {}: the chains have not converged: {}", report.name, sampled.draws.reason));
+  if (!report.fits) report.warnings.push_back(fmt::format("case {}: the model does not fit the data", report.name));
+  add_sampler_warnings(report, sampled.draws);
+  if (!report.discrepancies.empty()) {
+    double largest = 0.0;
+    for (const auto& band : report.discrepancies) largest = std::max(largest, band.share);
+    report.warnings.push_back(
+        fmt::format("case {}: a discrepancy competes with the parameters for the data (it takes {:.0f} % of the spread "
+                    "about the model); what it takes, the parameters need not explain",
+                    report.name, 100.0 * largest));
+  }
+  for (const auto& slot : sampled.model->slots)
+    if (slot.nuisance == Acts::none && slot.prior.kept_mass() < 0.99)
+      report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
+                                            slot.label, 100.0 * (1.0 - slot.prior.kept_mass())));
+}
+
+}  // namespace
+
+CaseReport report_case(const data::Study& study, const SampledCase& sampled, const CalibrateOptions& options) {
+  const CaseModel& model = *sampled.model;
+  CaseReport report;
+  report.name = model.name;
+  report.linked = model.linked;
+  report.observed_sets = model.observed_sets;
+  for (const auto& name : model.observed_sets) {
+    std::string note;
+    for (const auto& line : study.observations[study.observation_index(name).value()].header)
+      note += (note.empty() ? "" : "\n") + line;
+    report.observed_notes.push_back(note);
+  }
+  report.converged = sampled.draws.converged;
+  report.chains = static_cast<int>(sampled.draws.chains.size());
+  report.divergences = sampled.draws.divergences;
+  report.sampler = sampled.draws.sampler;
+  for (const auto& slot : model.slots)
+    if (!slot.cut_from.empty()) report.cuts.push_back(slot.label + " from " + slot.cut_from);
+  report.log_evidence = sampled.draws.log_evidence;
+  report.log_evidence_error = sampled.draws.log_evidence_error;
+  if (sampled.draws.chains.empty()) {
+    // Nothing was drawn: no verdict, and the reason in the first lines.
+    report.fits = false;
+    report.warnings.push_back(fmt::format("case {}: sampling failed: {}", report.name, sampled.draws.reason));
+    report.finding = "The posterior could not be sampled: " + sampled.draws.reason + ".";
+    report.consequence = "There is no result for this case.";
+    report.remedy = "Check the priors and the measurement errors.";
+    return report;
+  }
+  report.draws = static_cast<int>(sampled.draws.chains.front().x.rows());
+
+  const Eigen::MatrixXd draws = sampled.draws.pooled();
+  Identification found = identify(model, draws, options.identify);
+  take_cut_verdicts(found, sampled, options);
+  report.chi2 = found.check.chi2;
+  report.dof = found.check.dof;
+  report.ppp = found.check.predictive_p;
+  report.fits = found.fits;
+  report.parameters = found.parameters;
+  report.fisher_condition = found.fisher.condition;
+  report.collinearity = found.fisher.collinearity;
+  report.traded = found.traded;
+  for (TradedPair& pair : report.traded)
+    for (const std::vector<double>& u : pair.equivalent_u)
+      for (PredictiveCurve& curve :
+           mean_curves(study, model, Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()))))
+        pair.curves.push_back(std::move(curve));
+  add_diagnostics(report, sampled);
+  add_nuisances(report, sampled);
+  add_draws(report, model, draws);
+  const std::uint64_t seed = seed_of(study, options);
+  report.predictive = predictive_points(study, model, draws, seed);
+  report.curves = predictive_curves(study, model, draws, seed);
+  report.discrepancies = discrepancy_bands(study, model, draws, seed);
+  if (options.quadrature && model.dimension() <= 2 && report.cuts.empty())
+    add_quadrature(report, sampled, draws, options);
+  Words words = summarise(model, found, options.identify.thresholds);
+  if (!found.fits) {
+    const Contradiction sets =
+        describe_contradiction(fits_alone(study, model, found.best_fit.x), options.identify.thresholds.best_fit_p);
+    if (!sets.finding.empty()) {
+      words.finding += " " + sets.finding;
+      words.remedy = sets.remedy + " " + words.remedy;
+    }
+  }
+  report.finding = words.finding;
+  report.consequence = words.consequence;
+  report.remedy = words.remedy;
+  add_warnings(report, sampled);
+  return report;
+}
+
+}  // namespace uq
