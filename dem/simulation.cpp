@@ -49,6 +49,11 @@ Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.thr
     body_reach_.push_back({reach.from_axis + largest_radius_, reach.from_point + largest_radius_});
   }
 
+  state_.position.reserve(n);
+  state_.motion.reserve(n);
+  state_.half.reserve(n);
+  state_.load.reserve(n);
+  state_.id.reserve(n);
   for (std::size_t i = 0; i < n; ++i) {
     const double r = pick(given.radius, i, 0.0);
     const double mass = pick(given.density, i, 0.0) * 4.0 / 3.0 * std::numbers::pi * r * r * r;
@@ -68,6 +73,8 @@ Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.thr
     state_.load.push_back(load);
     state_.id.push_back(static_cast<std::uint32_t>(i));
   }
+  const std::size_t chunks = std::clamp<std::size_t>(n / 1024, 1, 64);
+  for (std::size_t c = 0; c <= chunks; ++c) state_.chunk_first.push_back(static_cast<std::uint32_t>(n * c / chunks));
   rebuild();
   compute_forces();
   // The velocities given are those at time 0; the integrator wants them half a step earlier.
@@ -254,8 +261,8 @@ double Simulation::bytes_per_particle() const {
   const double total = size(s.position) + size(s.motion) + size(s.half) + size(s.load) + size(s.reference) +
                        size(s.id) + size(s.ghost) + size(s.pair) + size(s.pair_first) + size(s.partner_load) +
                        size(s.in_range) + size(s.history) + size(s.halo_owner) + size(s.wall) + size(s.features) +
-                       size(s.feature_gap) + size(cells_.of) + size(cells_.first) + size(cells_.ghost_first) +
-                       size(order_) + size(place_);
+                       size(s.feature_gap) + size(cells_.first) + size(cells_.ghost_first) + size(order_) +
+                       size(place_);
   return total / static_cast<double>(std::max<std::size_t>(1, s.particles()));
 }
 

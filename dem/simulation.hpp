@@ -62,6 +62,23 @@ struct Energy {
   double total() const { return translation + rotation + gravity + elastic + attraction; }
 };
 
+/// The grid along which rows are sorted: x outermost, z innermost.
+struct Cells {
+  Vec3 low, size;  ///< m, origin and edge lengths of one cell
+  int n[3] = {1, 1, 1};
+  std::vector<std::uint32_t> first, ghost_first;  ///< row of each cell, one more; ghosts count from 0
+
+  std::size_t total() const { return static_cast<std::size_t>(n[0]) * n[1] * n[2]; }
+  std::array<int, 3> around(Vec3 at) const;  ///< the cell at a point, or the nearest
+  std::uint32_t of(Vec3 at) const;           ///< the same, numbered
+};
+
+/// Room for as many rows and a few more; a vector that grows by itself doubles.
+template <class Row>
+void make_room(std::vector<Row>& rows, std::size_t count) {
+  if (rows.capacity() < count) rows.reserve(count + count / 64);
+}
+
 class Simulation {
  public:
   explicit Simulation(Setup setup);
@@ -90,15 +107,23 @@ class Simulation {
   bool list_is_stale() const;
   void rebuild();
   void wrap();
-  std::uint32_t cell_of(Vec3 at) const;
   void sort();
   void make_ghosts();
   void list_pairs();
-  void cut_chunks();
+  std::vector<Pair> pairs_of(std::size_t chunk) const;
+  void list_halos();
   void list_walls();
   std::vector<Frame> frames() const;
   Surroundings around(const std::vector<Frame>& frames) const;
   [[noreturn]] void report_overlap() const;
+
+  /// Calls work(i) for every particle, the team sharing the chunks.
+  template <class Work>
+  void each_particle(Work&& work) {
+    team_.for_each(state_.chunks(), [&](std::size_t c) {
+      for (std::uint32_t i = state_.chunk_first[c]; i < state_.chunk_first[c + 1]; ++i) work(i);
+    });
+  }
 
   Setup setup_;
   State state_;
@@ -117,13 +142,7 @@ class Simulation {
   Team team_;
 
   // What a rebuild hands from step to step, kept to spare its memory.
-  struct Cells {
-    Vec3 low, size;  ///< m, origin and edge lengths of one cell
-    int n[3] = {1, 1, 1};
-    std::vector<std::uint32_t> of;                  ///< cell of each particle
-    std::vector<std::uint32_t> first, ghost_first;  ///< per cell, one more
-    std::size_t total() const { return static_cast<std::size_t>(n[0]) * n[1] * n[2]; }
-  } cells_;
+  Cells cells_;
   std::vector<Ghost> old_ghosts_;
   std::vector<std::uint32_t> order_, place_;  ///< old row of each new one, and back
 };

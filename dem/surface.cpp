@@ -12,6 +12,9 @@ namespace {
 constexpr double border = 1e-9;
 // Directions closer than this to opposite are one plane or one line.
 constexpr double straight = 1e-6;
+// A grid of large meshes is coarser than half the reach: of no more cells than this, or than 128 along its longest
+// axis.
+constexpr double many_cells = 1 << 17;
 
 Face make_face(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t) {
   Face f;
@@ -94,9 +97,9 @@ void make_grid(const std::vector<Box>& boxes, Surface& s) {
     high = {std::max(high.x, b.high.x), std::max(high.y, b.high.y), std::max(high.z, b.high.z)};
   }
   const Vec3 size = high - low;
-  const double largest = std::max({size.x, size.y, size.z});
   s.low = low;
-  s.cell = std::max(0.5 * s.reach, largest / 128.0);
+  s.cell = std::max(0.5 * s.reach, std::min(std::max({size.x, size.y, size.z}) / 128.0,
+                                            std::cbrt(size.x * size.y * size.z / many_cells)));
   for (int a = 0; a < 3; ++a) s.cells[a] = static_cast<int>((a == 0 ? size.x : a == 1 ? size.y : size.z) / s.cell) + 1;
   const auto index = [&](double x, double origin, int n) {
     return std::clamp(static_cast<int>((x - origin) / s.cell), 0, n - 1);
