@@ -164,15 +164,18 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
     if (options.resume != nullptr) {
       now = *options.resume;
       cpu_earlier = now.under_way.cpu_seconds;
-      simulation.restore(now.state);
+      simulation.restore(std::move(now.state));
+      now.state = {};
     }
-    const auto keep = [&] {
-      now.state = simulation.state();
+    // A state is large, so `now` goes without: only what is kept has one, in the memory of the one kept before.
+    const auto keep = [&](Checkpoint& kept) {
       now.under_way.cpu_seconds = cpu_earlier + cpu_time(options.threads) - cpu_before;
+      kept = now;
+      kept.state = simulation.state();
     };
     bool done = false;
-    keep();
-    Checkpoint good = now;
+    Checkpoint good;
+    keep(good);
     try {
       for (std::uint64_t look = 0; !done; ++look) {
         simulation.step();
@@ -191,8 +194,7 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
         now.under_way.max_overlap = std::max(now.under_way.max_overlap, sums.max_overlap);
         if (turning % plan.sample == 0) take_sample(sampling, simulation, turning, now);
         if (turning % plan.check == 0 || turning >= plan.longest) {
-          keep();
-          good = now;
+          keep(good);
           double torque = 0.0, error = 1.0;
           if (turning > plan.start_up) {
             const data::SeriesMean mean = data::mean_with_error(after(now.series, now.series.torque, c.run.start_up));
@@ -208,8 +210,9 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
         }
         if (options.checkpoint && look % 256 == 0 &&
             std::chrono::duration<double>(Clock::now() - saved).count() > options.checkpoint_interval) {
-          keep();
-          options.checkpoint(now);
+          Checkpoint here;
+          keep(here);
+          options.checkpoint(here);
           saved = Clock::now();
         }
       }
@@ -217,10 +220,8 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
       result.status = RunStatus::failed;
       result.reason = fault.what();
     }
-    if (result.status == RunStatus::failed)
-      now = std::move(good);
-    else
-      keep();
+    if (result.status != RunStatus::failed) keep(good);
+    now = std::move(good);
     result.diagnostics.steps = simulation.state().step;
     result.diagnostics.rebuilds = simulation.state().rebuilds;
   } catch (const Fault& fault) {
