@@ -47,7 +47,7 @@ std::string settings_text(const Case& c) {
   text.choice("contact.length_scale", k.length_scale, {"diameter", "radius"});
   text.choice("contact.wall_attraction", k.wall_attraction, {"as_grains", "derjaguin"});
   text.choice("contact.normal", k.normal, {"linear", "hertz", "jkr"});
-  text.choice("contact.tangential", k.tangential_law(), {"linear", "mindlin"});
+  if (k.normal == NormalLaw::hertz) text.choice("contact.tangential", k.tangential_law(), {"linear", "mindlin"});
   text.choice("contact.resistance", k.resistance, {"none", "constant", "spring"});
   text.choice("contact.cohesion", k.cohesion, {"van_der_waals", "dmt"});
   if (k.restitution_at) text.number("contact.restitution_at", *k.restitution_at, "m/s");
