@@ -29,8 +29,8 @@
 //             shrinks) it is scaled by a / a_before, else unloading would create energy (C. Thornton, S. Cummins, P.
 //             Cleary, Powder Technol. 233:30 (2013)); ct = damping ratio sqrt(kt m*) alike.
 // cap         mu max(0, N + b A), b = -1, 0, +1: net force (a), repulsion (b), Thornton's net + 2 A (c).
-// rolling     spring-dashpot: v_r = R* w x n (rolling slip), force f += kr v_r dt, cut at mu_r (cap's load), torque
-//             R* n x (f + gr v_r) (S. Luding, Granular Matter 10:235 (2008)); constant torque: mu_r R* load against the
+// rolling     spring, dashpot and slider alike, on v_r = R* w x n (rolling slip) with the cap mu_r (cap's load); torque
+//             R* n x force (S. Luding, Granular Matter 10:235 (2008)); constant torque: mu_r R* load against the
 //             rolling part of w, and never more than stops it in four steps (J. Ai et al., Powder Technol. 206:269
 //             (2011), A): stopped in one, a sphere on a wall, or between many, would spin to and fro for ever.
 // twisting    with either: spring kr R*^2 and dashpot on w.n, or constant, cut at mu_t R* load.
