@@ -58,6 +58,7 @@ tension = "allowed"
 [run]
 steps_per_contact = {steps!r}
 skin = 0.25
+overlap_limit = 0.5      # 200 N/m is soft for this rig; LIGGGHTS lets spheres pass as deep
 settle = "0 s"
 start_up = "0.5 s"
 sample_interval = "2 ms"
