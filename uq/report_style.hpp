@@ -31,7 +31,7 @@ h1, h2, h3, p, li, td, th, dd { overflow-wrap: anywhere; }
 nav ol { columns: 2; column-gap: 2.5rem; padding-left: 1.3rem; margin: .4rem 0; }
 table { border-collapse: collapse; margin: .7rem 0 1rem; font-size: .9rem; font-variant-numeric: tabular-nums; width: 100%; }
 caption { text-align: left; color: var(--soft); font-size: .9rem; padding-bottom: .35rem; }
-th, td { text-align: left; vertical-align: top; padding: .38rem .9rem .38rem 0; border-bottom: 1px solid var(--rule);
+th, td { text-align: left; vertical-align: top; padding: .38rem .7rem .38rem 0; border-bottom: 1px solid var(--rule);
   overflow-wrap: normal; }
 thead th { border-bottom: 1.5px solid var(--ink); font-weight: 600; white-space: normal; }
 tbody th { font-weight: 600; }

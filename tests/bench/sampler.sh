@@ -4,13 +4,8 @@
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${1:?usage: sampler.sh BUILD_FOLDER}
-missing=()
-for package in r-cran-rstan r-cran-bh r-cran-rcppeigen; do  # the last two: what rstan compiles a model with
-  dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
-done
-if ((${#missing[@]})); then
-  if ((EUID == 0)); then apt-get install -y --no-install-recommends "${missing[@]}"; else sudo apt-get install -y --no-install-recommends "${missing[@]}"; fi
-fi
+source "$root/tests/bench/peers.sh"
+install_peers r-cran-rstan r-cran-bh r-cran-rcppeigen  # the last two: what rstan compiles a model with
 cmake --build "$build" --target demcal_uq
 march=$(grep -o -m 1 -- '-march=[^ "]*' "$build/compile_commands.json")  # as the library was compiled
 g++ -std=c++20 -O2 "$march" -I "$root" $(pkg-config --cflags eigen3) "$root/tests/bench/sampler.cpp" \

@@ -5,13 +5,8 @@ set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${1:?usage: surrogate.sh BUILD_FOLDER [options]}
 shift
-missing=()
-for package in python3-sklearn python3-openturns python3-scipy libopenblas0-pthread; do  # OpenBLAS: the peers at their best
-  dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
-done
-if ((${#missing[@]})); then
-  if ((EUID == 0)); then apt-get install -y --no-install-recommends "${missing[@]}"; else sudo apt-get install -y --no-install-recommends "${missing[@]}"; fi
-fi
+source "$root/tests/bench/peers.sh"
+install_peers python3-sklearn python3-openturns python3-scipy libopenblas0-pthread  # OpenBLAS: the peers at their best
 cmake --build "$build" --target demcal_surrogate
 march=$(grep -o -m 1 -- '-march=[^ "]*' "$build/compile_commands.json")  # as the library was compiled
 g++ -std=c++20 -O2 "$march" -I "$root" $(pkg-config --cflags eigen3) "$root/tests/bench/surrogate.cpp" \

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/temporary.hpp"
+
 namespace test {
 
 struct Outcome {
@@ -13,13 +15,12 @@ struct Outcome {
 
 /// An empty folder that goes with the object.
 class Folder {
+  TemporaryFolder temporary_;
+
  public:
   Folder();
-  ~Folder();
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
 
-  std::filesystem::path path;
+  std::filesystem::path path = temporary_.path();
   /// Copies a shipped study (data/NAME) here and returns its place.
   std::filesystem::path study(const std::string& name) const;
   void write(const std::string& file, const std::string& text) const;

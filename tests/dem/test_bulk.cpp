@@ -1,25 +1,13 @@
-// What many grains do together: H. Janssen's silo (Z. Ver. Dtsch. Ing. 39:1045 (1895)), the friction law mu(I) of P.
-// Jop, Y. Forterre, O. Pouliquen, Nature 441:727 (2006), and the slice's independence of the time step.
+// What many grains do together: the friction law mu(I) of P. Jop, Y. Forterre, O. Pouliquen, Nature 441:727 (2006), and
+// the slice's independence of the time step.
+#include <numeric>
+
 #include "data/random.hpp"
 #include "dem/rig.hpp"
 #include "dem/slice.hpp"
 #include "shot.hpp"
 
 namespace {
-
-/// A cylinder about z from `low` to `high`, open at both ends.
-dem::TriangleMesh ring(double radius, double low, double high) {
-  constexpr std::uint32_t facets = 48;
-  dem::TriangleMesh mesh;
-  for (std::uint32_t k = 0; k < facets; ++k) {
-    const double angle = 2.0 * std::numbers::pi * k / facets;
-    for (const double z : {low, high}) mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
-    const std::uint32_t a = 2 * k, b = 2 * ((k + 1) % facets);
-    mesh.triangles.push_back({a, b, b + 1});
-    mesh.triangles.push_back({a, b + 1, a + 1});
-  }
-  return mesh;
-}
 
 /// mu(I) of glass beads.
 double published(double inertial) { return 0.3819 + (0.6435 - 0.3819) / (0.279 / inertial + 1.0); }
@@ -28,6 +16,19 @@ struct Flow {
   double inertial = 0.0, friction = 0.0, spread = 0.0;  ///< spread of the friction over quarters of the window
   double volume_fraction = 0.0;
 };
+
+constexpr int quarters = 4;
+
+/// Friction and its spread from the sums of shear and normal force in each quarter of the window.
+void read_friction(const double (&shear)[quarters], const double (&normal)[quarters], Flow& f) {
+  double x = 0.0, z = 0.0;
+  for (int q = 0; q < quarters; ++q) {
+    x += shear[q];
+    z += normal[q];
+  }
+  f.friction = x / z;
+  for (int q = 0; q < quarters; ++q) f.spread = std::max(f.spread, std::abs(shear[q] / normal[q] - f.friction));
+}
 
 /// A layer of spheres of 0.8 to 1.2 diameters (equal ones would order) on a bottom of frozen ones at random, periodic
 /// along x and y, gravity tilted by `angle` [rad]; it starts with the profile of Bagnold for the inertial number that
@@ -70,12 +71,12 @@ Flow incline(const dem::Case& c, double angle, double inertial, double start_up,
   dem::Simulation sim(std::move(s));
   while (sim.time() < start_up) sim.step();
   constexpr int bins = 12;
-  double sum_x[4] = {}, sum_z[4] = {}, count[bins] = {}, heavy[bins] = {}, speed[bins] = {};
+  double sum_x[quarters] = {}, sum_z[quarters] = {}, count[bins] = {}, heavy[bins] = {}, speed[bins] = {};
   double samples = 0.0;
   for (std::uint64_t k = 0; sim.time() < start_up + window; ++k) {
     sim.step();
     if (k % 20 != 0) continue;
-    const int part = std::min(3, static_cast<int>(4.0 * (sim.time() - start_up) / window));
+    const int part = std::min(quarters - 1, static_cast<int>(quarters * (sim.time() - start_up) / window));
     ++samples;
     sum_x[part] += sim.sums().body[0].force.x;
     sum_z[part] -= sim.sums().body[0].force.z;
@@ -93,13 +94,7 @@ Flow incline(const dem::Case& c, double angle, double inertial, double start_up,
     }
   }
   Flow f;
-  double x = 0.0, z = 0.0;
-  for (int q = 0; q < 4; ++q) {
-    x += sum_x[q];
-    z += sum_z[q];
-  }
-  f.friction = x / z;
-  for (int q = 0; q < 4; ++q) f.spread = std::max(f.spread, std::abs(sum_x[q] / sum_z[q] - f.friction));
+  read_friction(sum_x, sum_z, f);
   // Pressure above a bin: the weight of what lies higher.
   const double area = nx * ny * spacing * spacing, thick = height / bins;
   double used = 0.0;
@@ -173,7 +168,6 @@ Flow shear(const dem::Case& c, double rate, double pressure, double strain) {
   dem::Simulation sim(std::move(kept));
   while (sim.time() < 0.5 * strain / rate) sim.step();
   const double height = sim.setup().spheres.position.back().z, thick = height / 8.0;
-  constexpr int quarters = 4;
   double shear_force[quarters] = {}, normal[quarters] = {}, samples = 0.0, count[8] = {}, speed[8] = {}, volume = 0.0;
   const double from = sim.time(), window = strain / rate;
   for (std::uint64_t k = 0; sim.time() < from + window; ++k) {
@@ -193,82 +187,12 @@ Flow shear(const dem::Case& c, double rate, double pressure, double strain) {
     }
   }
   Flow f;
-  double x = 0.0, z = 0.0;
-  for (int q = 0; q < quarters; ++q) {
-    x += shear_force[q];
-    z += normal[q];
-  }
-  f.friction = x / z;
-  for (int q = 0; q < quarters; ++q) f.spread = std::max(f.spread, std::abs(shear_force[q] / normal[q] - f.friction));
+  read_friction(shear_force, normal, f);
   const double found = (speed[6] / count[6] - speed[1] / count[1]) / (5.0 * thick);
-  f.inertial = found * d / std::sqrt(z / samples / area / c.material.density);
+  const double mean_pressure = std::accumulate(std::begin(normal), std::end(normal), 0.0) / samples / area;
+  f.inertial = found * d / std::sqrt(mean_pressure / c.material.density);
   f.volume_fraction = volume / samples / (6.0 * thick * area);
   return f;
-}
-
-/// A narrow cylinder of spheres between floor and rim.
-struct Column {
-  std::vector<double> depth, force;               ///< m, N through the cross-section there
-  double per_height = 0.0;                        ///< N/m, weight
-  double weight = 0.0, floor = 0.0, borne = 0.0;  ///< N, of the spheres; on the floor; on floor and walls
-};
-
-Column fill_column(const dem::Case& c, std::uint64_t seed) {
-  const double d = c.material.diameter, radius = 4.0 * d;
-  dem::Setup s = scene::box(c, {}, {});
-  s.low = {-5.0 * d, -5.0 * d, -2.0 * d};
-  s.high = {5.0 * d, 5.0 * d, 90.0 * d};
-  s.gravity = {0.0, 0.0, -9.81};
-  data::RandomStream random(seed, data::Purpose::test);
-  for (int layer = 0; s.spheres.position.size() < 2000; ++layer) {
-    for (int k = 0; k < 49; ++k) {
-      const dem::Vec3 at{(k % 7 - 3.0) * 1.08 * d, (k / 7 - 3.0) * 1.08 * d, (layer + 0.6) * 1.05 * d};
-      if (std::hypot(at.x, at.y) > radius - 0.56 * d) continue;
-      s.spheres.position.push_back(at);
-      s.spheres.velocity.push_back({0.05 * random.normal(), 0.05 * random.normal(), 0.0});
-    }
-  }
-  // The wall in rings, whose friction is known each by itself; the floor sinks slowly, so that friction is all called
-  // upon.
-  constexpr int rings = 7;
-  const double ring_height = 6.0 * d;
-  for (int k = 0; k < rings; ++k)
-    s.bodies.push_back({"ring", ring(radius, k * ring_height, k + 1 < rings ? (k + 1) * ring_height : 90.0 * d), {}});
-  s.bodies[0].mesh = ring(radius, -2.0 * d, ring_height);
-  s.bodies.push_back(scene::floor(6.0 * d));
-  s.bodies.back().motion.oscillations = {{dem::OscillationKind::along, {0.0, 0.0, -1.0}, d, 1.0, 0.0}};
-  s.rest_steps = static_cast<std::uint64_t>(std::llround(0.15 / s.time_step));
-  dem::Simulation sim(std::move(s));
-  while (sim.time() < 0.25) sim.step();
-  double up[rings] = {}, floor = 0.0, below[rings + 1] = {}, samples = 0.0, top = 0.0;
-  const double momentum = sim.momentum().z;
-  while (sim.time() < 0.30) {
-    sim.step();
-    ++samples;
-    for (int k = 0; k < rings; ++k) up[k] -= sim.sums().body[static_cast<std::size_t>(k)].force.z;
-    floor -= sim.sums().body[rings].force.z;
-  }
-  const double weight = 9.81 * dem::derive(c).mass, count = static_cast<double>(sim.state().particles());
-  for (std::size_t i = 0; i < sim.state().particles(); ++i) {
-    const double z = sim.state().position[i].at.z;
-    top = std::max(top, z);
-    for (int k = 0; k <= rings; ++k) below[k] += z < k * ring_height ? 1.0 : 0.0;
-  }
-  // Force through the cross-section at each ring's foot: the weight above less what the rings above carry.
-  Column column;
-  double carried = 0.0;
-  for (int k = rings - 1; k >= 0; --k) {
-    carried += up[k] / samples;
-    if (top - k * ring_height < 2.0 * d) continue;
-    column.depth.push_back(top - k * ring_height);
-    column.force.push_back((count - below[k]) * weight - carried);
-  }
-  column.per_height = (count - below[1]) * weight / (top - ring_height);
-  column.weight = count * weight;
-  column.floor = floor / samples;
-  const double gained = (sim.momentum().z - momentum) / (samples * sim.setup().time_step);
-  column.borne = column.floor + carried - gained;
-  return column;
 }
 
 dem::Case glass() {
@@ -282,53 +206,6 @@ dem::Case glass() {
 }
 
 }  // namespace
-
-TEST_CASE("the pressure in a narrow column follows Janssen's law", "[slow][table]") {
-  dem::Case c;
-  c.contact.restitution = 0.5;
-  c.contact.friction = 0.4;
-  const double d = c.material.diameter, diameter = 8.0 * d;
-  constexpr int columns = 4;  // what one packing's force chains do to a profile is several percent
-  Column mean;
-  for (std::uint64_t seed = 1; seed <= columns; ++seed) {
-    const Column one = fill_column(c, seed);
-    scene::row(fmt::format("Janssen, column {}: floor and walls carry the weight [mN]", seed), 1e3 * one.weight,
-               1e3 * one.borne, {1e-3});
-    CHECK(one.floor < 0.7 * one.weight);
-    mean.depth.resize(one.depth.size());
-    mean.force.resize(one.depth.size());
-    for (std::size_t k = 0; k < one.depth.size(); ++k) {
-      mean.depth[k] += one.depth[k] / columns;
-      mean.force[k] += one.force[k] / columns;
-    }
-    mean.per_height += one.per_height / columns;
-    mean.weight += one.weight / columns;
-  }
-  // Fit of lambda = D / (4 mu_w K) to sigma(z) / (rho g): f = w lambda (1 - exp(-z / lambda)), w the weight per height.
-  const auto miss = [&](double lambda) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < mean.depth.size(); ++k) {
-      const double law = mean.per_height * lambda * (1.0 - std::exp(-mean.depth[k] / lambda));
-      sum += std::pow(mean.force[k] / law - 1.0, 2);
-    }
-    return std::sqrt(sum / static_cast<double>(mean.depth.size()));
-  };
-  double best = diameter;
-  for (double lambda = 0.3 * diameter; lambda < 6.0 * diameter; lambda *= 1.01) {
-    if (miss(lambda) < miss(best)) best = lambda;
-  }
-  const double k = diameter / (4.0 * 0.4 * best);
-  std::string profile;
-  for (std::size_t j = 0; j < mean.depth.size(); ++j)
-    profile += fmt::format(" {:.1f}d: {:.3f}", mean.depth[j] / d, mean.force[j] / mean.weight);
-  INFO("lambda " << best / diameter << " D, K " << k << ", miss " << miss(best) << "; force / weight at depth"
-                 << profile);
-  scene::row(fmt::format("Janssen: rms misfit of the profile, mean of {} columns", columns), 0.0, miss(best),
-             {0.0, 0.06});
-  // Between active stress of a friction 0.38 and passive.
-  CHECK(k > 0.4);
-  CHECK(k < 1.3);
-}
 
 TEST_CASE("a layer flowing down an incline has the friction of the published mu(I) law, and cohesion raises it",
           "[slow][table]") {
