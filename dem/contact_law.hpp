@@ -206,17 +206,18 @@ struct SlipForce {
   V kept;   ///< elastic part, of opposite sign
 };
 
-/// `stiffness_per_inertia` [1/s2] is that of the fastest oscillation of a free pair on this spring.
-template <class V, class T>
-SlipForce<V> slide(const V& before, const V& velocity, T stiffness, T damping, T cap, T stiffness_per_inertia,
+/// `stiffness_per_inertia` [1/s2] is that of the fastest oscillation of a free pair on this spring. C is double where
+/// all contacts share the spring's coefficients.
+template <class V, class T, class C>
+SlipForce<V> slide(const V& before, const V& velocity, C stiffness, C damping, T cap, C stiffness_per_inertia,
                    double time_step) {
-  const T lead = smaller(T(time_step * time_step * stiffness_per_inertia), T(0.5));
-  const T reach = stiffness * time_step, drag = (0.5 + lead) * reach + damping;
+  const C lead = smaller(C(time_step * time_step * stiffness_per_inertia), C(0.5));
+  const C reach = stiffness * time_step, drag = (0.5 + lead) * reach + damping;
   const V wanted = before + drag * velocity;
   const T size = norm(wanted);
   const V force = select(size > cap, T(cap / size), T(1.0)) * wanted;
   // What is beyond the cap the spring does not follow, but for what the dashpot holds.
-  const T share = reach / larger(T(reach + damping), T(std::numeric_limits<double>::min()));
+  const C share = reach / larger(C(reach + damping), C(std::numeric_limits<double>::min()));
   return {-force, before + reach * velocity - share * (wanted - force)};
 }
 
@@ -231,7 +232,7 @@ struct LinearTangential {
     template <class T>
     SlipForce<Vector3<T>> operator()(Vector3<T> before, Vector3<T> velocity, const NormalForce<T>&, T /*radius_before*/,
                                      T load, double time_step) const {
-      return slide(before, velocity, T(stiffness), T(damping), T(friction * load), T(stiffness_per_inertia), time_step);
+      return slide(before, velocity, stiffness, damping, T(friction * load), stiffness_per_inertia, time_step);
     }
     template <class T>
     T energy(const Vector3<T>& kept, T /*radius*/) const {
@@ -348,11 +349,11 @@ struct SpringResistance {
                          double time_step) const {
       const Vector3<T> velocity = T(radius) * cross(spin, n);
       const Vector3<T> turned = before.roll - dot(before.roll, n) * n;
-      const T area = radius * radius, fastest = stiffness_per_inertia;
+      const C area = radius * radius;
       const SlipForce<Vector3<T>> roll =
-          slide(turned, velocity, T(stiffness), T(damping), T(rolling * load), fastest, time_step);
-      const SlipForce<T> twist = slide(before.twist, T(dot(spin, n)), T(stiffness * area), T(damping * area),
-                                       T(twisting * radius * load), fastest, time_step);
+          slide(turned, velocity, stiffness, damping, T(rolling * load), stiffness_per_inertia, time_step);
+      const SlipForce<T> twist = slide(before.twist, T(dot(spin, n)), C(stiffness * area), C(damping * area),
+                                       T(twisting * radius * load), stiffness_per_inertia, time_step);
       return {T(radius) * cross(n, roll.force) + twist.force * n, roll.kept, twist.kept};
     }
     template <class T>

@@ -43,9 +43,10 @@ struct Frame {
 struct Surroundings {
   std::span<const Surface> surfaces;  ///< per body
   std::span<const Frame> frames;
-  double time_step;  ///< s
-  double range;      ///< m
-  double deep;       ///< of a radius: overlaps beyond it are counted
+  double time_step;        ///< s
+  double range;            ///< m
+  double deep;             ///< of a radius: overlaps beyond it are counted
+  double steps_per_metre;  ///< at least so many until two spheres are nearer to each other by a metre
 };
 
 /// J, at the present positions.

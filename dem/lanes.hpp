@@ -17,34 +17,36 @@ using Lane = stdx::native_simd<double>;
 inline constexpr int lanes = static_cast<int>(Lane::size());
 static_assert(lanes <= 8, "rows are transposed two, four or eight at a time");
 
-inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
-inline Lane select(Lane::mask_type condition, Lane yes, Lane no) {
+[[gnu::always_inline]] inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+[[gnu::always_inline]] inline Lane select(Lane::mask_type condition, Lane yes, Lane no) {
   stdx::where(condition, no) = yes;
   return no;
 }
-inline double square_root(double a) { return std::sqrt(a); }
-inline Lane square_root(Lane a) { return stdx::sqrt(a); }
+[[gnu::always_inline]] inline double square_root(double a) { return std::sqrt(a); }
+[[gnu::always_inline]] inline Lane square_root(Lane a) { return stdx::sqrt(a); }
 inline double cube_root(double a) { return std::cbrt(a); }
-inline Lane cube_root(Lane a) {
+[[gnu::always_inline]] inline Lane cube_root(Lane a) {
   return Lane([&](auto k) { return std::cbrt(static_cast<double>(a[k])); });
 }
-inline double larger(double a, double b) { return a > b ? a : b; }
-inline Lane larger(Lane a, Lane b) { return stdx::max(a, b); }
-inline double smaller(double a, double b) { return a < b ? a : b; }
-inline Lane smaller(Lane a, Lane b) { return stdx::min(a, b); }
+[[gnu::always_inline]] inline double larger(double a, double b) { return a > b ? a : b; }
+[[gnu::always_inline]] inline Lane larger(Lane a, Lane b) { return stdx::max(a, b); }
+[[gnu::always_inline]] inline double smaller(double a, double b) { return a < b ? a : b; }
+[[gnu::always_inline]] inline Lane smaller(Lane a, Lane b) { return stdx::min(a, b); }
 template <class T>
 T norm(Vector3<T> a) {
   return square_root(dot(a, a));
 }
 inline double norm(double a) { return std::abs(a); }
-inline Lane norm(Lane a) { return stdx::abs(a); }
+[[gnu::always_inline]] inline Lane norm(Lane a) { return stdx::abs(a); }
 /// The same vector in every lane.
-inline Vector3<Lane> spread(Vec3 a) { return {Lane(a.x), Lane(a.y), Lane(a.z)}; }
+[[gnu::always_inline]] inline Vector3<Lane> spread(Vec3 a) { return {Lane(a.x), Lane(a.y), Lane(a.z)}; }
 /// One bit per lane, the first lane lowest.
-inline unsigned bits(Lane::mask_type mask) { return static_cast<unsigned>(mask.__to_bitset().to_ulong()); }
+[[gnu::always_inline]] inline unsigned bits(Lane::mask_type mask) {
+  return static_cast<unsigned>(mask.__to_bitset().to_ulong());
+}
 
 /// 1 in the first `used` lanes, 0 beyond.
-inline Lane first_lanes(int used) {
+[[gnu::always_inline]] inline Lane first_lanes(int used) {
   alignas(64) static constexpr double ones[16] = {1, 1, 1, 1, 1, 1, 1, 1};
   return Lane(ones + 8 - used, stdx::element_aligned);
 }
@@ -64,7 +66,7 @@ namespace detail {
 struct Square {
   Four row[4];
 };
-inline Square transpose(Four a, Four b, Four c, Four d) {
+[[gnu::always_inline]] inline Square transpose(Four a, Four b, Four c, Four d) {
   typedef long long Index __attribute__((vector_size(32)));
   const Four ab0 = __builtin_shuffle(a, b, Index{0, 4, 2, 6}), ab1 = __builtin_shuffle(a, b, Index{1, 5, 3, 7});
   const Four cd0 = __builtin_shuffle(c, d, Index{0, 4, 2, 6}), cd1 = __builtin_shuffle(c, d, Index{1, 5, 3, 7});
@@ -78,7 +80,7 @@ struct Column {
 };
 
 template <class L, class Row>
-LaneRows gather(Row&& row) {
+[[gnu::always_inline]] inline LaneRows gather(Row&& row) {
   if constexpr (L::size() % 4 == 0) {
     Column<L> column[4];
     for (std::size_t p = 0; p < L::size() / 4; ++p) {
@@ -97,7 +99,7 @@ LaneRows gather(Row&& row) {
 }
 
 template <class L>
-void scatter(const Vector3<L>& v, const L& w, Four* out) {
+[[gnu::always_inline]] inline void scatter(const Vector3<L>& v, const L& w, Four* out) {
   if constexpr (L::size() % 4 == 0) {
     const Column<L> x = std::bit_cast<Column<L>>(v.x), y = std::bit_cast<Column<L>>(v.y),
                     z = std::bit_cast<Column<L>>(v.z), last = std::bit_cast<Column<L>>(w);
@@ -113,11 +115,13 @@ void scatter(const Vector3<L>& v, const L& w, Four* out) {
 
 /// `row(k)` gives lane k's four doubles.
 template <class Row>
-LaneRows transposed(Row&& row) {
+[[gnu::always_inline]] inline LaneRows transposed(Row&& row) {
   return detail::gather<Lane>(row);
 }
 
 /// Lane k's four doubles of `rows` into out[k].
-inline void untransposed(const LaneRows& rows, Four* out) { detail::scatter<Lane>(rows.v, rows.w, out); }
+[[gnu::always_inline]] inline void untransposed(const LaneRows& rows, Four* out) {
+  detail::scatter<Lane>(rows.v, rows.w, out);
+}
 
 }  // namespace dem

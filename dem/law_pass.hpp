@@ -52,8 +52,9 @@ class LawPass final : public ForcePass {
   int history_rows() const override { return Law::history_rows; }
 
   void chunk(State& s, const Surroundings& around, std::size_t chunk, StepSums& sums) const override {
-    const PairView view{s.position.data(), s.motion.data(), s.pair.data(),    s.partner_load.data(), s.in_range.data(),
-                        s.history.data(),  s.load.data(),   around.time_step, around.range,          around.deep};
+    const PairView view{s.position.data(), s.motion.data(),   s.pair.data(), s.partner_load.data(), s.in_range.data(),
+                        s.due.data(),      s.in_range.size(), s.step,        s.history.data(),      s.load.data(),
+                        around.time_step,  around.range,      around.deep,   around.steps_per_metre};
     const std::uint32_t begin = s.chunk_pair[chunk], end = s.chunk_pair[chunk + 1];
     PairSums pairs;
     if (equal()) {
@@ -79,7 +80,7 @@ class LawPass final : public ForcePass {
       total.attraction += law.attraction_energy(overlap);
     };
     for (std::uint32_t slot = 0; slot < s.chunk_pair.back(); ++slot) {
-      if (!s.in_range[slot]) continue;
+      if (!s.is_in_range(slot)) continue;
       const Pair p = s.pair[slot];
       const PositionRow &a = s.position[p.i], &b = s.position[p.j];
       const MotionRow &ma = s.motion[p.i], &mb = s.motion[p.j];

@@ -18,7 +18,7 @@ constexpr std::uint32_t none = ~0u;
 struct OldPairs {
   std::vector<Pair> pair;
   std::vector<std::uint32_t> first;
-  std::vector<std::uint8_t> in_range;
+  std::vector<std::uint64_t> in_range;
   std::vector<VectorRow> history;
   std::size_t particles;
   const std::vector<Ghost>& ghost;
@@ -87,14 +87,15 @@ void Simulation::list_pairs() {
   const auto rows = static_cast<std::size_t>(setup_.laws->history_rows());
   std::vector<std::vector<Pair>> found(chunks);
   team_.for_each(chunks, [&](std::size_t c) { found[c] = pairs_of(c); });
-  s.chunk_pair = starts(found, [](const std::vector<Pair>& f) { return f.size(); });
+  // Whole words of bits are a chunk's own.
+  s.chunk_pair = starts(found, [](const std::vector<Pair>& f) { return (f.size() + 63) / 64 * 64; });
   const std::size_t pairs = s.chunk_pair.back();
 
   const OldPairs old{std::move(s.pair), std::move(s.pair_first), std::move(s.in_range), std::move(s.history), n,
                      old_ghosts_};
-  s.pair = std::vector<Pair>(pairs + ahead + 8);
+  s.pair = std::vector<Pair>(pairs);
   s.pair_first = std::vector<std::uint32_t>(n + 1, static_cast<std::uint32_t>(pairs));
-  s.in_range = std::vector<std::uint8_t>(pairs);
+  s.in_range = std::vector<std::uint64_t>(pairs / 64);
   s.history = std::vector<VectorRow>(pairs * rows);
   const auto take_over = [&](std::uint32_t slot) {
     const Pair p = s.pair[slot];
@@ -105,8 +106,8 @@ void Simulation::list_pairs() {
       before = old.slot_of(b, a);
       sign = -1.0;
     }
-    if (before == none || old.in_range[before] == 0) return;
-    s.in_range[slot] = 1;
+    if (before == none || (old.in_range[before / 64] & bit_of(before)) == 0) return;
+    s.in_range[slot / 64] |= bit_of(slot);
     // Seen from the other sphere forces turn round; the contact radius (row 0) and the twist (row 1) do not.
     for (std::size_t row = 0; row < rows; ++row) {
       VectorRow h = old.history[before * rows + row];
@@ -115,7 +116,8 @@ void Simulation::list_pairs() {
     }
   };
   team_.for_each(chunks, [&](std::size_t c) {
-    std::copy(found[c].begin(), found[c].end(), s.pair.begin() + s.chunk_pair[c]);
+    const auto padding = std::copy(found[c].begin(), found[c].end(), s.pair.begin() + s.chunk_pair[c]);
+    std::fill(padding, s.pair.begin() + s.chunk_pair[c + 1], Pair{s.chunk_first[c + 1] - 1, s.chunk_first[c + 1] - 1});
     std::uint32_t i = s.chunk_first[c];
     for (std::uint32_t slot = s.chunk_pair[c]; slot < s.chunk_pair[c + 1]; ++slot) {
       while (i <= s.pair[slot].i) s.pair_first[i++] = slot;
@@ -123,6 +125,21 @@ void Simulation::list_pairs() {
     }
     while (i < s.chunk_first[c + 1]) s.pair_first[i++] = s.chunk_pair[c + 1];
   });
+  wake_all();
+}
+
+/// Makes all pairs due in this step.
+void Simulation::wake_all() {
+  State& s = state_;
+  const std::size_t words = s.in_range.size();
+  s.due.assign(words * due_steps, 0);
+  const auto now = s.due.begin() + static_cast<std::ptrdiff_t>(s.step % due_steps * words);
+  std::fill(now, now + static_cast<std::ptrdiff_t>(words), ~std::uint64_t{0});
+  for (std::size_t c = 0; c < s.chunks(); ++c) {
+    for (std::uint32_t slot = s.chunk_pair[c + 1]; slot-- > s.chunk_pair[c] && is_padding(s.pair[slot]);)
+      now[slot / 64] &= ~bit_of(slot);
+  }
+  watched_speed_ = 1.25 * fastest_;
 }
 
 /// Which particles of others each chunk's pairs push, and where in `load` they do so.

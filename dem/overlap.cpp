@@ -23,7 +23,7 @@ void Simulation::report_overlap() const {
   const State& s = state_;
   Deepest deepest;
   for (std::uint32_t slot = 0; slot < s.chunk_pair.back(); ++slot) {
-    if (!s.in_range[slot]) continue;
+    if (!s.is_in_range(slot)) continue;
     const Pair p = s.pair[slot];
     const auto sphere = [&](std::uint32_t row) {
       return s.id[row < s.particles() ? row : s.ghost[row - s.particles()].owner];

@@ -1,6 +1,14 @@
 #pragma once
-// The pair forces of a run of pairs, in two stages: the pairs in range are compressed into a list of hits; hits are
-// then evaluated as many at a time as a register has lanes.
+// The pair forces of a run of pairs, in two stages: which pairs are in range, then the forces of those, as many at a
+// time as a register has lanes.
+//
+// Most pairs of the list are out of range, and stay so for a while: no two spheres come nearer to each other than twice
+// the fastest sphere's way in a step. So a pair out of range is looked at again only when it could be in range, up to
+// due_steps - 1 steps later; Simulation makes all of them due when a sphere becomes faster than was counted on. Pairs
+// in range are evaluated in every step, which sees when they part. So what is evaluated is what looking at all pairs in
+// every step would find, in the same order.
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -21,14 +29,20 @@ struct PairSums {
 struct PairView {
   const PositionRow* position;
   const MotionRow* motion;
-  const Pair* pair;  ///< readable `ahead` + lanes beyond the last
+  const Pair* pair;
   const std::uint32_t* partner_load;
-  std::uint8_t* in_range;
+  std::uint64_t* in_range;
+  std::uint64_t* due;  ///< due_steps times `words`
+  std::size_t words;
+  std::uint64_t step;
   VectorRow* history;
   LoadRow* load;
-  double time_step;  ///< s
-  double range;      ///< m, of the laws beyond touching
-  double deep;       ///< of the mean radius of the two
+  double time_step;        ///< s
+  double range;            ///< m, of the laws beyond touching
+  double deep;             ///< of the mean radius of the two
+  double steps_per_metre;  ///< at least so many until two spheres are nearer to each other by a metre
+
+  std::uint64_t* due_at(std::uint64_t at_step) const { return due + at_step % due_steps * words; }
 };
 
 /// Laws of the pairs of a bed: one for all where spheres are equal, else a table over both materials.
@@ -48,7 +62,7 @@ struct PairLaws {
 };
 
 inline constexpr std::uint32_t hit_batch = 512;  ///< pairs looked at before their hits are evaluated
-inline constexpr std::uint32_t ahead = 24;       ///< pairs whose rows are asked for in advance
+inline constexpr std::uint32_t ahead = 12;       ///< hits whose rows are asked for in advance
 
 /// x_i - x_j, and r_i + r_j.
 inline Four with_sum_of_radii(const PositionRow& a, const PositionRow& b) {
@@ -57,31 +71,53 @@ inline Four with_sum_of_radii(const PositionRow& a, const PositionRow& b) {
   return four(a.at.x) - reinterpret_cast<Four>(reinterpret_cast<Bits>(four(b.at.x)) ^ sign);
 }
 
-/// Slots of [begin, end) that are in range, or were the step before and have a history to give up.
-[[gnu::flatten]] inline std::uint32_t find_hits(const PairView& v, std::uint32_t begin, std::uint32_t end,
-                                                std::uint32_t* hits) {
-  std::uint32_t count = 0;
-  const auto look = [&](std::uint32_t base, int used) {
-    const Pair* const p = v.pair + base;
-    const LaneRows apart = transposed([&](int k) { return with_sum_of_radii(v.position[p[k].i], v.position[p[k].j]); });
-    for (int k = 0; k < lanes; ++k) __builtin_prefetch(&v.position[p[k + ahead].j]);
-    const Lane reach = apart.w + v.range;
-    const unsigned near = bits(dot(apart.v, apart.v) < reach * reach);
-    for (int k = 0; k < used; ++k) {
-      const std::uint32_t slot = base + k, is = (near >> k) & 1u;
-      hits[count] = slot;
-      count += is | v.in_range[slot];
-      v.in_range[slot] = static_cast<std::uint8_t>(is);
-    }
-  };
-  std::uint32_t base = begin;
-  for (; base + lanes <= end; base += lanes) look(base, lanes);
-  if (base < end) look(base, static_cast<int>(end - base));
+/// Lists the slots of the bits set in `word`, the word'th.
+inline std::uint32_t list_bits(std::uint64_t bits_of_word, std::uint32_t word, std::uint32_t* slots,
+                               std::uint32_t count) {
+  for (; bits_of_word != 0; bits_of_word &= bits_of_word - 1)
+    slots[count++] = 64 * word + static_cast<std::uint32_t>(std::countr_zero(bits_of_word));
   return count;
 }
 
+/// Has a pair looked at again when its spheres could have come nearer by `gap` [m], in the next step at the earliest.
+inline void sleep(const PairView& v, std::uint32_t slot, double gap) {
+  const double steps = gap * v.steps_per_metre;
+  const std::uint32_t later = steps < due_steps - 1 ? std::max(1u, static_cast<std::uint32_t>(steps)) : due_steps - 1;
+  v.due_at(v.step + later)[slot / 64] |= bit_of(slot);
+}
+
+/// Pairs among the words [begin, end) that are due: those that are in range are marked so, the others sleep.
+[[gnu::flatten]] inline void look_at_due(const PairView& v, std::uint32_t begin, std::uint32_t end) {
+  std::uint32_t slots[hit_batch + lanes], count = 0;
+  std::uint64_t* const due = v.due_at(v.step);
+  for (std::uint32_t word = begin; word < end; ++word) {
+    count = list_bits(due[word] & ~v.in_range[word], word, slots, count);
+    due[word] = 0;
+  }
+  if (count == 0) return;
+  for (std::uint32_t k = 0; k < count; ++k) __builtin_prefetch(&v.position[v.pair[slots[k]].j]);
+  for (int k = 0; k < lanes; ++k) slots[count + k] = slots[count - 1];
+  for (std::uint32_t base = 0; base < count; base += lanes) {
+    const std::uint32_t* const slot = slots + base;
+    const LaneRows apart = transposed([&](int k) {
+      const Pair p = v.pair[slot[k]];
+      return with_sum_of_radii(v.position[p.i], v.position[p.j]);
+    });
+    const Lane reach = apart.w + v.range, distance2 = dot(apart.v, apart.v);
+    const Lane gap = square_root(distance2) - reach;
+    const unsigned near = bits(distance2 < reach * reach);
+    const std::uint32_t used = std::min<std::uint32_t>(lanes, count - base);
+    for (std::uint32_t k = 0; k < used; ++k) {
+      if ((near >> k) & 1u)
+        v.in_range[slot[k] / 64] |= bit_of(slot[k]);
+      else
+        sleep(v, slot[k], gap[k]);
+    }
+  }
+}
+
 template <class Law, bool Uniform>
-[[gnu::flatten]] void pair_pass(const PairLaws<Law, Uniform>& laws, const PairView& v, std::uint32_t begin,
+[[gnu::flatten]] void pair_pass(const PairLaws<Law, Uniform> laws, const PairView v, std::uint32_t begin,
                                 std::uint32_t end, PairSums& sums) {
   constexpr int rows = Law::history_rows;
   constexpr bool turning = Law::Resistance::present;
@@ -90,13 +126,23 @@ template <class Law, bool Uniform>
   std::uint64_t contacts = 0, deep = 0;
   std::uint32_t hits[hit_batch + lanes];
   for (std::uint32_t from = begin; from < end; from += hit_batch) {
-    const std::uint32_t count = find_hits(v, from, std::min(end, from + hit_batch), hits);
+    const std::uint32_t first_word = from / 64, last_word = std::min(end, from + hit_batch) / 64;
+    look_at_due(v, first_word, last_word);
+    std::uint32_t count = 0;
+    for (std::uint32_t word = first_word; word < last_word; ++word)
+      count = list_bits(v.in_range[word], word, hits, count);
     if (count == 0) continue;
     for (int k = 0; k < lanes; ++k) hits[count + k] = hits[count - 1];
     for (std::uint32_t base = 0; base < count; base += lanes) {
       const std::uint32_t* const slot = hits + base;
       Pair p[lanes];
       for (int k = 0; k < lanes; ++k) p[k] = v.pair[slot[k]];
+      for (std::uint32_t k = base + ahead; k < std::min(base + ahead + lanes, count); ++k) {
+        const std::uint32_t j = v.pair[hits[k]].j;
+        __builtin_prefetch(&v.position[j]);
+        __builtin_prefetch(&v.motion[j]);
+        __builtin_prefetch(&v.load[v.partner_load[hits[k]]], 1);
+      }
       const auto velocity = [&](std::uint32_t row) -> Four { return four(v.motion[row].velocity.x); };
       const auto spin = [&](std::uint32_t row) -> Four { return four(v.motion[row].spin.x); };
       const LaneRows apart =
@@ -168,6 +214,13 @@ template <class Law, bool Uniform>
         untransposed({radius_j * moment, Lane(0.0)}, torque_j);
       }
       const int used = static_cast<int>(std::min<std::uint32_t>(lanes, count - base));
+      const Lane reach = apart.w + v.range;
+      for (unsigned parted = ~bits(dot(apart.v, apart.v) < reach * reach) & ((1u << used) - 1u); parted != 0;
+           parted &= parted - 1) {
+        const std::uint32_t left = slot[std::countr_zero(parted)];
+        v.in_range[left / 64] &= ~bit_of(left);
+        sleep(v, left, 0.0);
+      }
       for (int k = 0; k < used; ++k) {
         LoadRow &a = v.load[p[k].i], &b = v.load[v.partner_load[slot[k]]];
         four(v.history[slot[k] * rows].v.x) = kept[k];

@@ -73,7 +73,8 @@ Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.thr
     state_.load.push_back(load);
     state_.id.push_back(static_cast<std::uint32_t>(i));
   }
-  const std::size_t chunks = std::clamp<std::size_t>(n / 1024, 1, 64);
+  // About 1024 spheres each; many chunks are shared out evenly by two or four threads.
+  const std::size_t about = std::clamp<std::size_t>(n / 1024, 1, 64), chunks = about < 4 ? about : (about + 2) / 4 * 4;
   for (std::size_t c = 0; c <= chunks; ++c) state_.chunk_first.push_back(static_cast<std::uint32_t>(n * c / chunks));
   rebuild();
   compute_forces();
@@ -90,6 +91,7 @@ Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.thr
 void Simulation::restore(State state) {
   state_ = std::move(state);
   max_displacement2_ = 0.0;
+  watched_speed_ = -1.0;  // the next step makes all pairs due
 }
 
 double Simulation::motion_time(std::uint64_t step) const {
@@ -107,7 +109,8 @@ std::vector<Frame> Simulation::frames() const {
 }
 
 Surroundings Simulation::around(const std::vector<Frame>& frames) const {
-  return {surface_, frames, setup_.time_step, range_, 0.5 * setup_.overlap_limit};
+  const double approach = 2.0 * watched_speed_ * setup_.time_step;
+  return {surface_, frames, setup_.time_step, range_, 0.5 * setup_.overlap_limit, (1.0 - 1e-9) / approach};
 }
 
 void Simulation::compute_forces() {
@@ -148,7 +151,7 @@ void Simulation::integrate() {
     const Four step{dt, dt, dt, 0.0}, fourth{0.0, 0.0, 0.0, 1.0};
     const Four gravity{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z, 0.0};
     Four late{};  // force * (v*(n) - v(n)) and the same of torque and spin
-    double farthest = 0.0;
+    double farthest = 0.0, fastest = 0.0;
     for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
       MotionRow &half = s.half[i], &motion = s.motion[i];
       LoadRow& load = s.load[i];
@@ -166,16 +169,21 @@ void Simulation::integrate() {
       const Four moved = at - four(s.reference[i].at.x), squared = moved * moved;
       const double d2 = squared[0] + squared[1] + squared[2];
       farthest = d2 <= farthest ? farthest : d2;  // a NaN stays and forces a rebuild, which reports it
+      const Four speeds = velocity * velocity;
+      fastest = std::max(fastest, speeds[0] + speeds[1] + speeds[2]);
       four(load.force.x) = fourth * four(load.force.x);
       four(load.torque.x) = fourth * torque;
     }
-    chunk_steps_[c] = {farthest, late[0] + late[1] + late[2]};
+    chunk_steps_[c] = {farthest, fastest, late[0] + late[1] + late[2]};
   });
   max_displacement2_ = 0.0;
+  double fastest2 = 0.0;
   for (const ChunkStep& moved : chunk_steps_) {
+    fastest2 = std::max(fastest2, moved.speed2);
     max_displacement2_ = moved.displacement2 <= max_displacement2_ ? max_displacement2_ : moved.displacement2;
     s.dissipated += dt * moved.late_power;
   }
+  fastest_ = std::sqrt(fastest2);
   ++s.step;
 }
 
@@ -208,6 +216,7 @@ void Simulation::step() {
     rebuild();
   else
     follow_owners();
+  if (fastest_ > watched_speed_) wake_all();
   compute_forces();
   if (sums_.max_overlap > setup_.overlap_limit) report_overlap();
 }
@@ -260,9 +269,9 @@ double Simulation::bytes_per_particle() const {
   const auto size = [](const auto& rows) { return static_cast<double>(rows.capacity() * sizeof(rows[0])); };
   const double total = size(s.position) + size(s.motion) + size(s.half) + size(s.load) + size(s.reference) +
                        size(s.id) + size(s.ghost) + size(s.pair) + size(s.pair_first) + size(s.partner_load) +
-                       size(s.in_range) + size(s.history) + size(s.halo_owner) + size(s.wall) + size(s.features) +
-                       size(s.feature_gap) + size(cells_.first) + size(cells_.ghost_first) + size(order_) +
-                       size(place_);
+                       size(s.in_range) + size(s.due) + size(s.history) + size(s.halo_owner) + size(s.wall) +
+                       size(s.features) + size(s.feature_gap) + size(cells_.first) + size(cells_.ghost_first) +
+                       size(order_) + size(place_);
   return total / static_cast<double>(std::max<std::size_t>(1, s.particles()));
 }
 

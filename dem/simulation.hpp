@@ -105,6 +105,7 @@ class Simulation {
   void follow_owners();
   double motion_time(std::uint64_t step) const;  ///< s since the motions began
   bool list_is_stale() const;
+  void wake_all();
   void rebuild();
   void wrap();
   void sort();
@@ -132,10 +133,13 @@ class Simulation {
   double largest_radius_ = 0.0;     ///< m
   double range_ = 0.0;              ///< m, of the laws beyond touching
   double max_displacement2_ = 0.0;  ///< m2
+  double fastest_ = 0.0;            ///< m/s, of all spheres in the last step
+  double watched_speed_ = 0.0;      ///< m/s, that pairs out of range count on while they sleep
   StepSums sums_;
   std::vector<StepSums> chunk_sums_;
   struct ChunkStep {
     double displacement2 = 0.0;  ///< m2, since the rebuild
+    double speed2 = 0.0;         ///< m2/s2
     double late_power = 0.0;     ///< W, of the loads on v*(n) less that on v(n), which are known only after the forces
   };
   std::vector<ChunkStep> chunk_steps_;

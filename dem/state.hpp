@@ -44,6 +44,9 @@ struct Pair {
   std::uint32_t i = 0, j = 0;
 };
 
+/// Fills the last word of a chunk's pairs; never looked at.
+inline bool is_padding(Pair p) { return p.i == p.j; }
+
 /// One contact of a sphere with a body, kept in the body's frame so that it turns with the tool.
 struct WallMemory {
   Vec3 normal;
@@ -63,6 +66,12 @@ struct Ghost {
   Vec3 shift;  ///< m
 };
 
+/// A pair out of range sleeps until its spheres could meet, at most one step less than this.
+inline constexpr std::uint32_t due_steps = 16;
+
+/// One bit a pair: the word it is in, and its place there.
+inline std::uint64_t bit_of(std::uint32_t slot) { return std::uint64_t{1} << (slot % 64); }
+
 struct State {
   std::uint64_t step = 0;
   std::uint64_t rebuilds = 0;
@@ -81,7 +90,8 @@ struct State {
   std::vector<Pair> pair;                   ///< padded beyond the last, at chunk_pair.back()
   std::vector<std::uint32_t> pair_first;    ///< first pair of each particle, one more
   std::vector<std::uint32_t> partner_load;  ///< where in `load` the partner's share goes
-  std::vector<std::uint8_t> in_range;
+  std::vector<std::uint64_t> in_range;      ///< one bit a pair, 64 to a word
+  std::vector<std::uint64_t> due;           ///< alike, of each of the next `due_steps` steps: pairs to look at then
   std::vector<VectorRow> history;  ///< Simulation::history_rows a pair: slip and contact radius, roll and twist
   // chunks
   std::vector<std::uint32_t> chunk_first, chunk_pair;  ///< first particle and pair; one more
@@ -94,6 +104,7 @@ struct State {
   std::vector<double> feature_gap;      ///< m, from the sphere to the feature at the rebuild, at least
 
   std::size_t particles() const { return half.size(); }
+  bool is_in_range(std::uint32_t slot) const { return (in_range[slot / 64] & bit_of(slot)) != 0; }
   std::size_t chunks() const { return chunk_first.size() - 1; }
 };
 

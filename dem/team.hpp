@@ -1,10 +1,11 @@
 #pragma once
 // A small team of threads that stays alive between parallel passes; the caller is its first member.
+//
+// A step is a few passes of tens of microseconds each. Waking a thread costs about as much, so members wait for the
+// next pass at the ready for a while before they sleep; a machine that is busy otherwise has them back soon.
 #include <atomic>
-#include <barrier>
-#include <exception>
+#include <cstdint>
 #include <functional>
-#include <memory>
 #include <thread>
 #include <vector>
 
@@ -13,51 +14,70 @@ namespace dem {
 class Team {
  public:
   explicit Team(int threads) : size_(threads < 1 ? 1 : threads) {
-    if (size_ == 1) return;
-    gate_ = std::make_unique<std::barrier<>>(size_);
-    for (int rank = 1; rank < size_; ++rank) {
-      members_.emplace_back([this, rank] {
-        for (;;) {
-          gate_->arrive_and_wait();
+    for (int member = 1; member < size_; ++member) {
+      members_.emplace_back([this] {
+        for (std::uint64_t pass = 1;; ++pass) {
+          wait_until(passes_, [pass](std::uint64_t begun) { return begun >= pass; });
           if (done_) return;
-          task_(rank);
-          gate_->arrive_and_wait();
+          take_items();
+          if (busy_.fetch_sub(1) == 1) busy_.notify_one();
         }
       });
     }
   }
   ~Team() {
-    if (size_ == 1) return;
     done_ = true;
-    gate_->arrive_and_wait();
+    begin_pass();
   }
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
   int size() const { return size_; }
 
-  /// Calls work(item) for every item in [0, items), each member a contiguous share. Work must not throw.
+  /// Calls work(item) once for every item in [0, items), in any order and by any member. Work must not throw.
   template <class Work>
   void for_each(std::size_t items, Work&& work) {
     if (size_ == 1) {
       for (std::size_t i = 0; i < items; ++i) work(i);
       return;
     }
-    const auto share = [&](int rank) {
-      const auto n = static_cast<std::size_t>(size_), r = static_cast<std::size_t>(rank);
-      for (std::size_t i = items * r / n; i < items * (r + 1) / n; ++i) work(i);
-    };
-    task_ = share;
-    gate_->arrive_and_wait();
-    share(0);
-    gate_->arrive_and_wait();
+    work_ = std::ref(work);
+    items_ = items;
+    next_ = 0;
+    busy_ = static_cast<std::uint64_t>(size_) - 1;
+    begin_pass();
+    take_items();
+    wait_until(busy_, [](std::uint64_t busy) { return busy == 0; });
   }
 
  private:
+  static constexpr int looks = 2000;  ///< at a number before sleeping until it changes: some tens of microseconds
+
+  void begin_pass() {
+    passes_.fetch_add(1);
+    passes_.notify_all();
+  }
+  void take_items() {
+    for (std::size_t i = next_.fetch_add(1); i < items_; i = next_.fetch_add(1)) work_(i);
+  }
+  template <class Done>
+  static void wait_until(const std::atomic<std::uint64_t>& number, Done&& done) {
+    for (int look = 0; look < looks; ++look) {
+      if (done(number.load(std::memory_order_acquire))) return;
+#ifdef __x86_64__
+      __builtin_ia32_pause();
+#endif
+    }
+    for (std::uint64_t now = number; !done(now); now = number) number.wait(now);
+  }
+
   int size_;
   bool done_ = false;
-  std::function<void(int)> task_;
-  std::unique_ptr<std::barrier<>> gate_;
+  std::function<void(std::size_t)> work_;
+  std::size_t items_ = 0;
+  alignas(64) std::atomic<std::size_t> next_ = 0;      ///< item
+  alignas(64) std::atomic<std::uint64_t> passes_ = 0;  ///< begun
+  alignas(64) std::atomic<std::uint64_t> busy_ = 0;    ///< members that have not finished this pass, beside the caller
   std::vector<std::jthread> members_;
 };
 
