@@ -221,20 +221,26 @@ template <class Law, bool Uniform>
         v.in_range[left / 64] &= ~bit_of(left);
         sleep(v, left, 0.0);
       }
-      for (int k = 0; k < used; ++k) {
-        LoadRow &a = v.load[p[k].i], &b = v.load[v.partner_load[slot[k]]];
-        four(v.history[slot[k] * rows].v.x) = kept[k];
-        if constexpr (rows == 2) four(v.history[slot[k] * rows + 1].v.x) = kept_too[k];
-        four(a.force.x) += force[k];
-        four(b.force.x) -= force[k];
-        if constexpr (turning) {
-          four(a.torque.x) += torque_i[k];
-          four(b.torque.x) += torque_j[k];
-        } else {
-          four(a.torque.x) -= torque_i[k];
-          four(b.torque.x) -= Uniform ? torque_i[k] : torque_j[k];
+      const auto add = [&](auto lanes_used) {
+        for (int k = 0; k < lanes_used; ++k) {
+          LoadRow &a = v.load[p[k].i], &b = v.load[v.partner_load[slot[k]]];
+          four(v.history[slot[k] * rows].v.x) = kept[k];
+          if constexpr (rows == 2) four(v.history[slot[k] * rows + 1].v.x) = kept_too[k];
+          four(a.force.x) += force[k];
+          four(b.force.x) -= force[k];
+          if constexpr (turning) {
+            four(a.torque.x) += torque_i[k];
+            four(b.torque.x) += torque_j[k];
+          } else {
+            four(a.torque.x) -= torque_i[k];
+            four(b.torque.x) -= Uniform ? torque_i[k] : torque_j[k];
+          }
         }
-      }
+      };
+      if (used == lanes)  // most often; then the compiler knows their number
+        add(std::integral_constant<int, lanes>{});
+      else
+        add(used);
 
       const unsigned lane_mask = (1u << used) - 1u;
       const Lane valid = first_lanes(used);

@@ -73,8 +73,9 @@ Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.thr
     state_.load.push_back(load);
     state_.id.push_back(static_cast<std::uint32_t>(i));
   }
-  // About 1024 spheres each; many chunks are shared out evenly by two or four threads.
-  const std::size_t about = std::clamp<std::size_t>(n / 1024, 1, 64), chunks = about < 4 ? about : (about + 2) / 4 * 4;
+  // Large beds in chunks of some 2,000 spheres, a number that two or four threads share out evenly.
+  const std::size_t chunks =
+      n < 4096 ? std::max<std::size_t>(1, n / 1024) : std::min<std::size_t>(64, (n / 2048 + 3) / 4 * 4);
   for (std::size_t c = 0; c <= chunks; ++c) state_.chunk_first.push_back(static_cast<std::uint32_t>(n * c / chunks));
   rebuild();
   compute_forces();
