@@ -65,12 +65,13 @@ void add_edges_and_vertices(const TriangleMesh& mesh, Surface& s) {
   }
 }
 
-/// A lower bound of the distance from a point to a feature [m].
-double distance_at_least(const Surface& s, std::uint32_t feature, Vec3 point) {
+/// A lower bound of the distance from a point to a feature [m], exact to what is asked as long as it is below `enough`.
+double distance_at_least(const Surface& s, std::uint32_t feature, Vec3 point, double enough) {
   const std::size_t faces = s.faces.size(), edges = s.edges.size();
   if (feature < faces) {
     const Face& f = s.faces[feature];
     const double height = dot(f.normal, point) - f.offset;
+    if (std::abs(height) > enough) return std::abs(height);
     double beside = 0.0;
     for (int k = 0; k < 3; ++k) beside = std::max(beside, dot(f.out[k], point) - f.bound[k]);
     return std::sqrt(height * height + beside * beside);
@@ -104,25 +105,33 @@ void make_grid(const std::vector<Box>& boxes, Surface& s) {
   const auto index = [&](double x, double origin, int n) {
     return std::clamp(static_cast<int>((x - origin) / s.cell), 0, n - 1);
   };
-  // Two passes over the boxes: count, then fill; ascending feature order in every cell.
-  std::vector<std::uint32_t> count(static_cast<std::size_t>(s.cells[0]) * s.cells[1] * s.cells[2] + 1, 0);
-  const auto each_cell = [&](std::uint32_t feature, auto&& visit) {
-    const Box& b = boxes[feature];
-    for (int x = index(b.low.x, low.x, s.cells[0]); x <= index(b.high.x, low.x, s.cells[0]); ++x) {
-      for (int y = index(b.low.y, low.y, s.cells[1]); y <= index(b.high.y, low.y, s.cells[1]); ++y) {
-        for (int z = index(b.low.z, low.z, s.cells[2]); z <= index(b.high.z, low.z, s.cells[2]); ++z) {
+  // Counting sort of what is found, box by box: ascending feature order in every cell.
+  struct Found {
+    std::uint32_t cell, feature;
+  };
+  std::vector<Found> found;
+  const double near = s.reach + 0.5 * std::sqrt(3.0) * s.cell;
+  for (std::uint32_t f = 0; f < boxes.size(); ++f) {
+    const Box& b = boxes[f];
+    const int x_end = index(b.high.x, low.x, s.cells[0]), y_end = index(b.high.y, low.y, s.cells[1]),
+              z_end = index(b.high.z, low.z, s.cells[2]);
+    for (int x = index(b.low.x, low.x, s.cells[0]); x <= x_end; ++x) {
+      for (int y = index(b.low.y, low.y, s.cells[1]); y <= y_end; ++y) {
+        for (int z = index(b.low.z, low.z, s.cells[2]); z <= z_end; ++z) {
           const Vec3 centre = low + Vec3{(x + 0.5) * s.cell, (y + 0.5) * s.cell, (z + 0.5) * s.cell};
-          if (distance_at_least(s, feature, centre) > s.reach + 0.5 * std::sqrt(3.0) * s.cell) continue;
-          visit((static_cast<std::size_t>(x) * s.cells[1] + y) * s.cells[2] + z);
+          if (distance_at_least(s, f, centre, near) > near) continue;
+          found.push_back(
+              {static_cast<std::uint32_t>((static_cast<std::size_t>(x) * s.cells[1] + y) * s.cells[2] + z), f});
         }
       }
     }
-  };
-  for (std::uint32_t f = 0; f < boxes.size(); ++f) each_cell(f, [&](std::size_t c) { ++count[c + 1]; });
-  for (std::size_t c = 1; c < count.size(); ++c) count[c] += count[c - 1];
-  s.first = count;
-  s.features.resize(count.back());
-  for (std::uint32_t f = 0; f < boxes.size(); ++f) each_cell(f, [&](std::size_t c) { s.features[count[c]++] = f; });
+  }
+  s.first.assign(static_cast<std::size_t>(s.cells[0]) * s.cells[1] * s.cells[2] + 1, 0);
+  for (const Found& one : found) ++s.first[one.cell + 1];
+  for (std::size_t c = 1; c < s.first.size(); ++c) s.first[c] += s.first[c - 1];
+  std::vector<std::uint32_t> next = s.first;
+  s.features.resize(found.size());
+  for (const Found& one : found) s.features[next[one.cell]++] = one.feature;
 }
 
 }  // namespace
@@ -158,7 +167,7 @@ void find_features(const Surface& s, Vec3 point, double distance, std::vector<Ne
   if (x >= s.cells[0] || y >= s.cells[1] || z >= s.cells[2]) return;
   const std::size_t c = (static_cast<std::size_t>(x) * s.cells[1] + y) * s.cells[2] + z;
   for (std::uint32_t i = s.first[c]; i < s.first[c + 1]; ++i) {
-    const double away = distance_at_least(s, s.features[i], point);
+    const double away = distance_at_least(s, s.features[i], point, distance);
     if (away < distance) found.push_back({away, s.features[i]});
   }
   std::sort(found.begin(), found.end(), [](const NearFeature& a, const NearFeature& b) {
