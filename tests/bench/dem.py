@@ -22,11 +22,11 @@ def run(command, folder, cores):
     return used.ru_utime + used.ru_stime if cores == 1 else time.monotonic() - before
 
 
-def demcal(program, case, folder, seconds, cores):
+def demcal(program, case, folder, seconds, cores, *more):
     """One run of `seconds` of simulated time, start-up included."""
     out = folder / "demcal"
     shutil.rmtree(out, ignore_errors=True)
-    command = [program, "simulate", case, "--out", out, "--quiet", "--json", "--threads", cores]
+    command = [program, "simulate", case, "--out", out, "--quiet", "--json", "--threads", cores, *more]
     for key, value in {"start_up": 0.25 * seconds, "shortest": 0.5 * seconds, "longest": seconds}.items():
         command += ["--set", f"run.{key}={value:.9g} s"]
     return run(command, folder, cores)
@@ -89,6 +89,78 @@ def speed(program, options, folder):
                   f"{statistics.mean(ratios):.2f} | {spread(ratios):.2f} |", flush=True)
 
 
+def key_value(text):
+    """The number in the first line of h5dump's answer that holds one."""
+    return float(next(line.split("):")[1] for line in text.splitlines() if "(0):" in line))
+
+
+def read_attribute(file, path):
+    return key_value(subprocess.run(["h5dump", "-a", path, str(file)], check=True, capture_output=True, text=True).stdout)
+
+
+def set_keys(keys):
+    return [word for key, value in keys.items() for word in ("--set", f"{key}={value}")]
+
+
+HERTZ = {"contact.normal": "hertz", "contact.young_modulus": "8 MPa"}
+ROLLING = {"contact.rolling_friction": 0.1, "contact.twisting_friction": 0.1}
+LAWS = {
+    "linear (the default)": {},
+    "linear, constant rolling resistance": {"contact.resistance": "constant", **ROLLING},
+    "linear, spring rolling resistance": {"contact.resistance": "spring", **ROLLING},
+    "linear, van der Waals": {"contact.hamaker": "2e-18 J", "contact.minimum_separation": "1.5 nm"},
+    "linear, DMT": {"contact.cohesion": "dmt", "contact.work_of_adhesion": "20 mJ/m2"},
+    "linear, spring rolling resistance, van der Waals": {"contact.resistance": "spring", **ROLLING, "contact.hamaker": "2e-18 J",
+                                                         "contact.minimum_separation": "1.5 nm"},
+    "Hertz, Mindlin": {**HERTZ, "contact.tangential": "mindlin"},
+    "Hertz, linear tangential": {**HERTZ, "contact.tangential": "linear"},
+    "Hertz, Mindlin, spring rolling resistance": {**HERTZ, "contact.tangential": "mindlin", "contact.resistance": "spring", **ROLLING},
+    "JKR": {**HERTZ, "contact.normal": "jkr", "contact.work_of_adhesion": "20 mJ/m2"},
+}
+
+
+def laws(program, options, folder):
+    """Processor time of a step of each law on the slice of one pitch, from the same packing with the same time step."""
+    case, time_step, steps = make_slice(1, folder), 1e-5, 100 * options.work
+    hertzian = folder / "slice-1-hertz"  # a key that no law reads is an error
+    shutil.copytree(case, hertzian, dirs_exist_ok=True)
+    study = (case / "study.toml").read_text()
+    (hertzian / "study.toml").write_text("".join(line + "\n" for line in study.split("\n") if not line.startswith("stiffness")))
+    print("| law | M particle-steps a second | time of a step, of the default law's | coordination number |\n|---|---|---|---|")
+    seconds = {name: [] for name in LAWS}
+    for _ in range(options.repeat):
+        for name, keys in LAWS.items():
+            extra = set_keys({**keys, "run.time_step": f"{time_step} s"})
+            with_stiffness = keys.get("contact.normal") is None or keys.get("contact.tangential") == "linear"
+            seconds[name].append(demcal(program, case if with_stiffness else hertzian, folder, steps * time_step, 1, *extra) / (5000 * steps))
+            shutil.copy(folder / "demcal/run.h5", folder / f"law-{list(LAWS).index(name)}.h5")
+    default = seconds[next(iter(LAWS))]
+    for k, (name, each) in enumerate(seconds.items()):
+        coordination = subprocess.run(["h5dump", "-y", "-d", "/summary/mean", str(folder / f"law-{k}.h5")], check=True,
+                                      capture_output=True, text=True).stdout.split("DATA {")[1].split("}")[0].split(",")[3]
+        ratio = statistics.mean(a / b for a, b in zip(each, default))
+        print(f"| {name} | {1e-6 / statistics.mean(each):.2f} | {ratio:.2f} | {float(coordination):.2f} |", flush=True)
+
+
+def answer(program, options, folder):
+    """Processor time of a mean torque to 2 % on one pitch: demcal stops when it has it; LIGGGHTS is given as much simulated
+    time, with the time step that its users take, a fiftieth of the contact's duration."""
+    case = make_slice(1, folder)
+    ours = run([program, "simulate", case, "--out", folder / "demcal", "--quiet", "--json", "--set", "training.standard_error=0.02",
+                "--set", "run.start_up=0.2 s", "--set", "run.shortest=0.3 s", "--set", "run.longest=5 s"], folder, 1)
+    found = json.loads((folder / "log").read_text())["outputs"]["torque"]
+    simulated = read_attribute(folder / "demcal/run.h5", "/diagnostics/simulated_s")
+    duration = 20.082 * 1e-5
+    steps = round(simulated / (duration / 50))
+    theirs = run(["liggghts", "-in", here / "slice/in.slice", "-var", "dir", case, "-var", "nset", round(0.2 / (duration / 50)), "-var",
+                  "nrun", steps - round(0.2 / (duration / 50)), "-var", "dt", duration / 50, "-var", "tag", "t", "-log", "none"], folder, 1)
+    rows = [float(line.split()[1]) for line in (folder / "torque_t.dat").read_text().splitlines() if not line.startswith("#")]
+    print(f"mean torque of one pitch to 2 %: {simulated:.2f} s simulated\n"
+          f"demcal, {ours:.0f} CPU seconds: {found['mean']:.1f} +- {found['standard_error']:.1f} uN m\n"
+          f"LIGGGHTS, {theirs:.0f} CPU seconds: {-1e6 * statistics.mean(rows):.1f} +- {1e6 * block_error(rows):.1f} uN m\n"
+          f"ratio {theirs / ours:.1f}")
+
+
 def block_error(values, blocks=10):
     size = len(values) // blocks
     means = [statistics.mean(values[k * size:(k + 1) * size]) for k in range(blocks)]
@@ -122,6 +194,8 @@ parser.add_argument("--chute", nargs="*", default=["1x1"], help="repeats of the 
 parser.add_argument("--cores", type=int, nargs="+", default=[1, 2], help="threads and ranks")
 parser.add_argument("--work", type=int, default=200, help="million particle-steps of each run")
 parser.add_argument("--torque", action="store_true", help="compare the mean torque of one pitch instead (minutes)")
+parser.add_argument("--laws", action="store_true", help="compare the contact laws with each other instead (minutes)")
+parser.add_argument("--answer", action="store_true", help="compare the time to a mean torque to 2 %% instead (minutes)")
 parser.add_argument("--keep", type=pathlib.Path, help="folder for cases and logs (default: a temporary one)")
 options = parser.parse_args()
 program = options.demcal.resolve()
@@ -130,4 +204,11 @@ print(f"{processor}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; mill
 with tempfile.TemporaryDirectory() as temporary:
     folder = (options.keep or pathlib.Path(temporary)).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    torque(program, folder) if options.torque else speed(program, options, folder)
+    if options.torque:
+        torque(program, folder)
+    elif options.laws:
+        laws(program, options, folder)
+    elif options.answer:
+        answer(program, options, folder)
+    else:
+        speed(program, options, folder)
