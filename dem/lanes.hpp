@@ -56,6 +56,11 @@ typedef double Four __attribute__((vector_size(32), may_alias));
 inline const Four& four(const double& first) { return reinterpret_cast<const Four&>(first); }
 inline Four& four(double& first) { return reinterpret_cast<Four&>(first); }
 
+/// A vector, and 0.
+[[gnu::always_inline]] inline Four four(const Vec3& a) { return Four{a.x, a.y, a.z, 0.0}; }
+/// Its first three.
+[[gnu::always_inline]] inline Vec3 three(const Four& a) { return {a[0], a[1], a[2]}; }
+
 /// A row of four doubles per lane, transposed.
 struct LaneRows {
   Vector3<Lane> v;

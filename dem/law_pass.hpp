@@ -16,22 +16,22 @@ inline History<double> history_of(const VectorRow& slip, const VectorRow& roll) 
 /// Features that the sphere may have reached since the rebuild: those are sorted by their gap then.
 inline std::uint32_t features_in_question(const State& s, const WallSlot& slot, const Frame& frame) {
   const PositionRow& at = s.position[slot.particle];
-  const double moved = length(at.at - s.reference[slot.particle].at) + frame.moved + 1e-9 * at.radius;
-  const double* gap = s.feature_gap.data() + slot.feature_first;
+  const double moved = length(at.at - s.reference[slot.particle]) + frame.moved + 1e-9 * at.radius;
+  const float* gap = s.feature_gap.data() + slot.feature_first;
   std::uint32_t asked = 0;
   while (asked < slot.feature_count && gap[asked] <= moved) ++asked;
   return asked;
 }
 
-/// The memory of the contact with this normal: that of the old contact whose normal is nearest.
-inline const WallMemory* remembered(const WallSlot& slot, Vec3 normal) {
-  const WallMemory* best = nullptr;
+/// Which of the slot's contacts had this normal, or -1: that whose normal is nearest.
+inline int remembered(const Pool<WallMemory>& memory, const WallSlot& slot, Vec3 normal) {
+  int best = -1;
   double cosine = merge_cosine;
   for (std::uint32_t k = 0; k < slot.touching; ++k) {
-    const double c = dot(slot.contact[k].normal, normal);
+    const double c = dot(memory.rows[slot.place[k]].normal, normal);
     if (c > cosine) {
       cosine = c;
-      best = &slot.contact[k];
+      best = static_cast<int>(k);
     }
   }
   return best;
@@ -52,9 +52,21 @@ class LawPass final : public ForcePass {
   int history_rows() const override { return Law::history_rows; }
 
   void chunk(State& s, const Surroundings& around, std::size_t chunk, StepSums& sums) const override {
-    const PairView view{s.position.data(), s.motion.data(),   s.pair.data(), s.partner_load.data(), s.in_range.data(),
-                        s.due.data(),      s.in_range.size(), s.step,        s.history.data(),      s.load.data(),
-                        around.time_step,  around.range,      around.deep,   around.steps_per_metre};
+    const PairView view{.position = s.position.data(),
+                        .motion = s.motion.data(),
+                        .pair = s.pair.data(),
+                        .partner_load = s.partner_load.data(),
+                        .in_range = s.in_range.data(),
+                        .due = s.due.data(),
+                        .words = s.in_range.size(),
+                        .step = s.step,
+                        .history_at = s.history_at.data(),
+                        .history = &s.history[chunk],
+                        .load = s.load.data(),
+                        .time_step = around.time_step,
+                        .range = around.range,
+                        .deep = around.deep,
+                        .steps_per_metre = around.steps_per_metre};
     const std::uint32_t begin = s.chunk_pair[chunk], end = s.chunk_pair[chunk + 1];
     PairSums pairs;
     if (equal()) {
@@ -70,7 +82,8 @@ class LawPass final : public ForcePass {
     sums.max_overlap = std::max(sums.max_overlap, pairs.max_overlap);
     const std::size_t bodies = around.frames.size();
     for (std::size_t b = 0; b < bodies; ++b)
-      meet_body(s, around, s.chunk_wall[chunk * bodies + b], s.chunk_wall[chunk * bodies + b + 1], sums);
+      meet_body(s, s.wall_memory[chunk], around,
+                std::span(s.chunk_wall).subspan(chunk * bodies + b).template first<2>(), sums);
   }
 
   ContactEnergy energy(const State& s, const Surroundings& around) const override {
@@ -79,26 +92,29 @@ class LawPass final : public ForcePass {
       total.elastic += law.elastic_energy(overlap, h);
       total.attraction += law.attraction_energy(overlap);
     };
-    for (std::uint32_t slot = 0; slot < s.chunk_pair.back(); ++slot) {
-      if (!s.is_in_range(slot)) continue;
+    s.each_in_range([&](std::size_t c, std::uint32_t slot) {
       const Pair p = s.pair[slot];
       const PositionRow &a = s.position[p.i], &b = s.position[p.j];
       const MotionRow &ma = s.motion[p.i], &mb = s.motion[p.j];
       constexpr int rows = Law::history_rows;
-      const VectorRow roll = rows == 2 ? s.history[slot * rows + rows - 1] : VectorRow{};
+      const VectorRow* const history = &s.history[c].rows[s.history_at[slot] * rows];
       add(grain(ma, mb).at(ma.mass * mb.mass / (ma.mass + mb.mass), a.radius * b.radius / (a.radius + b.radius)),
-          a.radius + b.radius - length(a.at - b.at), history_of(s.history[slot * rows], roll));
-    }
+          a.radius + b.radius - length(a.at - b.at),
+          history_of(history[0], rows == 2 ? history[rows - 1] : VectorRow{}));
+    });
     Touches touches;
-    for (const WallSlot& slot : s.wall) {
-      const PositionRow& at = s.position[slot.particle];
-      find(s, around, slot, touches);
-      for (int t = 0; t < touches.count; ++t) {
-        const WallMemory* memory = remembered(slot, touches.touch[t].normal);
-        const WallMemory none{};
-        const WallMemory& m = memory ? *memory : none;
-        add(wall(s.motion[slot.particle], slot.body).at(s.motion[slot.particle].mass, at.radius),
-            at.radius - touches.touch[t].distance, history_of(m.slip, m.roll));
+    const std::size_t bodies = around.frames.size();
+    for (std::size_t c = 0; c < s.chunks(); ++c) {
+      for (std::uint32_t w = s.chunk_wall[c * bodies]; w < s.chunk_wall[(c + 1) * bodies]; ++w) {
+        const WallSlot& slot = s.wall[w];
+        const PositionRow& at = s.position[slot.particle];
+        find(s, around, slot, touches);
+        for (int t = 0; t < touches.count; ++t) {
+          const int known = remembered(s.wall_memory[c], slot, touches.touch[t].normal);
+          const WallMemory m = known < 0 ? WallMemory{} : s.wall_memory[c].rows[slot.place[known]];
+          add(wall(s.motion[slot.particle], slot.body).at(s.motion[slot.particle].mass, at.radius),
+              at.radius - touches.touch[t].distance, history_of(m.slip, m.roll));
+        }
       }
     }
     return total;
@@ -141,29 +157,31 @@ class LawPass final : public ForcePass {
 
   /// A contact found, waiting to be evaluated.
   struct WallHit {
-    std::uint32_t slot, touch;
+    std::uint32_t slot, place;
     VectorRow normal;      ///< in the body's frame, and the distance [m]
     VectorRow slip, roll;  ///< its history, in the body's frame
   };
 
   /// J, in the memories that no contact takes over.
-  double given_up(const State& s, const WallSlot& slot, std::uint32_t lost) const {
+  double given_up(const State& s, const Pool<WallMemory>& memory, const WallSlot& slot, std::uint32_t lost) const {
     const auto law =
         wall(s.motion[slot.particle], slot.body).at(s.motion[slot.particle].mass, s.position[slot.particle].radius);
     double sum = 0.0;
     for (std::uint32_t k = 0; k < slot.touching; ++k) {
-      if ((lost >> k & 1u) != 0) sum += law.given_up(history_of(slot.contact[k].slip, slot.contact[k].roll));
+      const WallMemory& m = memory.rows[slot.place[k]];
+      if ((lost >> k & 1u) != 0) sum += law.given_up(history_of(m.slip, m.roll));
     }
     return sum;
   }
 
   /// Contacts of the chunk's spheres with one body: found one by one, evaluated in lanes.
-  void meet_body(State& s, const Surroundings& around, std::uint32_t begin, std::uint32_t end, StepSums& sums) const {
+  void meet_body(State& s, Pool<WallMemory>& memory, const Surroundings& around,
+                 std::span<const std::uint32_t, 2> slots, StepSums& sums) const {
     constexpr std::size_t batch = 64;
     WallHit hits[batch + max_touches + lanes];
     std::size_t count = 0;
     Touches touches;
-    for (std::uint32_t w = begin; w < end; ++w) {
+    for (std::uint32_t w = slots[0]; w < slots[1]; ++w) {
       WallSlot& slot = s.wall[w];
       find(s, around, slot, touches);
       const std::size_t first = count;
@@ -171,26 +189,31 @@ class LawPass final : public ForcePass {
       for (int t = 0; t < touches.count; ++t) {
         const Touch& touch = touches.touch[t];
         WallHit& hit = hits[count++];
-        hit = {w, static_cast<std::uint32_t>(t), {touch.normal, touch.distance}, {}, {}};
-        if (const WallMemory* m = remembered(slot, touch.normal)) {
-          hit.slip = m->slip;
-          hit.roll = m->roll;
-          lost &= ~(1u << (m - slot.contact));
+        hit = {w, 0, {touch.normal, touch.distance}, {}, {}};
+        if (const int known = remembered(memory, slot, touch.normal); known >= 0) {
+          hit.slip = memory.rows[slot.place[known]].slip;
+          hit.roll = memory.rows[slot.place[known]].roll;
+          lost &= ~(1u << known);
         }
       }
-      if (lost != 0) sums.dissipated += given_up(s, slot, lost);
-      for (std::size_t k = first; k < count; ++k) slot.contact[k - first].normal = hits[k].normal.v;
-      slot.touching = static_cast<std::uint32_t>(touches.count);
+      if (lost != 0) sums.dissipated += given_up(s, memory, slot, lost);
+      const auto touching = static_cast<std::uint32_t>(touches.count);
+      while (slot.touching > touching) memory.give_back(slot.place[--slot.touching]);
+      while (slot.touching < touching) slot.place[slot.touching++] = memory.take();
+      for (std::size_t k = first; k < count; ++k) {
+        hits[k].place = slot.place[k - first];
+        memory.rows[hits[k].place].normal = hits[k].normal.v;
+      }
       if (count >= batch) {
-        evaluate(s, around, hits, count, sums);
+        evaluate(s, memory, around, hits, count, sums);
         count = 0;
       }
     }
-    if (count > 0) evaluate(s, around, hits, count, sums);
+    if (count > 0) evaluate(s, memory, around, hits, count, sums);
   }
 
-  [[gnu::flatten]] void evaluate(State& s, const Surroundings& around, WallHit* hits, std::size_t count,
-                                 StepSums& sums) const {
+  [[gnu::flatten]] void evaluate(State& s, Pool<WallMemory>& memory, const Surroundings& around, WallHit* hits,
+                                 std::size_t count, StepSums& sums) const {
     const std::size_t body = s.wall[hits[0].slot].body;
     const Frame& frame = around.frames[body];
     const auto one = wall(MotionRow{}, body).at(tables_.equal_mass, tables_.equal_radius);
@@ -241,7 +264,7 @@ class LawPass final : public ForcePass {
         LoadRow& load = s.load[particle[k]];
         four(load.force.x) += forces[k];
         four(load.torque.x) += torques[k];
-        WallMemory& kept = s.wall[hit[k].slot].contact[hit[k].touch];
+        WallMemory& kept = memory.rows[hit[k].place];
         four(kept.slip.v.x) = slips[k];
         if constexpr (Law::history_rows == 2) four(kept.roll.v.x) = rolls[k];
       }

@@ -5,6 +5,8 @@
 // known how many come before them, puts them in their place. So a list is as long as it has to be, and its order is
 // that of the chunks, whatever the number of threads.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "dem/pair_pass.hpp"
 #include "dem/simulation.hpp"
@@ -19,7 +21,8 @@ struct OldPairs {
   std::vector<Pair> pair;
   std::vector<std::uint32_t> first;
   std::vector<std::uint64_t> in_range;
-  std::vector<VectorRow> history;
+  std::vector<std::uint32_t> history_at, chunk_pair;
+  std::vector<Pool<VectorRow>> history;
   std::size_t particles;
   const std::vector<Ghost>& ghost;
 
@@ -31,6 +34,11 @@ struct OldPairs {
     }
     return none;
   }
+  const VectorRow* history_of(std::uint32_t slot) const {
+    const auto after = std::upper_bound(chunk_pair.begin(), chunk_pair.end(), slot);
+    const Pool<VectorRow>& pool = history[static_cast<std::size_t>(after - chunk_pair.begin() - 1)];
+    return pool.rows.data() + history_at[slot] * pool.width;
+  }
 };
 
 /// Numbers after each other: where each chunk's entries begin, one more.
@@ -40,6 +48,8 @@ std::vector<std::uint32_t> starts(const std::vector<Found>& found, Count&& count
   for (const Found& f : found) first.push_back(first.back() + static_cast<std::uint32_t>(count(f)));
   return first;
 }
+
+float rounded_down(double a) { return std::nextafter(static_cast<float>(a), -std::numeric_limits<float>::infinity()); }
 
 }  // namespace
 
@@ -80,24 +90,47 @@ std::vector<Pair> Simulation::pairs_of(std::size_t chunk) const {
   return found;
 }
 
+/// First pair of each particle in a list, one more.
+std::vector<std::uint32_t> Simulation::first_of_each(const std::vector<Pair>& pairs,
+                                                     const std::vector<std::uint32_t>& chunk_pair) {
+  const State& s = state_;
+  if (chunk_pair.empty()) return {};
+  std::vector<std::uint32_t> first(s.particles() + 1, chunk_pair.back());
+  team_.for_each(s.chunks(), [&](std::size_t c) {
+    std::uint32_t i = s.chunk_first[c];
+    for (std::uint32_t slot = chunk_pair[c]; slot < chunk_pair[c + 1]; ++slot)
+      while (i <= pairs[slot].i) first[i++] = slot;
+    while (i < s.chunk_first[c + 1]) first[i++] = chunk_pair[c + 1];
+  });
+  return first;
+}
+
 /// Pairs within reach, with the history of the old list.
 void Simulation::list_pairs() {
   State& s = state_;
   const std::size_t n = s.particles(), chunks = s.chunks();
-  const auto rows = static_cast<std::size_t>(setup_.laws->history_rows());
+  const auto rows = static_cast<std::uint32_t>(setup_.laws->history_rows());
   std::vector<std::vector<Pair>> found(chunks);
   team_.for_each(chunks, [&](std::size_t c) { found[c] = pairs_of(c); });
+  std::vector<std::uint32_t> old_chunk_pair = std::move(s.chunk_pair);
+  std::vector<std::uint32_t> old_first = first_of_each(s.pair, old_chunk_pair);
   // Whole words of bits are a chunk's own.
   s.chunk_pair = starts(found, [](const std::vector<Pair>& f) { return (f.size() + 63) / 64 * 64; });
   const std::size_t pairs = s.chunk_pair.back();
 
-  const OldPairs old{std::move(s.pair), std::move(s.pair_first), std::move(s.in_range), std::move(s.history), n,
+  const OldPairs old{std::move(s.pair),
+                     std::move(old_first),
+                     std::move(s.in_range),
+                     std::move(s.history_at),
+                     std::move(old_chunk_pair),
+                     std::move(s.history),
+                     n,
                      old_ghosts_};
   s.pair = std::vector<Pair>(pairs);
-  s.pair_first = std::vector<std::uint32_t>(n + 1, static_cast<std::uint32_t>(pairs));
   s.in_range = std::vector<std::uint64_t>(pairs / 64);
-  s.history = std::vector<VectorRow>(pairs * rows);
-  const auto take_over = [&](std::uint32_t slot) {
+  s.history_at = std::vector<std::uint32_t>(pairs);
+  s.history = std::vector<Pool<VectorRow>>(chunks, Pool<VectorRow>{.width = rows, .rows = {}, .free = {}});
+  const auto take_over = [&](Pool<VectorRow>& pool, std::uint32_t slot) {
     const Pair p = s.pair[slot];
     const std::uint32_t a = order_[p.i], b = order_[p.j < n ? p.j : s.ghost[p.j - n].owner];
     std::uint32_t before = old.slot_of(a, b);
@@ -108,22 +141,18 @@ void Simulation::list_pairs() {
     }
     if (before == none || (old.in_range[before / 64] & bit_of(before)) == 0) return;
     s.in_range[slot / 64] |= bit_of(slot);
+    s.history_at[slot] = pool.take();
     // Seen from the other sphere forces turn round; the contact radius (row 0) and the twist (row 1) do not.
     for (std::size_t row = 0; row < rows; ++row) {
-      VectorRow h = old.history[before * rows + row];
-      h.v = sign * h.v;
-      s.history[slot * rows + row] = h;
+      const VectorRow& h = old.history_of(before)[row];
+      pool.rows[s.history_at[slot] * rows + row] = {sign * h.v, h.w};
     }
   };
   team_.for_each(chunks, [&](std::size_t c) {
     const auto padding = std::copy(found[c].begin(), found[c].end(), s.pair.begin() + s.chunk_pair[c]);
     std::fill(padding, s.pair.begin() + s.chunk_pair[c + 1], Pair{s.chunk_first[c + 1] - 1, s.chunk_first[c + 1] - 1});
-    std::uint32_t i = s.chunk_first[c];
-    for (std::uint32_t slot = s.chunk_pair[c]; slot < s.chunk_pair[c + 1]; ++slot) {
-      while (i <= s.pair[slot].i) s.pair_first[i++] = slot;
-      if (!old.first.empty()) take_over(slot);
-    }
-    while (i < s.chunk_first[c + 1]) s.pair_first[i++] = s.chunk_pair[c + 1];
+    if (old.first.empty()) return;
+    for (std::uint32_t slot = s.chunk_pair[c]; slot < s.chunk_pair[c + 1]; ++slot) take_over(s.history[c], slot);
   });
   wake_all();
 }
@@ -193,7 +222,8 @@ void Simulation::list_walls() {
   for (const Body& body : setup_.bodies) now.push_back(pose(body.motion, motion_time(s.step)));
 
   struct Found {
-    std::vector<WallSlot> slot;         ///< features counted from the chunk's first
+    std::vector<WallSlot> slot;  ///< features counted from the chunk's first
+    Pool<WallMemory> memory;
     std::vector<std::uint32_t> body;    ///< first slot of each body, one more
     std::vector<NearFeature> features;  ///< of each slot, nearest first
   };
@@ -209,7 +239,16 @@ void Simulation::list_walls() {
         find_features(surface_[b], in_body, s.position[i].radius + range_ + setup_.skin, near);
         if (near.empty()) continue;
         WallSlot slot;
-        if (old[i * bodies + b] != none) slot = s.wall[old[i * bodies + b]];
+        if (const std::uint32_t w = old[i * bodies + b]; w != none) {
+          slot = s.wall[w];
+          const auto after = std::upper_bound(s.chunk_wall.begin(), s.chunk_wall.end(), w);
+          const auto chunk_before = static_cast<std::size_t>(after - s.chunk_wall.begin() - 1) / bodies;
+          for (std::uint32_t k = 0; k < slot.touching; ++k) {
+            const WallMemory& m = s.wall_memory[chunk_before].rows[slot.place[k]];
+            slot.place[k] = f.memory.take();
+            f.memory.rows[slot.place[k]] = m;
+          }
+        }
         slot.particle = i;
         slot.body = static_cast<std::uint32_t>(b);
         slot.feature_first = static_cast<std::uint32_t>(f.features.size());
@@ -224,8 +263,10 @@ void Simulation::list_walls() {
   const std::vector<std::uint32_t> first = starts(found, [](const Found& f) { return f.slot.size(); });
   const std::vector<std::uint32_t> first_feature = starts(found, [](const Found& f) { return f.features.size(); });
   s.wall = std::vector<WallSlot>(first.back());
+  s.wall_memory.clear();
+  for (Found& f : found) s.wall_memory.push_back(std::move(f.memory));
   s.features = std::vector<std::uint32_t>(first_feature.back());
-  s.feature_gap = std::vector<double>(first_feature.back());
+  s.feature_gap = std::vector<float>(first_feature.back());
   s.chunk_wall = std::vector<std::uint32_t>(chunks * bodies + 1);
   team_.for_each(chunks, [&](std::size_t c) {
     const Found& f = found[c];
@@ -237,7 +278,7 @@ void Simulation::list_walls() {
       for (std::uint32_t t = 0; t < slot.feature_count; ++t) {
         const NearFeature& near = f.features[f.slot[k].feature_first + t];
         s.features[slot.feature_first + t] = near.feature;
-        s.feature_gap[slot.feature_first + t] = near.distance - touching;
+        s.feature_gap[slot.feature_first + t] = rounded_down(near.distance - touching);
       }
     }
   });

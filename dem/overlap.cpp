@@ -22,8 +22,7 @@ struct Deepest {
 void Simulation::report_overlap() const {
   const State& s = state_;
   Deepest deepest;
-  for (std::uint32_t slot = 0; slot < s.chunk_pair.back(); ++slot) {
-    if (!s.is_in_range(slot)) continue;
+  s.each_in_range([&](std::size_t, std::uint32_t slot) {
     const Pair p = s.pair[slot];
     const auto sphere = [&](std::uint32_t row) {
       return s.id[row < s.particles() ? row : s.ghost[row - s.particles()].owner];
@@ -31,10 +30,10 @@ void Simulation::report_overlap() const {
     const PositionRow &a = s.position[p.i], &b = s.position[p.j];
     const Vec3 apart = a.at - b.at;
     const double sum = a.radius + b.radius, distance = length(apart), relative = 2.0 * (sum - distance) / sum;
-    if (relative <= deepest.overlap) continue;
+    if (relative <= deepest.overlap) return;
     deepest = {relative, fmt::format("spheres {} and {}", sphere(p.i), sphere(p.j)), b.at + (b.radius / sum) * apart,
                -dot(s.motion[p.i].velocity - s.motion[p.j].velocity, apart) / std::max(distance, 1e-300)};
-  }
+  });
   const std::vector<Frame> bodies = frames();
   Touches touches;
   for (const WallSlot& slot : s.wall) {

@@ -35,7 +35,8 @@ struct PairView {
   std::uint64_t* due;  ///< due_steps times `words`
   std::size_t words;
   std::uint64_t step;
-  VectorRow* history;
+  std::uint32_t* history_at;
+  Pool<VectorRow>* history;
   LoadRow* load;
   double time_step;        ///< s
   double range;            ///< m, of the laws beyond touching
@@ -108,10 +109,12 @@ inline void sleep(const PairView& v, std::uint32_t slot, double gap) {
     const unsigned near = bits(distance2 < reach * reach);
     const std::uint32_t used = std::min<std::uint32_t>(lanes, count - base);
     for (std::uint32_t k = 0; k < used; ++k) {
-      if ((near >> k) & 1u)
+      if ((near >> k) & 1u) {
         v.in_range[slot[k] / 64] |= bit_of(slot[k]);
-      else
+        v.history_at[slot[k]] = v.history->take();
+      } else {
         sleep(v, slot[k], gap[k]);
+      }
     }
   }
 }
@@ -128,6 +131,7 @@ template <class Law, bool Uniform>
   for (std::uint32_t from = begin; from < end; from += hit_batch) {
     const std::uint32_t first_word = from / 64, last_word = std::min(end, from + hit_batch) / 64;
     look_at_due(v, first_word, last_word);
+    VectorRow* const histories = v.history->rows.data();
     std::uint32_t count = 0;
     for (std::uint32_t word = first_word; word < last_word; ++word)
       count = list_bits(v.in_range[word], word, hits, count);
@@ -163,7 +167,7 @@ template <class Law, bool Uniform>
       };
       const Lane radius_i = radius([](Pair q) { return q.i; }), radius_j = radius([](Pair q) { return q.j; });
       const auto remembered = [&](int row) {
-        return transposed([&](int k) -> Four { return four(v.history[slot[k] * rows + row].v.x); });
+        return transposed([&](int k) -> Four { return four(histories[v.history_at[slot[k]] * rows + row].v.x); });
       };
       const LaneRows slip = remembered(0);
       History<Lane> history{slip.v, slip.w, {}, Lane(0.0)};
@@ -219,13 +223,15 @@ template <class Law, bool Uniform>
            parted &= parted - 1) {
         const std::uint32_t left = slot[std::countr_zero(parted)];
         v.in_range[left / 64] &= ~bit_of(left);
+        v.history->give_back(v.history_at[left]);
         sleep(v, left, 0.0);
       }
       const auto add = [&](auto lanes_used) {
         for (int k = 0; k < lanes_used; ++k) {
           LoadRow &a = v.load[p[k].i], &b = v.load[v.partner_load[slot[k]]];
-          four(v.history[slot[k] * rows].v.x) = kept[k];
-          if constexpr (rows == 2) four(v.history[slot[k] * rows + 1].v.x) = kept_too[k];
+          VectorRow* const history_row = histories + v.history_at[slot[k]] * rows;
+          four(history_row[0].v.x) = kept[k];
+          if constexpr (rows == 2) four(history_row[1].v.x) = kept_too[k];
           four(a.force.x) += force[k];
           four(b.force.x) -= force[k];
           if constexpr (turning) {

@@ -74,6 +74,7 @@ void Simulation::rebuild() {
   list_pairs();
   list_halos();
   list_walls();
+  order_ = place_ = {};
   max_displacement2_ = 0.0;
   state_.rebuild_step = state_.step;
   ++state_.rebuilds;
@@ -136,7 +137,8 @@ void Simulation::sort() {
   each_particle([&](std::uint32_t i) { order_[place_[i]] = i; });
 
   struct Sphere {
-    MotionRow motion, half;
+    MotionRow motion;
+    HalfRow half;
     LoadRow load;
     PositionRow position;
     std::uint32_t id;
@@ -156,7 +158,8 @@ void Simulation::sort() {
       s.motion[i] = sphere.motion;
       s.half[i] = sphere.half;
       s.load[i] = sphere.load;
-      s.position[i] = s.reference[i] = sphere.position;
+      s.position[i] = sphere.position;
+      s.reference[i] = sphere.position.at;
       s.id[i++] = sphere.id;
     }
   });

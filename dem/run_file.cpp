@@ -27,10 +27,9 @@ void each_vector(AnyState& s, Visit&& visit) {
   visit("id", s.id);
   visit("ghost", s.ghost);
   visit("pair", s.pair);
-  visit("pair_first", s.pair_first);
   visit("partner_load", s.partner_load);
   visit("in_range", s.in_range);
-  visit("history", s.history);
+  visit("history_at", s.history_at);
   visit("chunk_first", s.chunk_first);
   visit("chunk_pair", s.chunk_pair);
   visit("chunk_wall", s.chunk_wall);
@@ -39,6 +38,49 @@ void each_vector(AnyState& s, Visit&& visit) {
   visit("wall", s.wall);
   visit("features", s.features);
   visit("feature_gap", s.feature_gap);
+}
+
+/// The chunks' pools, one after the other.
+template <class Row>
+struct Pooled {
+  std::vector<Row> rows;
+  std::vector<std::uint32_t> free, size;  ///< size: width, rows and places given back of each chunk
+};
+template <class Row>
+Pooled<Row> pooled(const std::vector<Pool<Row>>& pools) {
+  Pooled<Row> all;
+  for (const Pool<Row>& pool : pools) {
+    all.rows.insert(all.rows.end(), pool.rows.begin(), pool.rows.end());
+    all.free.insert(all.free.end(), pool.free.begin(), pool.free.end());
+    for (const std::size_t size : {std::size_t{pool.width}, pool.rows.size(), pool.free.size()})
+      all.size.push_back(static_cast<std::uint32_t>(size));
+  }
+  return all;
+}
+template <class Row>
+std::vector<Pool<Row>> unpooled(const Pooled<Row>& all) {
+  std::vector<Pool<Row>> pools;
+  auto row = all.rows.begin();
+  auto free = all.free.begin();
+  for (std::size_t k = 0; k + 2 < all.size.size(); k += 3) {
+    const auto rows = static_cast<std::ptrdiff_t>(all.size[k + 1]),
+               places = static_cast<std::ptrdiff_t>(all.size[k + 2]);
+    if (rows > all.rows.end() - row || places > all.free.end() - free) break;
+    pools.push_back({all.size[k], {row, row + rows}, {free, free + places}});
+    row += rows;
+    free += places;
+  }
+  return pools;
+}
+/// Calls visit(name, vector) for the parts of the two kinds of pool.
+template <class AnyHistory, class AnyMemory, class Visit>
+void each_pooled(AnyHistory& history, AnyMemory& memory, Visit&& visit) {
+  visit("history", history.rows);
+  visit("history_free", history.free);
+  visit("history_size", history.size);
+  visit("wall_memory", memory.rows);
+  visit("wall_memory_free", memory.free);
+  visit("wall_memory_size", memory.size);
 }
 
 template <class AnySeries, class Visit>
@@ -56,12 +98,16 @@ void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
   group.set("rebuilds", static_cast<std::int64_t>(now.state.rebuilds));
   group.set("dissipated_J", now.state.dissipated);
   group.set("rebuild_step", static_cast<std::int64_t>(now.state.rebuild_step));
-  each_vector(now.state, [&](const char* name, const auto& rows) {
+  const auto write = [&](const char* name, const auto& rows) {
     const std::size_t row = sizeof(rows[0]);
     std::vector<std::uint8_t> bytes(rows.size() * row);
     if (!bytes.empty()) std::memcpy(bytes.data(), rows.data(), bytes.size());
     group.write(name, bytes, {rows.size(), row});
-  });
+  };
+  each_vector(now.state, write);
+  const Pooled<VectorRow> history = pooled(now.state.history);
+  const Pooled<WallMemory> memory = pooled(now.state.wall_memory);
+  each_pooled(history, memory, write);
   const Progressing& p = now.under_way;
   group.write("under_way", std::vector<double>{static_cast<double>(p.steps), p.torque, p.contacts, p.virial,
                                                static_cast<double>(p.deep_contacts), p.max_overlap, p.cpu_seconds});
@@ -73,7 +119,7 @@ Checkpoint read_checkpoint(const data::Hdf5Group& group) {
   now.state.rebuilds = static_cast<std::uint64_t>(group.integer("rebuilds"));
   now.state.dissipated = group.number("dissipated_J");
   now.state.rebuild_step = static_cast<std::uint64_t>(group.integer("rebuild_step"));
-  each_vector(now.state, [&](const char* name, auto& rows) {
+  const auto read = [&](const char* name, auto& rows) {
     const auto bytes = group.read<std::uint8_t>(name);
     const std::size_t row = sizeof(rows[0]);
     if (bytes.shape.size() != 2 || bytes.shape[1] != row) {
@@ -82,7 +128,13 @@ Checkpoint read_checkpoint(const data::Hdf5Group& group) {
     }
     rows.resize(bytes.shape[0]);
     if (!rows.empty()) std::memcpy(static_cast<void*>(rows.data()), bytes.values.data(), bytes.values.size());
-  });
+  };
+  each_vector(now.state, read);
+  Pooled<VectorRow> history;
+  Pooled<WallMemory> memory;
+  each_pooled(history, memory, read);
+  now.state.history = unpooled(history);
+  now.state.wall_memory = unpooled(memory);
   const std::vector<double> p = group.read<double>("under_way").values;
   if (p.size() != 7)
     throw data::InputError(data::ExitStatus::bad_data,

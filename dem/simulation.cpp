@@ -64,7 +64,7 @@ Simulation::Simulation(Setup setup) : setup_(std::move(setup)), team_(setup_.thr
     m.mass = mass;
     m.material = pick(given.material, i, 0u);
     state_.motion.push_back(m);
-    state_.half.push_back(m);
+    state_.half.push_back({m.velocity, m.spin});
     LoadRow load;
     if (pick<std::uint8_t>(given.frozen, i, 0) == 0) {
       load.inverse_mass = 1.0 / mass;
@@ -148,26 +148,29 @@ void Simulation::integrate() {
   const std::size_t chunks = s.chunks();
   chunk_steps_.assign(chunks, {});
   team_.for_each(chunks, [&](std::size_t c) {
-    // Whole rows at once; what rides in their fourth places stays as it is.
+    // Whole rows at once; what rides in the fourth places of motion and load stays as it is.
+    typedef long long Places __attribute__((vector_size(32)));
+    const Places fourth_of_second{0, 1, 2, 7};
     const Four step{dt, dt, dt, 0.0}, fourth{0.0, 0.0, 0.0, 1.0};
     const Four gravity{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z, 0.0};
     Four late{};  // force * (v*(n) - v(n)) and the same of torque and spin
     double farthest = 0.0, fastest = 0.0;
     for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
-      MotionRow &half = s.half[i], &motion = s.motion[i];
+      HalfRow& half = s.half[i];
+      MotionRow& motion = s.motion[i];
       LoadRow& load = s.load[i];
-      const Four force = four(load.force.x) + half.mass * gravity, torque = four(load.torque.x);
+      const Four velocity_seen = four(motion.velocity.x), spin_seen = four(motion.spin.x);
+      const Four force = four(load.force.x) + motion.mass * gravity, torque = four(load.torque.x);
       const Four kick = load.inverse_mass * (step * force), twist = load.inverse_inertia * (step * torque);
-      late += four(load.force.x) * (four(motion.velocity.x) - four(half.velocity.x) - 0.5 * kick) +
-              torque * (four(motion.spin.x) - four(half.spin.x) - 0.5 * twist);
-      const Four velocity = four(half.velocity.x) + kick, spin = four(half.spin.x) + twist;
-      four(half.velocity.x) = velocity;
-      four(half.spin.x) = spin;
-      four(motion.velocity.x) = velocity + 0.5 * kick;
-      four(motion.spin.x) = spin + 0.5 * twist;
+      late += four(load.force.x) * (velocity_seen - four(half.velocity) - 0.5 * kick) +
+              torque * (spin_seen - four(half.spin) - 0.5 * twist);
+      const Four velocity = four(half.velocity) + kick, spin = four(half.spin) + twist;
+      half = {three(velocity), three(spin)};
+      four(motion.velocity.x) = __builtin_shuffle(velocity + 0.5 * kick, velocity_seen, fourth_of_second);
+      four(motion.spin.x) = __builtin_shuffle(spin + 0.5 * twist, spin_seen, fourth_of_second);
       const Four at = four(s.position[i].at.x) + step * velocity;
       four(s.position[i].at.x) = at;
-      const Four moved = at - four(s.reference[i].at.x), squared = moved * moved;
+      const Four moved = at - four(s.reference[i]), squared = moved * moved;
       const double d2 = squared[0] + squared[1] + squared[2];
       farthest = d2 <= farthest ? farthest : d2;  // a NaN stays and forces a rebuild, which reports it
       const Four speeds = velocity * velocity;
@@ -225,7 +228,9 @@ void Simulation::step() {
 MotionRow Simulation::motion(std::size_t i) const {
   const double t = 0.5 * setup_.time_step;
   const LoadRow& load = state_.load[i];
-  MotionRow m = state_.half[i];
+  MotionRow m = state_.motion[i];
+  m.velocity = state_.half[i].velocity;
+  m.spin = state_.half[i].spin;
   if (load.inverse_mass == 0.0) return m;
   m.velocity += t * (load.inverse_mass * load.force + setup_.gravity);
   m.spin += (t * load.inverse_inertia) * load.torque;
@@ -269,11 +274,13 @@ double Simulation::bytes_per_particle() const {
   const State& s = state_;
   const auto size = [](const auto& rows) { return static_cast<double>(rows.capacity() * sizeof(rows[0])); };
   const double total = size(s.position) + size(s.motion) + size(s.half) + size(s.load) + size(s.reference) +
-                       size(s.id) + size(s.ghost) + size(s.pair) + size(s.pair_first) + size(s.partner_load) +
-                       size(s.in_range) + size(s.due) + size(s.history) + size(s.halo_owner) + size(s.wall) +
-                       size(s.features) + size(s.feature_gap) + size(cells_.first) + size(cells_.ghost_first) +
-                       size(order_) + size(place_);
-  return total / static_cast<double>(std::max<std::size_t>(1, s.particles()));
+                       size(s.id) + size(s.ghost) + size(s.pair) + size(s.partner_load) + size(s.in_range) +
+                       size(s.due) + size(s.history_at) + size(s.halo_owner) + size(s.wall) + size(s.features) +
+                       size(s.feature_gap) + size(cells_.first) + size(cells_.ghost_first);
+  double pooled = 0.0;
+  for (const Pool<VectorRow>& pool : s.history) pooled += size(pool.rows) + size(pool.free);
+  for (const Pool<WallMemory>& pool : s.wall_memory) pooled += size(pool.rows) + size(pool.free);
+  return (total + pooled) / static_cast<double>(std::max<std::size_t>(1, s.particles()));
 }
 
 }  // namespace dem

@@ -111,6 +111,8 @@ class Simulation {
   void sort();
   void make_ghosts();
   void list_pairs();
+  std::vector<std::uint32_t> first_of_each(const std::vector<Pair>& pairs,
+                                           const std::vector<std::uint32_t>& chunk_pair);
   std::vector<Pair> pairs_of(std::size_t chunk) const;
   void list_halos();
   void list_walls();
@@ -145,7 +147,7 @@ class Simulation {
   std::vector<ChunkStep> chunk_steps_;
   Team team_;
 
-  // What a rebuild hands from step to step, kept to spare its memory.
+  // What a rebuild hands from step to step.
   Cells cells_;
   std::vector<Ghost> old_ghosts_;
   std::vector<std::uint32_t> order_, place_;  ///< old row of each new one, and back

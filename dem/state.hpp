@@ -4,11 +4,12 @@
 //
 // Particles are sorted along the cells of the neighbour list at each rebuild; `id` keeps who is who. Rows beyond the
 // particles are their images across periodic faces ("ghosts"). The pair list is a half list, sorted by its first
-// particle; a pair's history lives in its slot.
+// particle; the history of a pair in range has a place in its chunk's pool.
 //
 // Chunks. The particles are cut into chunks whose number depends on how many there are, never on the threads. A chunk's
 // pairs add to the loads of its own particles directly, and to a halo of its own for partners elsewhere and ghosts;
 // halos are then added to their owners in the order of the chunks. So any number of threads gives the same bits.
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct alignas(64) MotionRow {
   double mass = 0.0;      ///< kg
   Vec3 spin;              ///< rad/s
   double material = 0.0;  ///< index into the tables of laws
+};
+struct HalfRow {
+  Vec3 velocity, spin;  ///< m/s, rad/s
 };
 struct alignas(64) LoadRow {
   Vec3 force;                    ///< N
@@ -47,6 +51,28 @@ struct Pair {
 /// Fills the last word of a chunk's pairs; never looked at.
 inline bool is_padding(Pair p) { return p.i == p.j; }
 
+/// Places of `width` rows each that contacts take while they last: of a chunk's own, so that its thread can.
+template <class Row>
+struct Pool {
+  std::uint32_t width = 1;
+  std::vector<Row> rows;
+  std::vector<std::uint32_t> free;  ///< places given back
+
+  /// A place whose rows are as new.
+  std::uint32_t take() {
+    if (!free.empty()) {
+      const std::uint32_t place = free.back();
+      free.pop_back();
+      std::fill_n(rows.begin() + place * width, width, Row{});
+      return place;
+    }
+    if (rows.size() + width > rows.capacity()) rows.reserve(rows.size() + rows.size() / 8 + 64);
+    rows.resize(rows.size() + width);
+    return static_cast<std::uint32_t>(rows.size() / width - 1);
+  }
+  void give_back(std::uint32_t place) { free.push_back(place); }
+};
+
 /// One contact of a sphere with a body, kept in the body's frame so that it turns with the tool.
 struct WallMemory {
   Vec3 normal;
@@ -57,7 +83,7 @@ struct WallSlot {
   std::uint32_t particle = 0, body = 0;
   std::uint32_t feature_first = 0, feature_count = 0;  ///< into State::features
   std::uint32_t touching = 0;
-  WallMemory contact[max_touches];
+  std::uint32_t place[max_touches] = {};  ///< of each contact, in the chunk's wall_memory
 };
 
 /// A ghost row is its owner's, shifted.
@@ -81,19 +107,20 @@ struct State {
   std::vector<PositionRow> position;
   std::vector<MotionRow> motion;  ///< at the time of `position`: what contacts see
   // particles
-  std::vector<MotionRow> half;         ///< half a step earlier: what is integrated
-  std::vector<LoadRow> load;           ///< without gravity; beyond the particles, the halos
-  std::vector<PositionRow> reference;  ///< position at the last rebuild
+  std::vector<HalfRow> half;    ///< half a step earlier: what is integrated
+  std::vector<LoadRow> load;    ///< without gravity; beyond the particles, the halos
+  std::vector<Vec3> reference;  ///< m, < position at the last rebuild
   std::vector<std::uint32_t> id;
   std::vector<Ghost> ghost;
   // pairs
   std::vector<Pair> pair;                   ///< padded beyond the last, at chunk_pair.back()
-  std::vector<std::uint32_t> pair_first;    ///< first pair of each particle, one more
   std::vector<std::uint32_t> partner_load;  ///< where in `load` the partner's share goes
   std::vector<std::uint64_t> in_range;      ///< one bit a pair, 64 to a word
   std::vector<std::uint64_t> due;           ///< alike, of each of the next `due_steps` steps: pairs to look at then
-  std::vector<VectorRow> history;  ///< Simulation::history_rows a pair: slip and contact radius, roll and twist
+  std::vector<std::uint32_t> history_at;    ///< place of a pair in range, in its chunk's history
   // chunks
+  std::vector<Pool<VectorRow>> history;                ///< of pairs in range: slip and contact radius; roll and twist
+  std::vector<Pool<WallMemory>> wall_memory;           ///< of contacts with bodies
   std::vector<std::uint32_t> chunk_first, chunk_pair;  ///< first particle and pair; one more
   std::vector<std::uint32_t> chunk_wall;               ///< first wall slot, at chunk * bodies + body; one more
   std::vector<std::uint32_t> halo_owner;               ///< particle of each halo entry
@@ -101,9 +128,17 @@ struct State {
   // walls
   std::vector<WallSlot> wall;           ///< sorted by chunk, body, particle
   std::vector<std::uint32_t> features;  ///< of each slot, nearest first
-  std::vector<double> feature_gap;      ///< m, from the sphere to the feature at the rebuild, at least
+  std::vector<float> feature_gap;       ///< m, from the sphere to the feature at the rebuild, at least
 
   std::size_t particles() const { return half.size(); }
+  /// Calls visit(chunk, slot) for every pair in range.
+  template <class Visit>
+  void each_in_range(Visit&& visit) const {
+    for (std::size_t c = 0; c < chunks(); ++c) {
+      for (std::uint32_t slot = chunk_pair[c]; slot < chunk_pair[c + 1]; ++slot)
+        if (is_in_range(slot)) visit(c, slot);
+    }
+  }
   bool is_in_range(std::uint32_t slot) const { return (in_range[slot / 64] & bit_of(slot)) != 0; }
   std::size_t chunks() const { return chunk_first.size() - 1; }
 };

@@ -96,7 +96,7 @@ TEST_CASE("spheres that collide among themselves keep their angular momentum, wh
     const auto angular = [&] {
       dem::Vec3 sum;
       for (std::size_t i = 0; i < sim.state().particles(); ++i) {
-        const dem::MotionRow& half = sim.state().half[i];
+        const dem::HalfRow& half = sim.state().half[i];
         const double m = sim.state().motion[i].mass, r = sim.state().position[i].radius;
         sum += m * (cross(sim.state().position[i].at, half.velocity) + 0.4 * r * r * half.spin);
       }
