@@ -224,6 +224,7 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
     now = std::move(good);
     result.diagnostics.steps = simulation.state().step;
     result.diagnostics.rebuilds = simulation.state().rebuilds;
+    result.diagnostics.bytes_per_particle = simulation.bytes_per_particle();
   } catch (const Fault& fault) {
     result.status = RunStatus::failed;
     result.reason = fault.what();

@@ -50,6 +50,7 @@ struct Diagnostics {
   std::uint64_t deep_contacts = 0;  ///< contact-steps with an overlap beyond half the limit
   double max_overlap = 0.0;         ///< of a radius, while turning
   double simulated = 0.0;           ///< s of turning
+  double bytes_per_particle = 0.0;  ///< of state and lists
   double steps_per_second = 0.0;    ///< particle-steps per second of processor time
   int threads = 1;
 };

@@ -145,7 +145,7 @@ Checkpoint read_checkpoint(const data::Hdf5Group& group) {
 
 void write_diagnostics(const data::Hdf5Group& group, const Diagnostics& g) {
   const Derived& d = g.derived;
-  const std::array<std::pair<const char*, double>, 17> numbers{
+  const std::array<std::pair<const char*, double>, 18> numbers{
       {{"sphere_mass_kg", d.mass},
        {"weight_N", d.weight},
        {"length_scale_m", d.length_scale},
@@ -161,6 +161,7 @@ void write_diagnostics(const data::Hdf5Group& group, const Diagnostics& g) {
        {"max_overlap_of_radius", g.max_overlap},
        {"simulated_s", g.simulated},
        {"particle_steps_per_second", g.steps_per_second},
+       {"state_bytes_per_particle", g.bytes_per_particle},
        {"steps", static_cast<double>(g.steps)},
        {"deep_contacts", static_cast<double>(g.deep_contacts)}}};
   for (const auto& [name, value] : numbers) group.set(name, value);

@@ -66,7 +66,7 @@ struct Pool {
       std::fill_n(rows.begin() + place * width, width, Row{});
       return place;
     }
-    if (rows.size() + width > rows.capacity()) rows.reserve(rows.size() + rows.size() / 8 + 64);
+    if (rows.size() + width > rows.capacity()) rows.reserve(rows.size() + rows.size() / 16 + 16);
     rows.resize(rows.size() + width);
     return static_cast<std::uint32_t>(rows.size() / width - 1);
   }
@@ -93,7 +93,7 @@ struct Ghost {
 };
 
 /// A pair out of range sleeps until its spheres could meet, at most one step less than this.
-inline constexpr std::uint32_t due_steps = 16;
+inline constexpr std::uint32_t due_steps = 8;
 
 /// One bit a pair: the word it is in, and its place there.
 inline std::uint64_t bit_of(std::uint32_t slot) { return std::uint64_t{1} << (slot % 64); }

@@ -78,7 +78,7 @@ def speed(program, options, folder):
     cases += [(f"chute {32000 * x * y}, LAMMPS", 32000 * x * y, 1e-4, lammps, lambda x=x, y=y: make_chute(x, y, folder))
               for x, y in (map(int, size.split("x")) for size in options.chute)]
     for name, spheres, time_step, peer, prepare in cases:
-        case, steps = prepare(), max(1000, options.work * 1000000 // spheres)
+        case, steps = prepare(), max(500, options.work * 1000000 // spheres)
         for cores in options.cores:
             ours, theirs = [], []
             for _ in range(options.repeat):
