@@ -74,7 +74,8 @@ void Simulation::rebuild() {
   list_pairs();
   list_halos();
   list_walls();
-  order_ = place_ = {};
+  for (std::vector<std::uint32_t>* rows : {&order_, &place_, &cells_.first, &cells_.ghost_first})
+    std::vector<std::uint32_t>().swap(*rows);  // assigning {} would keep their memory
   max_displacement2_ = 0.0;
   state_.rebuild_step = state_.step;
   ++state_.rebuilds;

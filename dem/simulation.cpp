@@ -276,7 +276,8 @@ double Simulation::bytes_per_particle() const {
   const double total = size(s.position) + size(s.motion) + size(s.half) + size(s.load) + size(s.reference) +
                        size(s.id) + size(s.ghost) + size(s.pair) + size(s.partner_load) + size(s.in_range) +
                        size(s.due) + size(s.history_at) + size(s.halo_owner) + size(s.wall) + size(s.features) +
-                       size(s.feature_gap) + size(cells_.first) + size(cells_.ghost_first);
+                       size(s.feature_gap) + size(cells_.first) + size(cells_.ghost_first) + size(order_) +
+                       size(place_) + size(old_ghosts_);
   double pooled = 0.0;
   for (const Pool<VectorRow>& pool : s.history) pooled += size(pool.rows) + size(pool.free);
   for (const Pool<WallMemory>& pool : s.wall_memory) pooled += size(pool.rows) + size(pool.free);

@@ -76,7 +76,7 @@ struct Cells {
 /// Room for as many rows and a few more; a vector that grows by itself doubles.
 template <class Row>
 void make_room(std::vector<Row>& rows, std::size_t count) {
-  if (rows.capacity() < count) rows.reserve(count + count / 64);
+  if (rows.capacity() < count) rows.reserve(count + count / 512);
 }
 
 class Simulation {
@@ -147,7 +147,7 @@ class Simulation {
   std::vector<ChunkStep> chunk_steps_;
   Team team_;
 
-  // What a rebuild hands from step to step.
+  // What a rebuild hands from step to step, given back at its end but for the ghosts.
   Cells cells_;
   std::vector<Ghost> old_ghosts_;
   std::vector<std::uint32_t> order_, place_;  ///< old row of each new one, and back

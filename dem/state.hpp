@@ -66,7 +66,7 @@ struct Pool {
       std::fill_n(rows.begin() + place * width, width, Row{});
       return place;
     }
-    if (rows.size() + width > rows.capacity()) rows.reserve(rows.size() + rows.size() / 16 + 16);
+    if (rows.size() + width > rows.capacity()) rows.reserve(rows.size() + rows.size() / 32 + 16);
     rows.resize(rows.size() + width);
     return static_cast<std::uint32_t>(rows.size() / width - 1);
   }
