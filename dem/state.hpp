@@ -109,11 +109,11 @@ struct State {
   // particles
   std::vector<HalfRow> half;    ///< half a step earlier: what is integrated
   std::vector<LoadRow> load;    ///< without gravity; beyond the particles, the halos
-  std::vector<Vec3> reference;  ///< m, < position at the last rebuild
+  std::vector<Vec3> reference;  ///< m, position at the last rebuild
   std::vector<std::uint32_t> id;
   std::vector<Ghost> ghost;
   // pairs
-  std::vector<Pair> pair;                   ///< padded beyond the last, at chunk_pair.back()
+  std::vector<Pair> pair;                   ///< whole words of each chunk, filled with padding
   std::vector<std::uint32_t> partner_load;  ///< where in `load` the partner's share goes
   std::vector<std::uint64_t> in_range;      ///< one bit a pair, 64 to a word
   std::vector<std::uint64_t> due;           ///< alike, of each of the next `due_steps` steps: pairs to look at then

@@ -65,7 +65,7 @@ void add_edges_and_vertices(const TriangleMesh& mesh, Surface& s) {
   }
 }
 
-/// A lower bound of the distance from a point to a feature [m], exact to what is asked as long as it is below `enough`.
+/// A lower bound of the distance from a point to a feature [m]; where it is beyond `enough`, any bound that is too.
 double distance_at_least(const Surface& s, std::uint32_t feature, Vec3 point, double enough) {
   const std::size_t faces = s.faces.size(), edges = s.edges.size();
   if (feature < faces) {
