@@ -10,6 +10,16 @@
 
 #include "dem/vec3.hpp"
 
+// What runs in lanes is one loop to the compiler. Under sanitizers, whose checks make that loop take minutes to
+// compile, calls stay calls.
+#ifdef __SANITIZE_ADDRESS__
+#define DEMCAL_INLINE inline
+#define DEMCAL_FLATTEN
+#else
+#define DEMCAL_INLINE [[gnu::always_inline]] inline
+#define DEMCAL_FLATTEN [[gnu::flatten]]
+#endif
+
 namespace dem {
 
 namespace stdx = std::experimental;
@@ -17,36 +27,34 @@ using Lane = stdx::native_simd<double>;
 inline constexpr int lanes = static_cast<int>(Lane::size());
 static_assert(lanes <= 8, "rows are transposed two, four or eight at a time");
 
-[[gnu::always_inline]] inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
-[[gnu::always_inline]] inline Lane select(Lane::mask_type condition, Lane yes, Lane no) {
+DEMCAL_INLINE double select(bool condition, double yes, double no) { return condition ? yes : no; }
+DEMCAL_INLINE Lane select(Lane::mask_type condition, Lane yes, Lane no) {
   stdx::where(condition, no) = yes;
   return no;
 }
-[[gnu::always_inline]] inline double square_root(double a) { return std::sqrt(a); }
-[[gnu::always_inline]] inline Lane square_root(Lane a) { return stdx::sqrt(a); }
+DEMCAL_INLINE double square_root(double a) { return std::sqrt(a); }
+DEMCAL_INLINE Lane square_root(Lane a) { return stdx::sqrt(a); }
 inline double cube_root(double a) { return std::cbrt(a); }
-[[gnu::always_inline]] inline Lane cube_root(Lane a) {
+DEMCAL_INLINE Lane cube_root(Lane a) {
   return Lane([&](auto k) { return std::cbrt(static_cast<double>(a[k])); });
 }
-[[gnu::always_inline]] inline double larger(double a, double b) { return a > b ? a : b; }
-[[gnu::always_inline]] inline Lane larger(Lane a, Lane b) { return stdx::max(a, b); }
-[[gnu::always_inline]] inline double smaller(double a, double b) { return a < b ? a : b; }
-[[gnu::always_inline]] inline Lane smaller(Lane a, Lane b) { return stdx::min(a, b); }
+DEMCAL_INLINE double larger(double a, double b) { return a > b ? a : b; }
+DEMCAL_INLINE Lane larger(Lane a, Lane b) { return stdx::max(a, b); }
+DEMCAL_INLINE double smaller(double a, double b) { return a < b ? a : b; }
+DEMCAL_INLINE Lane smaller(Lane a, Lane b) { return stdx::min(a, b); }
 template <class T>
 T norm(Vector3<T> a) {
   return square_root(dot(a, a));
 }
 inline double norm(double a) { return std::abs(a); }
-[[gnu::always_inline]] inline Lane norm(Lane a) { return stdx::abs(a); }
+DEMCAL_INLINE Lane norm(Lane a) { return stdx::abs(a); }
 /// The same vector in every lane.
-[[gnu::always_inline]] inline Vector3<Lane> spread(Vec3 a) { return {Lane(a.x), Lane(a.y), Lane(a.z)}; }
+DEMCAL_INLINE Vector3<Lane> spread(Vec3 a) { return {Lane(a.x), Lane(a.y), Lane(a.z)}; }
 /// One bit per lane, the first lane lowest.
-[[gnu::always_inline]] inline unsigned bits(Lane::mask_type mask) {
-  return static_cast<unsigned>(mask.__to_bitset().to_ulong());
-}
+DEMCAL_INLINE unsigned bits(Lane::mask_type mask) { return static_cast<unsigned>(mask.__to_bitset().to_ulong()); }
 
 /// 1 in the first `used` lanes, 0 beyond.
-[[gnu::always_inline]] inline Lane first_lanes(int used) {
+DEMCAL_INLINE Lane first_lanes(int used) {
   alignas(64) static constexpr double ones[16] = {1, 1, 1, 1, 1, 1, 1, 1};
   return Lane(ones + 8 - used, stdx::element_aligned);
 }
@@ -57,9 +65,9 @@ inline const Four& four(const double& first) { return reinterpret_cast<const Fou
 inline Four& four(double& first) { return reinterpret_cast<Four&>(first); }
 
 /// A vector, and 0.
-[[gnu::always_inline]] inline Four four(const Vec3& a) { return Four{a.x, a.y, a.z, 0.0}; }
+DEMCAL_INLINE Four four(const Vec3& a) { return Four{a.x, a.y, a.z, 0.0}; }
 /// Its first three.
-[[gnu::always_inline]] inline Vec3 three(const Four& a) { return {a[0], a[1], a[2]}; }
+DEMCAL_INLINE Vec3 three(const Four& a) { return {a[0], a[1], a[2]}; }
 
 /// A row of four doubles per lane, transposed.
 struct LaneRows {
@@ -71,7 +79,7 @@ namespace detail {
 struct Square {
   Four row[4];
 };
-[[gnu::always_inline]] inline Square transpose(Four a, Four b, Four c, Four d) {
+DEMCAL_INLINE Square transpose(Four a, Four b, Four c, Four d) {
   typedef long long Index __attribute__((vector_size(32)));
   const Four ab0 = __builtin_shuffle(a, b, Index{0, 4, 2, 6}), ab1 = __builtin_shuffle(a, b, Index{1, 5, 3, 7});
   const Four cd0 = __builtin_shuffle(c, d, Index{0, 4, 2, 6}), cd1 = __builtin_shuffle(c, d, Index{1, 5, 3, 7});
@@ -85,7 +93,7 @@ struct Column {
 };
 
 template <class L, class Row>
-[[gnu::always_inline]] inline LaneRows gather(Row&& row) {
+DEMCAL_INLINE LaneRows gather(Row&& row) {
   if constexpr (L::size() % 4 == 0) {
     Column<L> column[4];
     for (std::size_t p = 0; p < L::size() / 4; ++p) {
@@ -104,7 +112,7 @@ template <class L, class Row>
 }
 
 template <class L>
-[[gnu::always_inline]] inline void scatter(const Vector3<L>& v, const L& w, Four* out) {
+DEMCAL_INLINE void scatter(const Vector3<L>& v, const L& w, Four* out) {
   if constexpr (L::size() % 4 == 0) {
     const Column<L> x = std::bit_cast<Column<L>>(v.x), y = std::bit_cast<Column<L>>(v.y),
                     z = std::bit_cast<Column<L>>(v.z), last = std::bit_cast<Column<L>>(w);
@@ -120,13 +128,11 @@ template <class L>
 
 /// `row(k)` gives lane k's four doubles.
 template <class Row>
-[[gnu::always_inline]] inline LaneRows transposed(Row&& row) {
+DEMCAL_INLINE LaneRows transposed(Row&& row) {
   return detail::gather<Lane>(row);
 }
 
 /// Lane k's four doubles of `rows` into out[k].
-[[gnu::always_inline]] inline void untransposed(const LaneRows& rows, Four* out) {
-  detail::scatter<Lane>(rows.v, rows.w, out);
-}
+DEMCAL_INLINE void untransposed(const LaneRows& rows, Four* out) { detail::scatter<Lane>(rows.v, rows.w, out); }
 
 }  // namespace dem

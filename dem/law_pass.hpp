@@ -212,8 +212,8 @@ class LawPass final : public ForcePass {
     if (count > 0) evaluate(s, memory, around, hits, count, sums);
   }
 
-  [[gnu::flatten]] void evaluate(State& s, Pool<WallMemory>& memory, const Surroundings& around, WallHit* hits,
-                                 std::size_t count, StepSums& sums) const {
+  DEMCAL_FLATTEN void evaluate(State& s, Pool<WallMemory>& memory, const Surroundings& around, WallHit* hits,
+                               std::size_t count, StepSums& sums) const {
     const std::size_t body = s.wall[hits[0].slot].body;
     const Frame& frame = around.frames[body];
     const auto one = wall(MotionRow{}, body).at(tables_.equal_mass, tables_.equal_radius);

@@ -88,7 +88,7 @@ inline void sleep(const PairView& v, std::uint32_t slot, double gap) {
 }
 
 /// Pairs among the words [begin, end) that are due: those that are in range are marked so, the others sleep.
-[[gnu::flatten]] inline void look_at_due(const PairView& v, std::uint32_t begin, std::uint32_t end) {
+DEMCAL_FLATTEN inline void look_at_due(const PairView& v, std::uint32_t begin, std::uint32_t end) {
   std::uint32_t slots[hit_batch + lanes], count = 0;
   std::uint64_t* const due = v.due_at(v.step);
   for (std::uint32_t word = begin; word < end; ++word) {
@@ -120,8 +120,8 @@ inline void sleep(const PairView& v, std::uint32_t slot, double gap) {
 }
 
 template <class Law, bool Uniform>
-[[gnu::flatten]] void pair_pass(const PairLaws<Law, Uniform> laws, const PairView v, std::uint32_t begin,
-                                std::uint32_t end, PairSums& sums) {
+DEMCAL_FLATTEN void pair_pass(const PairLaws<Law, Uniform> laws, const PairView v, std::uint32_t begin,
+                              std::uint32_t end, PairSums& sums) {
   constexpr int rows = Law::history_rows;
   constexpr bool turning = Law::Resistance::present;
   const auto one = laws.at_all();
