@@ -32,8 +32,6 @@ class Team {
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  int size() const { return size_; }
-
   /// Calls work(item) once for every item in [0, items), in any order and by any member. Work must not throw.
   template <class Work>
   void for_each(std::size_t items, Work&& work) {

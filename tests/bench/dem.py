@@ -148,12 +148,12 @@ def answer(program, options, folder):
     case = make_slice(1, folder)
     ours = run([program, "simulate", case, "--out", folder / "demcal", "--quiet", "--json", "--set", "training.standard_error=0.02",
                 "--set", "run.start_up=0.2 s", "--set", "run.shortest=0.3 s", "--set", "run.longest=5 s"], folder, 1)
-    found = json.loads((folder / "log").read_text())["outputs"]["torque"]
+    result = json.loads((folder / "log").read_text())
+    found, duration = result["outputs"]["torque"], min(pair["duration_s"] for pair in result["contacts"])
     simulated = read_attribute(folder / "demcal/run.h5", "/diagnostics/simulated_s")
-    duration = 20.082 * 1e-5
-    steps = round(simulated / (duration / 50))
-    theirs = run(["liggghts", "-in", here / "slice/in.slice", "-var", "dir", case, "-var", "nset", round(0.2 / (duration / 50)), "-var",
-                  "nrun", steps - round(0.2 / (duration / 50)), "-var", "dt", duration / 50, "-var", "tag", "t", "-log", "none"], folder, 1)
+    time_step, start_up = duration / 50, 0.2
+    theirs = run(["liggghts", "-in", here / "slice/in.slice", "-var", "dir", case, "-var", "nset", round(start_up / time_step), "-var", "nrun",
+                  round((simulated - start_up) / time_step), "-var", "dt", time_step, "-var", "tag", "t", "-log", "none"], folder, 1)
     rows = [float(line.split()[1]) for line in (folder / "torque_t.dat").read_text().splitlines() if not line.startswith("#")]
     print(f"mean torque of one pitch to 2 %: {simulated:.2f} s simulated\n"
           f"demcal, {ours:.0f} CPU seconds: {found['mean']:.1f} +- {found['standard_error']:.1f} uN m\n"
