@@ -39,6 +39,9 @@ struct Common {
 CLI::App* add_study_command(CLI::App& program, const std::string& name, const std::string& purpose,
                             const std::string& example, Common& common);
 
+/// --isa of a command that simulates: pins the instruction set of the contact forces.
+void add_isa_option(CLI::App& command);
+
 /// A study that was read without problems.
 struct Workspace {
   data::Study study;

@@ -142,7 +142,7 @@ data::RunRow to_row(const Workspace& workspace, const Point& point, const dem::R
                    .inputs = point.inputs,
                    .seed = workspace.study.seed,
                    .settings = settings_hash(workspace, point.material),
-                   .isa = data::built_isa(),
+                   .isa = result.diagnostics.isa,
                    .origin = "demcal " + data::program_version(),
                    .cpu_seconds = result.summary.cpu_seconds};
   for (const data::Output& output : workspace.study.outputs) {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "data/provenance.hpp"
+#include "dem/isa.hpp"
 #include "dem/run_file.hpp"
 #include "dem/target.hpp"
 
@@ -14,8 +14,7 @@ std::optional<dem::RunResult> earlier(const std::string& path, const dem::Case& 
   if (!std::filesystem::exists(path)) return {};
   try {
     dem::SavedRun saved = dem::read_run(path);
-    if (saved.settings == dem::settings_text(c) && saved.result.seed == seed && saved.isa == data::built_isa())
-      return std::move(saved.result);
+    if (saved.settings == dem::settings_text(c) && saved.result.seed == seed) return std::move(saved.result);
   } catch (const data::InputError&) {  // damaged, or of another version: made again
   }
   return {};
@@ -34,6 +33,7 @@ dem::RunResult run_point(const Workspace& workspace, const Point& point, const P
   run.checkpoint = [&](const dem::Checkpoint& checkpoint) {
     dem::RunResult so_far{
         .status = dem::RunStatus::interrupted, .seed = seed, .series = checkpoint.series, .checkpoint = checkpoint};
+    so_far.diagnostics.isa = dem::isa();
     dem::write_run(options.path, c, so_far);
   };
   if (before) run.resume = &before->checkpoint;

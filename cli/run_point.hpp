@@ -17,7 +17,7 @@ struct PointRun {
   std::function<void(const dem::RunProgress&)> progress = {};
 };
 
-/// The result, which the file holds too. A file of another point, seed, setting or instruction set is replaced.
+/// The result, which the file holds too. A file of another point, seed or setting is replaced.
 dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options);
 
 }  // namespace cli

@@ -7,7 +7,6 @@
 #include "cli/run_point.hpp"
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
-#include "data/provenance.hpp"
 #include "dem/rig.hpp"
 #include "dem/stl.hpp"
 
@@ -25,9 +24,9 @@ struct Options {
 nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
   const dem::Derived derived = dem::derive(case_at(workspace, point));
   nlohmann::json json{
-      {"material", point.material},  {"seed", workspace.study.seed},
-      {"isa", data::built_isa()},    {"settings", settings_hash(workspace, point.material)},
-      {"bond_number", derived.bond}, {"time_step", {{"s", derived.time_step}, {"from", derived.duration_of}}},
+      {"material", point.material},    {"seed", workspace.study.seed},
+      {"isa", result.diagnostics.isa}, {"settings", settings_hash(workspace, point.material)},
+      {"bond_number", derived.bond},   {"time_step", {{"s", derived.time_step}, {"from", derived.duration_of}}},
       {"warnings", result.warnings}};
   for (const dem::ContactKind& kind : derived.kinds)
     json["contacts"].push_back({{"between", {kind.first, kind.second}},
@@ -79,6 +78,7 @@ Action add_simulate(CLI::App& program) {
       ->delimiter(',');
   command->add_option("--threads", options->threads, "threads of this run; the result does not depend on it")
       ->check(CLI::Range(1, 256));
+  add_isa_option(*command);
   command->add_flag("--stl", options->stl, "write the rig's surfaces too (mixer.stl, trough.stl)");
   return [options] {
     const data::InterruptGuard interrupt;

@@ -76,6 +76,7 @@ Action add_train(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = add_study_command(program, "train", "make the training runs that are missing",
                                         "demcal train data/developer --runs 6", options->common);
+  add_isa_option(*command);
   command->add_option("--jobs", options->jobs, "runs at the same time, one thread each (default: one a core)")
       ->check(CLI::Range(1, 4096));
   command

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "cli/point.hpp"
+#include "dem/isa.hpp"
 #include "dem/read_case.hpp"
 #include "dem/target.hpp"
 #include "uq/surrogate_settings.hpp"
@@ -56,6 +57,15 @@ CLI::App* add_study_command(CLI::App& program, const std::string& name, const st
       ->allow_extra_args(false);
   command->footer("Example: " + example);
   return command;
+}
+
+void add_isa_option(CLI::App& command) {
+  command
+      .add_option_function<std::string>(
+          "--isa", dem::pin_isa,
+          "instruction set of the contact forces: x86-64, x86-64-v3 or x86-64-v4 (default: the widest that the "
+          "processor has); the result does not depend on it")
+      ->check(CLI::IsMember({"x86-64", "x86-64-v3", "x86-64-v4"}));
 }
 
 Workspace open_workspace(const Common& common) {

@@ -1,8 +1,9 @@
-# The instruction set of the build: x86-64 (any machine), x86-64-v3 (AVX2), x86-64-v4 (AVX-512), or auto:
-# the best of these that this machine has. Results are the same bits within one of them, so it is recorded
-# with every run (data/provenance.hpp reads DEMCAL_ISA).
-set(DEMCAL_ISA auto CACHE STRING "instruction set: auto, x86-64, x86-64-v3 or x86-64-v4")
+# Instruction sets: x86-64 (any machine), x86-64-v3 (AVX2) and x86-64-v4 (AVX-512). Contact forces are compiled for each
+# of DEMCAL_FORCES and chosen when the program runs; all else for DEMCAL_ISA, which `auto` makes the best of these that
+# this machine has.
+set(DEMCAL_ISA auto CACHE STRING "instruction set of all but contact forces: auto, x86-64, x86-64-v3 or x86-64-v4")
 set_property(CACHE DEMCAL_ISA PROPERTY STRINGS auto x86-64 x86-64-v3 x86-64-v4)
+set(DEMCAL_FORCES x86-64 x86-64-v3 x86-64-v4 CACHE STRING "instruction sets of contact forces, the least first")
 
 set(DEMCAL_ISA_USED ${DEMCAL_ISA})
 if(DEMCAL_ISA STREQUAL auto)
@@ -19,11 +20,18 @@ if(DEMCAL_ISA STREQUAL auto)
     endif()
   endif()
 endif()
-if(NOT DEMCAL_ISA_USED MATCHES "^x86-64(-v3|-v4)?$")
-  message(FATAL_ERROR "DEMCAL_ISA is '${DEMCAL_ISA}': choose auto, x86-64, x86-64-v3 or x86-64-v4")
-endif()
-set(DEMCAL_ISA_FLAGS -march=${DEMCAL_ISA_USED})
-if(DEMCAL_ISA_USED STREQUAL x86-64-v4)
-  list(APPEND DEMCAL_ISA_FLAGS -Wno-maybe-uninitialized)  # GCC 12's own AVX-512 headers
-endif()
-message(STATUS "instruction set: ${DEMCAL_ISA_USED}")
+
+# demcal_isa_flags(ISA VARIABLE): the compiler's options for it.
+function(demcal_isa_flags isa variable)
+  if(NOT isa MATCHES "^x86-64(-v3|-v4)?$")
+    message(FATAL_ERROR "the instruction set '${isa}' is not known: choose x86-64, x86-64-v3 or x86-64-v4 (DEMCAL_ISA: or auto)")
+  endif()
+  set(flags -march=${isa})
+  if(isa STREQUAL x86-64-v4)
+    list(APPEND flags -Wno-maybe-uninitialized)  # GCC 12's own AVX-512 headers
+  endif()
+  set(${variable} ${flags} PARENT_SCOPE)
+endfunction()
+
+demcal_isa_flags(${DEMCAL_ISA_USED} DEMCAL_ISA_FLAGS)
+message(STATUS "instruction set: ${DEMCAL_ISA_USED}; of contact forces: ${DEMCAL_FORCES}")

@@ -7,10 +7,11 @@
 namespace data {
 
 std::string program_version();  ///< "0.1.0"
-std::string built_isa();        ///< "x86-64", "x86-64-v3" or "x86-64-v4": what this program was compiled for
+std::string built_isa();        ///< "x86-64", "x86-64-v3" or "x86-64-v4": of all of this program but contact forces
 
 /// The best of the three that this processor runs.
 std::string processor_isa();
+bool processor_runs(const std::string& isa);
 
 /// Throws InputError (69) when the processor lacks the instruction set that the program was built for; call it first.
 void require_processor();

@@ -1,5 +1,5 @@
 #pragma once
-// Several contacts at once: lanes of the widest registers that the instruction set of the build has, and the few
+// Several contacts at once: lanes of the widest registers of the instruction set that it is compiled for, and the few
 // operations that the laws need, alike for one double and for lanes. Every operation is elementwise and exactly
 // rounded, so a contact's force does not depend on the width nor on its neighbours in the lanes.
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace dem {
 namespace stdx = std::experimental;
 using Lane = stdx::native_simd<double>;
 inline constexpr int lanes = static_cast<int>(Lane::size());
-static_assert(lanes <= 8, "rows are transposed two, four or eight at a time");
+static_assert(lanes == 2 || lanes == 4 || lanes == 8, "rows are transposed so many at a time");
 
 DEMCAL_INLINE double select(bool condition, double yes, double no) { return condition ? yes : no; }
 DEMCAL_INLINE Lane select(Lane::mask_type condition, Lane yes, Lane no) {
@@ -124,7 +124,32 @@ DEMCAL_INLINE void scatter(const Vector3<L>& v, const L& w, Four* out) {
     for (std::size_t k = 0; k < L::size(); ++k) out[k] = Four{v.x[k], v.y[k], v.z[k], w[k]};
   }
 }
+
+/// `sum` and what the lanes hold, of the contacts first, first + 1, ...
+template <class L>
+DEMCAL_INLINE Four added(Four sum, const L& lane, std::size_t first) {
+  if constexpr (L::size() % 4 == 0) {
+    for (const Four four_contacts : std::bit_cast<Column<L>>(lane).part) sum += four_contacts;
+    return sum;
+  } else {
+    const double a = lane[0], b = lane[1];
+    return sum + (first % 4 == 0 ? Four{a, b, 0.0, 0.0} : Four{0.0, 0.0, a, b});
+  }
+}
 }  // namespace detail
+
+/// A sum over contacts, as that of every fourth, so that it has the same bits however many lanes there are.
+class Tally {
+ public:
+  /// Of the contacts first, first + 1, ..., counted from anywhere by whole lanes.
+  DEMCAL_INLINE void add(const Lane& values, std::size_t first) { sum_ = detail::added(sum_, values, first); }
+  void add_to(double& total, double factor = 1.0) const {
+    for (int k = 0; k < 4; ++k) total += factor * sum_[k];
+  }
+
+ private:
+  Four sum_{};
+};
 
 /// `row(k)` gives lane k's four doubles.
 template <class Row>

@@ -1,5 +1,5 @@
 #pragma once
-// The choice of parts, and the force pass composed of them.
+// The choice of parts, and the force pass composed of them (dem/forces/) for the instruction set in use (isa.hpp).
 #include <memory>
 #include <vector>
 

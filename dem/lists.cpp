@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "dem/pair_pass.hpp"
 #include "dem/simulation.hpp"
 
 namespace dem {

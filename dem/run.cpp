@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "data/error.hpp"
+#include "dem/isa.hpp"
 #include "dem/rig.hpp"
 #include "dem/target.hpp"
 
@@ -153,6 +154,7 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   result.seed = seed;
   result.diagnostics.derived = d;
   result.diagnostics.threads = options.threads;
+  result.diagnostics.isa = isa();
   Checkpoint& now = result.checkpoint;
   using Clock = std::chrono::steady_clock;
   auto saved = Clock::now();

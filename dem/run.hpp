@@ -53,6 +53,7 @@ struct Diagnostics {
   double bytes_per_particle = 0.0;  ///< of state and lists
   double steps_per_second = 0.0;    ///< particle-steps per second of processor time
   int threads = 1;
+  std::string isa;  ///< of the contact forces (isa.hpp)
 };
 
 struct Summary {

@@ -177,7 +177,7 @@ void write_run(const std::string& path, const Case& c, const RunResult& result) 
     const data::Hdf5Group file = data::create_hdf5(temporary);
     file.set("format", format);
     for (const auto& [name, value] : data::provenance()) file.set(name, value);
-    file.set("isa", data::built_isa());
+    file.set("isa", result.diagnostics.isa);
     file.set("seed", fmt::format("{}", result.seed));
     file.set("status", static_cast<std::int64_t>(result.status));
     file.set("reason", result.reason);
@@ -227,7 +227,6 @@ SavedRun read_run(const std::string& path) {
   SavedRun saved;
   RunResult& r = saved.result;
   saved.settings = file.text("settings");
-  saved.isa = file.text("isa");
   r.seed = std::stoull(file.text("seed"));
   r.status = static_cast<RunStatus>(file.integer("status"));
   r.reason = file.text("reason");
@@ -258,6 +257,7 @@ SavedRun read_run(const std::string& path) {
   g.simulated = diagnostics.number("simulated_s");
   g.steps_per_second = diagnostics.number("particle_steps_per_second");
   g.threads = static_cast<int>(diagnostics.integer("threads"));
+  g.isa = file.text("isa");
   return saved;
 }
 

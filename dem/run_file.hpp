@@ -19,7 +19,6 @@ void write_run(const std::string& path, const Case& c, const RunResult& result);
 struct SavedRun {
   RunResult result;
   std::string settings;  ///< settings_text of the case that was run
-  std::string isa;
 };
 
 /// Throws data::InputError: 66 missing, 65 not such a file.

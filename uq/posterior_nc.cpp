@@ -276,7 +276,7 @@ std::string draws_csv(const SampledCase& sampled) {
   for (const Slot& slot : sampled.model->slots) {
     const std::string& unit = slot.prior.parameter().unit.symbol;
     units += fmt::format("{} {} [{}]", head == "chain,draw" ? "" : ",", variable_name(slot), unit.empty() ? "1" : unit);
-    head += "," + data::csv_field(variable_name(slot));
+    head += fmt::format(",{}", data::csv_field(variable_name(slot)));
   }
   for (std::size_t c = 0; c < sampled.draws.chains.size(); ++c) {
     const auto& chain = sampled.draws.chains[c];

@@ -173,3 +173,10 @@ TEST_CASE(
   CHECK(folder.demcal({"sample", study, "--sbc"}).status == 64);
   CHECK_FALSE(std::filesystem::exists(folder.path / "other-code"));
 }
+
+TEST_CASE("an instruction set that does not exist is refused with those that do") {
+  const Folder folder;
+  const auto outcome = folder.demcal({"simulate", DEMCAL_SOURCE_DIR "/data/developer", "--isa", "avx"});
+  CHECK(outcome.status == 64);
+  CHECK_THAT(outcome.err, Contains("--isa") && Contains("avx") && Contains("x86-64-v3"));
+}

@@ -1,5 +1,8 @@
-// Same bits for any number of threads and after stop and restart, for each family of contact laws and for a mixture.
+// Same bits for any number of threads, after stop and restart and with every instruction set, for each family of
+// contact laws and for a mixture.
+#include "data/provenance.hpp"
 #include "data/random.hpp"
+#include "dem/isa.hpp"
 #include "families.hpp"
 
 namespace {
@@ -100,4 +103,54 @@ TEST_CASE("pairs that sleep miss nothing: looking at all pairs in every step giv
   REQUIRE(contacts > 5000);
   REQUIRE(sleeping.state().rebuilds > 2);
   CHECK(scene::hash(sleeping.state()) == scene::hash(waking.state()));
+}
+
+TEST_CASE("every instruction set gives the same bits, of the state and of the sums") {
+  struct Pin {
+    std::string before = dem::isa();
+    ~Pin() { dem::pin_isa(before); }
+  } const pin;
+  for (const auto& [name, c] : scene::families(0.7)) {
+    for (const bool equal : {true, false}) {
+      INFO(name << (equal ? "" : ", mixed"));
+      std::vector<std::uint64_t> hashes;
+      for (const std::string& isa : dem::isas()) {
+        dem::pin_isa(isa);
+        dem::Simulation s(equal ? stirred(c, 1) : mixed(c, 1));
+        std::vector<double> sums;
+        std::uint64_t contacts = 0;
+        for (int k = 0; k < 60; ++k) {
+          s.step();
+          const dem::StepSums& now = s.sums();
+          contacts += now.contacts + now.wall_contacts;
+          sums.insert(sums.end(), {now.virial, now.dissipated, now.tool_work, now.max_overlap});
+          for (const dem::BodyLoad& b : now.body)
+            sums.insert(sums.end(), {b.force.x, b.force.y, b.force.z, b.torque.x, b.torque.y, b.torque.z});
+        }
+        REQUIRE(contacts > 2000);
+        hashes.push_back(XXH3_64bits_withSeed(sums.data(), sums.size() * sizeof sums[0], scene::hash(s.state())));
+      }
+      REQUIRE(!hashes.empty());
+      CHECK(hashes == std::vector<std::uint64_t>(hashes.size(), hashes[0]));
+    }
+  }
+}
+
+TEST_CASE("the widest instruction set is taken, and one that is not there is refused with those that are") {
+  const std::vector<std::string> all = dem::isas();
+  REQUIRE(!all.empty());
+  CHECK(all.front() == "x86-64");
+  CHECK(dem::isa() == all.back());
+  for (const std::string& isa : {"x86-64-v4", "x86-64-v9"}) {
+    if (isa == all.back()) continue;
+    try {
+      dem::pin_isa(isa);
+      FAIL("taken: " << isa);
+    } catch (const data::InputError& error) {
+      CHECK(error.status == data::ExitStatus::missing_program);
+      CHECK_THAT(error.what(),
+                 Catch::Contains("--isa") && Catch::Contains(isa) && Catch::Contains("choose one of: x86-64"));
+    }
+  }
+  CHECK(dem::isa() == all.back());
 }

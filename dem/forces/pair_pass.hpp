@@ -125,7 +125,8 @@ DEMCAL_FLATTEN void pair_pass(const PairLaws<Law, Uniform> laws, const PairView 
   constexpr int rows = Law::history_rows;
   constexpr bool turning = Law::Resistance::present;
   const auto one = laws.at_all();
-  Lane virial = 0.0, dissipated = 0.0, max_overlap = 0.0;
+  Tally virial, dissipated;
+  Lane max_overlap = 0.0;
   std::uint64_t contacts = 0, deep = 0;
   std::uint32_t hits[hit_batch + lanes];
   for (std::uint32_t from = begin; from < end; from += hit_batch) {
@@ -250,19 +251,17 @@ DEMCAL_FLATTEN void pair_pass(const PairLaws<Law, Uniform> laws, const PairView 
 
       const unsigned lane_mask = (1u << used) - 1u;
       const Lane valid = first_lanes(used);
-      virial += valid * (r.push * distance);
-      dissipated += valid * r.dissipated;
+      virial.add(valid * (r.push * distance), base);
+      dissipated.add(valid * r.dissipated, base);
       const Lane relative = Uniform ? Lane(m.overlap * (1.0 / laws.each_radius())) : Lane(2.0 * m.overlap / sum);
       max_overlap = larger(max_overlap, relative);
       contacts += static_cast<unsigned>(std::popcount(bits(r.touch > 0.0) & lane_mask));
       deep += static_cast<unsigned>(std::popcount(bits(relative > v.deep) & lane_mask));
     }
   }
-  for (int k = 0; k < lanes; ++k) {
-    sums.virial += virial[k];
-    sums.dissipated += dissipated[k];
-    sums.max_overlap = larger(sums.max_overlap, static_cast<double>(max_overlap[k]));
-  }
+  virial.add_to(sums.virial);
+  dissipated.add_to(sums.dissipated);
+  for (int k = 0; k < lanes; ++k) sums.max_overlap = larger(sums.max_overlap, static_cast<double>(max_overlap[k]));
   sums.contacts += contacts;
   sums.deep += deep;
 }

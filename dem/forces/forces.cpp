@@ -1,12 +1,11 @@
-#include "dem/laws.hpp"
-
 #include <stdexcept>
 
-#include "dem/compose.hpp"
+#include "dem/forces/elastic.hpp"
 
 namespace dem {
+namespace {
 
-std::shared_ptr<const ForcePass> make_force_pass(const BedCoefficients& bed) {
+std::shared_ptr<const ForcePass> chosen(const BedCoefficients& bed) {
   const LawChoice& choice = bed.choice;
   const bool mindlin = choice.tangential == TangentialLaw::mindlin;
   switch (choice.normal) {
@@ -22,4 +21,10 @@ std::shared_ptr<const ForcePass> make_force_pass(const BedCoefficients& bed) {
   throw std::invalid_argument("contact laws that do not go together");
 }
 
+}  // namespace
 }  // namespace dem
+
+/// What the rest of the program sees of these files, by another name for each instruction set (CMakeLists.txt).
+extern "C" void DEMCAL_FORCES_ENTRY(const dem::BedCoefficients& bed, std::shared_ptr<const dem::ForcePass>& made) {
+  made = dem::chosen(bed);
+}

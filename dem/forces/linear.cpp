@@ -1,4 +1,4 @@
-#include "dem/compose.hpp"
+#include "dem/forces/compose.hpp"
 
 namespace dem {
 

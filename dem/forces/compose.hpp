@@ -1,10 +1,10 @@
 #pragma once
-// From coefficients to parts, and from a choice of parts to the one law that composes them. Included by one file per
-// elastic law (laws_linear.cpp, ...), so that their compilation goes in parallel.
+// From coefficients to parts, and from a choice of parts to the one law that composes them.
 #include <cmath>
 #include <memory>
 
-#include "dem/law_pass.hpp"
+#include "dem/forces/elastic.hpp"
+#include "dem/forces/law_pass.hpp"
 #include "dem/laws.hpp"
 
 namespace dem {
@@ -87,10 +87,5 @@ std::shared_ptr<const ForcePass> compose(const BedCoefficients& bed) {
   }
   return with_attraction<Normal, Tangential, NoResistance>(bed);
 }
-
-std::shared_ptr<const ForcePass> compose_linear(const BedCoefficients& bed);
-std::shared_ptr<const ForcePass> compose_hertz(const BedCoefficients& bed);
-std::shared_ptr<const ForcePass> compose_hertz_linear(const BedCoefficients& bed);
-std::shared_ptr<const ForcePass> compose_jkr(const BedCoefficients& bed);
 
 }  // namespace dem

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "dem/force_pass.hpp"
-#include "dem/pair_pass.hpp"
+#include "dem/forces/pair_pass.hpp"
 
 namespace dem {
 
@@ -218,8 +218,14 @@ class LawPass final : public ForcePass {
     const Frame& frame = around.frames[body];
     const auto one = wall(MotionRow{}, body).at(tables_.equal_mass, tables_.equal_radius);
     for (int k = 0; k < lanes; ++k) hits[count + k] = hits[count - 1];
-    Vector3<Lane> body_force, body_torque;
-    Lane tool_work = 0.0, dissipated = 0.0, max_overlap = 0.0;
+    Vector3<Tally> body_force, body_torque;
+    Tally tool_work, dissipated;
+    Lane max_overlap = 0.0;
+    const auto add = [](Vector3<Tally>& tally, const Vector3<Lane>& values, std::size_t first) {
+      tally.x.add(values.x, first);
+      tally.y.add(values.y, first);
+      tally.z.add(values.z, first);
+    };
     for (std::size_t base = 0; base < count; base += lanes) {
       const WallHit* const hit = hits + base;
       std::uint32_t particle[lanes];
@@ -270,10 +276,10 @@ class LawPass final : public ForcePass {
       }
 
       const Lane valid = first_lanes(used);
-      body_force -= valid * force;
-      body_torque -= valid * (cross(arm, force) + r.couple);
-      tool_work += valid * (dot(force, of_wall) + dot(r.couple, spread(frame.now.spin)));
-      dissipated += valid * r.dissipated;
+      add(body_force, -valid * force, base);
+      add(body_torque, -valid * (cross(arm, force) + r.couple), base);
+      tool_work.add(valid * (dot(force, of_wall) + dot(r.couple, spread(frame.now.spin))), base);
+      dissipated.add(valid * r.dissipated, base);
       const Lane relative = m.overlap / radius;
       max_overlap = larger(max_overlap, relative);
       const unsigned lane_mask = (1u << used) - 1u;
@@ -281,13 +287,16 @@ class LawPass final : public ForcePass {
       sums.deep += static_cast<unsigned>(std::popcount(bits(relative > around.deep) & lane_mask));
     }
     BodyLoad& load = sums.body[body];
-    for (int k = 0; k < lanes; ++k) {
-      load.force += Vec3{body_force.x[k], body_force.y[k], body_force.z[k]};
-      load.torque += Vec3{body_torque.x[k], body_torque.y[k], body_torque.z[k]};
-      sums.tool_work += around.time_step * tool_work[k];
-      sums.dissipated += dissipated[k];
-      sums.max_overlap = std::max(sums.max_overlap, static_cast<double>(max_overlap[k]));
-    }
+    const auto add_to = [](Vec3& total, const Vector3<Tally>& tally) {
+      tally.x.add_to(total.x);
+      tally.y.add_to(total.y);
+      tally.z.add_to(total.z);
+    };
+    add_to(load.force, body_force);
+    add_to(load.torque, body_torque);
+    tool_work.add_to(sums.tool_work, around.time_step);
+    dissipated.add_to(sums.dissipated);
+    for (int k = 0; k < lanes; ++k) sums.max_overlap = std::max(sums.max_overlap, static_cast<double>(max_overlap[k]));
   }
 
   LawTables<Law> tables_;

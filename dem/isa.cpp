@@ -1,0 +1,73 @@
+#include "dem/isa.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "data/error.hpp"
+#include "data/provenance.hpp"
+#include "dem/laws.hpp"
+
+// One entry for each instruction set, which CMake lists as FORCES(name, entry).
+#define FORCES(name, entry) \
+  extern "C" void entry(const dem::BedCoefficients& bed, std::shared_ptr<const dem::ForcePass>& made);
+#include "forces.inc"
+#undef FORCES
+
+namespace dem {
+namespace {
+
+struct Forces {
+  const char* isa;
+  void (*make)(const BedCoefficients& bed, std::shared_ptr<const ForcePass>& made);
+};
+#define FORCES(name, entry) {name, entry},
+constexpr Forces built[] = {
+#include "forces.inc"
+};
+#undef FORCES
+
+const Forces* pinned = nullptr;
+
+const Forces& in_use() {
+  if (pinned != nullptr) return *pinned;
+  const Forces* widest = nullptr;
+  for (const Forces& f : built)
+    if (data::processor_runs(f.isa)) widest = &f;
+  if (widest == nullptr) pin_isa(data::processor_isa());  // says what there is
+  return *widest;
+}
+
+}  // namespace
+
+std::vector<std::string> isas() {
+  std::vector<std::string> all;
+  for (const Forces& f : built)
+    if (data::processor_runs(f.isa)) all.emplace_back(f.isa);
+  return all;
+}
+
+std::string isa() { return in_use().isa; }
+
+void pin_isa(const std::string& name) {
+  for (const Forces& f : built) {
+    if (name != f.isa) continue;
+    if (!data::processor_runs(name))
+      throw data::InputError(data::ExitStatus::missing_program,
+                             {"--isa", fmt::format("the processor does not run {}", name),
+                              fmt::format("choose one of: {}", fmt::join(isas(), ", "))});
+    pinned = &f;
+    return;
+  }
+  throw data::InputError(
+      data::ExitStatus::missing_program,
+      {"--isa", fmt::format("this demcal was built without contact forces for {}", name),
+       fmt::format("choose one of: {}; or build with it among DEMCAL_FORCES", fmt::join(isas(), ", "))});
+}
+
+std::shared_ptr<const ForcePass> make_force_pass(const BedCoefficients& bed) {
+  std::shared_ptr<const ForcePass> made;
+  in_use().make(bed, made);
+  return made;
+}
+
+}  // namespace dem
