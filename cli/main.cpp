@@ -38,7 +38,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    data::require_processor();
     return run(argc, argv);
   } catch (const data::InputError& error) {
     fmt::print(stderr, "{}\n", error.what());

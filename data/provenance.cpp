@@ -1,21 +1,20 @@
 #include "data/provenance.hpp"
 
+#include <unistd.h>
+
 #include <array>
+#include <cstdio>
 #include <ctime>
+#include <string_view>
 
 #include "data/error.hpp"
 
 namespace data {
 namespace {
 
-int level(const std::string& isa) { return isa == "x86-64-v4" ? 4 : isa == "x86-64-v3" ? 3 : 1; }
+int level(std::string_view isa) { return isa == "x86-64-v4" ? 4 : isa == "x86-64-v3" ? 3 : 1; }
 
-}  // namespace
-
-std::string program_version() { return DEMCAL_VERSION; }
-std::string built_isa() { return DEMCAL_ISA; }
-
-std::string processor_isa() {
+const char* best_isa() {
   __builtin_cpu_init();
   const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
   if (!v3) return "x86-64";
@@ -25,17 +24,25 @@ std::string processor_isa() {
   return v4 ? "x86-64-v4" : "x86-64-v3";
 }
 
-bool processor_runs(const std::string& isa) { return level(processor_isa()) >= level(isa); }
-
-void require_processor() {
-  if (processor_runs(built_isa())) return;
-  // Plain concatenation: library templates that other files share may have been compiled for more than this processor
-  // has.
-  std::string what = "this demcal was built for ";
-  what += built_isa() + ", but the processor runs only " + processor_isa();
-  throw InputError(ExitStatus::missing_program,
-                   Problem{"", what, "build it again on this machine, or with -DDEMCAL_ISA=" + processor_isa()});
+/// Ends the program (69) where the processor lacks the instruction set that it was built for: before main and before
+/// static objects are made, as that may need it. With the C library alone: templates that other files share may have
+/// been compiled for more than this processor has.
+[[gnu::constructor(101)]] void require_processor() {
+  const char* const best = best_isa();
+  if (level(best) >= level(DEMCAL_ISA)) return;
+  dprintf(STDERR_FILENO,
+          "demcal: built for " DEMCAL_ISA
+          ", but the processor runs only %s (build it again on this machine, or with -DDEMCAL_ISA=%s)\n",
+          best, best);
+  _exit(static_cast<int>(ExitStatus::missing_program));
 }
+
+}  // namespace
+
+std::string program_version() { return DEMCAL_VERSION; }
+std::string built_isa() { return DEMCAL_ISA; }
+std::string processor_isa() { return best_isa(); }
+bool processor_runs(const std::string& isa) { return level(best_isa()) >= level(isa); }
 
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);

@@ -141,7 +141,7 @@ TEST_CASE("the widest instruction set is taken, and one that is not there is ref
   REQUIRE(!all.empty());
   CHECK(all.front() == "x86-64");
   CHECK(dem::isa() == all.back());
-  for (const std::string& isa : {"x86-64-v4", "x86-64-v9"}) {
+  for (const std::string isa : {"x86-64-v4", "x86-64-v9"}) {
     if (isa == all.back()) continue;
     try {
       dem::pin_isa(isa);
