@@ -1,7 +1,6 @@
 #include "dem/isa.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "data/error.hpp"
 #include "data/provenance.hpp"
@@ -49,19 +48,19 @@ std::vector<std::string> isas() {
 std::string isa() { return in_use().isa; }
 
 void pin_isa(const std::string& name) {
+  std::string why = fmt::format("this demcal was built without contact forces for {}", name);
   for (const Forces& f : built) {
     if (name != f.isa) continue;
-    if (!data::processor_runs(name))
-      throw data::InputError(data::ExitStatus::missing_program,
-                             {"--isa", fmt::format("the processor does not run {}", name),
-                              fmt::format("choose one of: {}", fmt::join(isas(), ", "))});
-    pinned = &f;
-    return;
+    if (data::processor_runs(name)) {
+      pinned = &f;
+      return;
+    }
+    why = fmt::format("the processor does not run {}", name);
   }
-  throw data::InputError(
-      data::ExitStatus::missing_program,
-      {"--isa", fmt::format("this demcal was built without contact forces for {}", name),
-       fmt::format("choose one of: {}; or build with it among DEMCAL_FORCES", fmt::join(isas(), ", "))});
+  std::string choice;
+  for (const std::string& one : isas()) choice += (choice.empty() ? "choose one of: " : ", ") + one;
+  throw data::InputError(data::ExitStatus::missing_program,
+                         {"--isa", why, choice.empty() ? "build it again, with -DDEMCAL_FORCES=x86-64" : choice});
 }
 
 std::shared_ptr<const ForcePass> make_force_pass(const BedCoefficients& bed) {

@@ -159,13 +159,11 @@ void Simulation::list_pairs() {
 /// Makes all pairs due in this step.
 void Simulation::wake_all() {
   State& s = state_;
-  const std::size_t words = s.in_range.size();
-  s.due.assign(words * due_steps, 0);
-  const auto now = s.due.begin() + static_cast<std::ptrdiff_t>(s.step % due_steps * words);
-  std::fill(now, now + static_cast<std::ptrdiff_t>(words), ~std::uint64_t{0});
+  s.due.assign(s.in_range.size() * due_steps, 0);
+  for (std::uint32_t word = 0; word < s.in_range.size(); ++word) s.due[due_at(word, s.step)] = ~std::uint64_t{0};
   for (std::size_t c = 0; c < s.chunks(); ++c) {
     for (std::uint32_t slot = s.chunk_pair[c + 1]; slot-- > s.chunk_pair[c] && is_padding(s.pair[slot]);)
-      now[slot / 64] &= ~bit_of(slot);
+      s.due[due_at(slot / 64, s.step)] &= ~bit_of(slot);
   }
   watched_speed_ = 1.25 * fastest_;
 }

@@ -95,6 +95,11 @@ struct Ghost {
 /// A pair out of range sleeps until its spheres could meet, at most one step less than this.
 inline constexpr std::uint32_t due_steps = 8;
 
+/// Where in State::due the pairs of a word to look at in a step are: a word's steps side by side, in one cache line.
+inline std::size_t due_at(std::uint32_t word, std::uint64_t step) {
+  return std::size_t{word} * due_steps + step % due_steps;
+}
+
 /// One bit a pair: the word it is in, and its place there.
 inline std::uint64_t bit_of(std::uint32_t slot) { return std::uint64_t{1} << (slot % 64); }
 
@@ -116,7 +121,7 @@ struct State {
   std::vector<Pair> pair;                   ///< whole words of each chunk, filled with padding
   std::vector<std::uint32_t> partner_load;  ///< where in `load` the partner's share goes
   std::vector<std::uint64_t> in_range;      ///< one bit a pair, 64 to a word
-  std::vector<std::uint64_t> due;           ///< alike, of each of the next `due_steps` steps: pairs to look at then
+  std::vector<std::uint64_t> due;           ///< pairs to look at in each of the next `due_steps` steps (due_at)
   std::vector<std::uint32_t> history_at;    ///< place of a pair in range, in its chunk's history
   // chunks
   std::vector<Pool<VectorRow>> history;                ///< of pairs in range: slip and contact radius; roll and twist

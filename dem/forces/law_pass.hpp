@@ -58,7 +58,6 @@ class LawPass final : public ForcePass {
                         .partner_load = s.partner_load.data(),
                         .in_range = s.in_range.data(),
                         .due = s.due.data(),
-                        .words = s.in_range.size(),
                         .step = s.step,
                         .history_at = s.history_at.data(),
                         .history = &s.history[chunk],

@@ -32,8 +32,7 @@ struct PairView {
   const Pair* pair;
   const std::uint32_t* partner_load;
   std::uint64_t* in_range;
-  std::uint64_t* due;  ///< due_steps times `words`
-  std::size_t words;
+  std::uint64_t* due;
   std::uint64_t step;
   std::uint32_t* history_at;
   Pool<VectorRow>* history;
@@ -42,8 +41,6 @@ struct PairView {
   double range;            ///< m, of the laws beyond touching
   double deep;             ///< of the mean radius of the two
   double steps_per_metre;  ///< at least so many until two spheres are nearer to each other by a metre
-
-  std::uint64_t* due_at(std::uint64_t at_step) const { return due + at_step % due_steps * words; }
 };
 
 /// Laws of the pairs of a bed: one for all where spheres are equal, else a table over both materials.
@@ -84,16 +81,16 @@ inline std::uint32_t list_bits(std::uint64_t bits_of_word, std::uint32_t word, s
 inline void sleep(const PairView& v, std::uint32_t slot, double gap) {
   const double steps = gap * v.steps_per_metre;
   const std::uint32_t later = steps < due_steps - 1 ? std::max(1u, static_cast<std::uint32_t>(steps)) : due_steps - 1;
-  v.due_at(v.step + later)[slot / 64] |= bit_of(slot);
+  v.due[due_at(slot / 64, v.step + later)] |= bit_of(slot);
 }
 
 /// Pairs among the words [begin, end) that are due: those that are in range are marked so, the others sleep.
 DEMCAL_FLATTEN inline void look_at_due(const PairView& v, std::uint32_t begin, std::uint32_t end) {
   std::uint32_t slots[hit_batch + lanes], count = 0;
-  std::uint64_t* const due = v.due_at(v.step);
   for (std::uint32_t word = begin; word < end; ++word) {
-    count = list_bits(due[word] & ~v.in_range[word], word, slots, count);
-    due[word] = 0;
+    std::uint64_t& due = v.due[due_at(word, v.step)];
+    count = list_bits(due & ~v.in_range[word], word, slots, count);
+    due = 0;
   }
   if (count == 0) return;
   for (std::uint32_t k = 0; k < count; ++k) __builtin_prefetch(&v.position[v.pair[slots[k]].j]);
@@ -147,6 +144,7 @@ DEMCAL_FLATTEN void pair_pass(const PairLaws<Law, Uniform> laws, const PairView 
         __builtin_prefetch(&v.position[j]);
         __builtin_prefetch(&v.motion[j]);
         __builtin_prefetch(&v.load[v.partner_load[hits[k]]], 1);
+        __builtin_prefetch(&histories[v.history_at[hits[k]] * rows], 1);
       }
       const auto velocity = [&](std::uint32_t row) -> Four { return four(v.motion[row].velocity.x); };
       const auto spin = [&](std::uint32_t row) -> Four { return four(v.motion[row].spin.x); };
