@@ -6,7 +6,9 @@ find_package(nlohmann_json REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(gsl REQUIRED IMPORTED_TARGET gsl)
 pkg_check_modules(nlopt REQUIRED IMPORTED_TARGET nlopt)
-pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5)
+# Not `hdf5`: where an MPI build is installed too (LIGGGHTS brings one), Debian lets that name mean it, and it is neither
+# thread-safe nor the one that netCDF uses.
+pkg_check_modules(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial)
 pkg_check_modules(netcdf REQUIRED IMPORTED_TARGET netcdf)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)

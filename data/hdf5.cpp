@@ -11,6 +11,10 @@
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
 
+#ifndef H5_HAVE_THREADSAFE
+#error "this HDF5 is not thread-safe, and runs write files at the same time: take the serial one of libhdf5-dev"
+#endif
+
 namespace data {
 namespace {
 

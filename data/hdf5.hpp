@@ -2,7 +2,8 @@
 // A small layer over the HDF5 C library: files, groups, attributes and datasets that close themselves. Numbers are
 // stored as little-endian IEEE, creation order is tracked everywhere (netCDF-4 needs it), the library's own error
 // output is silent, and every failure is an InputError that names the file and the object: 65 when reading, 73 when
-// writing. Debian's library is built thread-safe; two threads must still not share one of these objects.
+// writing. Debian's serial library is built thread-safe, and any other is refused when compiling; two threads must
+// still not share one of these objects.
 #include <cstdint>
 #include <memory>
 #include <span>
