@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <set>
 
+#include "cli/run_point.hpp"
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
 #include "data/hash.hpp"
@@ -26,6 +27,12 @@ std::string point_key(const Workspace& workspace, const Point& point) {
                         .inputs = point.inputs,
                         .seed = workspace.study.seed,
                         .settings = settings_hash(workspace, point.material)});
+}
+
+/// Whether the run that the row is of would stop where it stopped.
+bool cannot_do_better(const Workspace& workspace, const data::RunRow& row) {
+  const Point point{row.material, row.inputs};
+  return is_done(workspace, point, run_path(workspace, point));
 }
 
 std::string design_path(const Workspace& workspace) {
@@ -58,7 +65,8 @@ std::vector<Point> training_design(const Workspace& workspace, const std::string
 
 Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int runs) {
   std::set<std::string> known;
-  for (const data::RunRow& row : table.rows) known.insert(data::row_key(row));
+  for (const data::RunRow& row : table.rows)
+    if (!data::is_unsteady(row) || cannot_do_better(workspace, row)) known.insert(data::row_key(row));
   Campaign campaign;
   const auto add_missing = [&](const std::vector<Point>& points) {
     for (const Point& point : points)
@@ -112,10 +120,8 @@ void write_design(const Workspace& workspace, const std::vector<Point>& points) 
   for (const Point& point : points) {
     text += data::csv_field(point.material);
     std::size_t column = 0;
-    for (const data::Parameter& p : study.parameters)
-      text += fmt::format(",{:.5g}", p.unit.from_si(point.inputs[column++]));
-    for (const data::Control& c : study.controls)
-      text += fmt::format(",{:.5g}", c.unit.from_si(point.inputs[column++]));
+    for (const data::Parameter& p : study.parameters) text += "," + p.unit.digits(point.inputs[column++]);
+    for (const data::Control& c : study.controls) text += "," + c.unit.digits(point.inputs[column++]);
     text += "\n";
   }
   data::write_atomically(design_path(workspace), text);
@@ -124,6 +130,10 @@ void write_design(const Workspace& workspace, const std::vector<Point>& points) 
 std::string run_name(const Workspace& workspace, const Point& point) {
   return (point.material.empty() ? "run" : point.material) + "-" +
          data::hash_text(point_key(workspace, point)).substr(0, 12);
+}
+
+std::string run_path(const Workspace& workspace, const Point& point) {
+  return (std::filesystem::path(workspace.out) / "runs" / (run_name(workspace, point) + ".h5")).string();
 }
 
 }  // namespace cli

@@ -12,7 +12,8 @@ namespace cli {
 /// is typed in is the same point.
 std::vector<Point> training_design(const Workspace& workspace, const std::string& material, int first, int runs);
 
-/// What to simulate now: points without a row in `table`. First those that an unfinished campaign left in
+/// What to simulate now: points without a row in `table`, or with one that is not of the steady flow and whose run
+/// would now go on for longer. First those that an unfinished campaign left in
 /// OUT/design.csv, then the study's own design; when nothing was left unfinished, further points are added up to
 /// `runs`, shared among the materials. `runs` above 0 is also the most.
 struct Campaign {
@@ -27,5 +28,7 @@ void write_design(const Workspace& workspace, const std::vector<Point>& points);
 
 /// "zirconia-100-1f3a..": names the run's file; equal for equal point, seed and settings.
 std::string run_name(const Workspace& workspace, const Point& point);
+/// OUT/runs/NAME.h5.
+std::string run_path(const Workspace& workspace, const Point& point);
 
 }  // namespace cli

@@ -42,6 +42,9 @@ CLI::App* add_study_command(CLI::App& program, const std::string& name, const st
 /// --isa of a command that simulates: pins the instruction set of the contact forces.
 void add_isa_option(CLI::App& command);
 
+/// What becomes of runs that are not of the steady flow: [training] unsteady.
+enum class Unsteady { leave_out, use };
+
 /// A study that was read without problems.
 struct Workspace {
   data::Study study;
@@ -49,6 +52,7 @@ struct Workspace {
   /// As the study says; rows and fitted surrogates are added by the commands that fit.
   std::shared_ptr<const uq::SurrogateOptions> surrogates;
   std::string out;  ///< results folder, absolute; made by the first write
+  Unsteady unsteady = Unsteady::leave_out;
 };
 
 /// Reads the study and, where it has a rig, the DEM case of each material. Throws InputError with every problem.
@@ -62,7 +66,8 @@ void make_out(const Workspace& workspace, const std::string& subfolder = "");
 
 /// The rows shipped with the study and those in OUT/training.h5, merged; rows of other settings are left out.
 struct TrainingRows {
-  data::RunTable table;
+  data::RunTable all;                 ///< whatever their state
+  data::RunTable table;               ///< to fit: of the steady flow, without outputs whose errors are not known
   std::optional<data::RunTable> low;  ///< rows of the cheaper level, where the study names some
   std::vector<std::string> notes;     ///< rows left out and why
 };

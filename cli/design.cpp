@@ -25,12 +25,12 @@ Action add_design(CLI::App& program) {
     make_out(workspace);
     const TrainingRows rows = training_rows(workspace);
     for (const std::string& note : rows.notes) say(common, "note: " + note);
-    const Campaign campaign = plan_campaign(workspace, rows.table, options->runs);
+    const Campaign campaign = plan_campaign(workspace, rows.all, options->runs);
     write_design(workspace, campaign.points);
     const std::string path = (std::filesystem::path(workspace.out) / "design.csv").string();
     say(common,
-        fmt::format("{} points to simulate, {} rows exist: {}", campaign.points.size(), rows.table.rows.size(), path));
-    print_json(common, {{"points", campaign.points.size()}, {"rows", rows.table.rows.size()}, {"design", path}});
+        fmt::format("{} points to simulate, {} rows exist: {}", campaign.points.size(), rows.all.rows.size(), path));
+    print_json(common, {{"points", campaign.points.size()}, {"rows", rows.all.rows.size()}, {"design", path}});
     return data::ExitStatus::done;
   };
 }

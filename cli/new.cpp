@@ -37,10 +37,11 @@ fill = 2400                    # spheres in the box, or their mass: "4 g"
 
 [materials.powder]
 density = "6090 kg/m3"
-diameter = "0.8 mm"            # of the simulated spheres
+# Of the simulated spheres. No powder has equal grains, and a bed of equal spheres orders while it turns: its torque
+# falls for seconds. A spread of a tenth keeps it from that.
+sizes = [{{ diameter = "0.72 mm", mass_fraction = 0.3333 }}, {{ diameter = "0.80 mm", mass_fraction = 0.3334 }}, {{ diameter = "0.88 mm", mass_fraction = 0.3333 }}]
 coarse_graining = 1            # their diameter over that of the real grains
-# Instead of one diameter: sizes = [{{ diameter = "0.6 mm", mass_fraction = 0.3 }}, {{ diameter = "0.9 mm", mass_fraction = 0.7 }}]
-# or distribution = {{ kind = "log_normal", median = "0.8 mm", geometric_sd = 1.2, low = "0.5 mm", high = "1.2 mm" }}.
+# Instead: diameter = "0.8 mm" for all, or distribution = {{ kind = "log_normal", median = "0.8 mm", geometric_sd = 1.2, low = "0.5 mm", high = "1.2 mm" }}.
 # A bed of several: [materials.mix] components = [{{ material = "sand", mass_fraction = 0.7 }}, ...], and a table for each.
 
 [contact]                      # of all contacts; wall_KEY of those with bodies, which follows KEY unless given
@@ -54,6 +55,10 @@ minimum_separation = "1.5 nm"  # only hamaker / minimum_separation^2 matters
 # [[contact.pair]]             # what two materials, or one and a mesh, its material or "wall", have of their own
 # between = ["powder", "wall"]
 # restitution = 0.5
+
+[run]                          # each run ends when its mean torque is known well enough and is that of the steady flow
+shortest_turns = 2             # measured at least, after the start-up
+longest = "6 s"                # of turning; a run that is not steady by then says so and trains nothing
 
 [parameters.friction]          # what is to be calibrated
 target = "contact.friction"
@@ -79,6 +84,7 @@ unit = "uN m"
 [training]
 runs = 48
 standard_error = 0.03          # wanted of each run's mean torque, relative
+unsteady = "leave_out"         # or use: the runs that are not of the steady flow
 
 [[observe]]                    # your measurement: a CSV with the columns rpm, torque, torque_se
 name = "bench"

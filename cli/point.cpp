@@ -113,14 +113,18 @@ dem::Case case_at(const Workspace& workspace, const Point& point) {
 }
 
 std::string settings_hash(const Workspace& workspace, const std::string& material) {
-  Point reference{material, {}};
-  for (const Input& input : inputs_of(workspace.study)) reference.inputs.push_back(input.low);
-  dem::Case settings = case_at(workspace, reference);
+  dem::Case settings = workspace.cases.at(material);
+  // What is an input stands at one value, whatever its range is: rows stay good when a range is moved.
+  for (const Input& input : inputs_of(workspace.study)) {
+    const dem::Target target = dem::target(input.target);
+    dem::set_target(settings, input.target, std::clamp(1.0, target.low, target.high));
+  }
   // How long a run is decides its standard error, not what it estimates: rows of any length stay good.
   const dem::RunControl usual;
   settings.run.standard_error = usual.standard_error;
   settings.run.shortest = usual.shortest;
   settings.run.shortest_turns = usual.shortest_turns;
+  settings.run.start_up_turns = usual.start_up_turns;
   settings.run.longest = usual.longest;
   // Whether a run is stopped, not what it gives.
   settings.run.overlap_limit = usual.overlap_limit;
@@ -144,11 +148,14 @@ data::RunRow to_row(const Workspace& workspace, const Point& point, const dem::R
                    .settings = settings_hash(workspace, point.material),
                    .isa = result.diagnostics.isa,
                    .origin = "demcal " + data::program_version(),
-                   .cpu_seconds = result.summary.cpu_seconds};
+                   .cpu_seconds = result.summary.cpu_seconds,
+                   .state = std::string(dem::name_of(result.summary.state)),
+                   .unreliable = ""};
   for (const data::Output& output : workspace.study.outputs) {
     const data::SeriesMean& mean = dem::output(result, output.name);
     row.outputs.push_back(mean.mean);
     row.standard_errors.push_back(mean.standard_error);
+    if (!mean.reliable) row.unreliable += (row.unreliable.empty() ? "" : " ") + output.name;
   }
   return row;
 }

@@ -1,6 +1,8 @@
 #include "cli/run_point.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <string_view>
 
 #include "dem/isa.hpp"
 #include "dem/run_file.hpp"
@@ -9,25 +11,52 @@
 namespace cli {
 namespace {
 
-/// What an earlier start left in the file, if it is this very run.
-std::optional<dem::RunResult> earlier(const std::string& path, const dem::Case& c, std::uint64_t seed) {
+/// All that decides a run's bits up to where it stops: the settings without those that say how long it is, and what of
+/// it is measured.
+std::string course_of(const std::string& settings) {
+  static constexpr std::string_view other[]{"run.standard_error ", "run.start_up", "run.shortest", "run.longest ",
+                                            "run.window "};
+  std::string course;
+  for (std::size_t at = 0; at < settings.size();) {
+    const std::size_t end = std::min(settings.find('\n', at), settings.size() - 1) + 1;
+    const std::string_view line = std::string_view(settings).substr(at, end - at);
+    if (std::none_of(std::begin(other), std::end(other), [&](std::string_view key) { return line.starts_with(key); }))
+      course += line;
+    at = end;
+  }
+  return course;
+}
+
+/// What an earlier start left in the file, if it is a run of the same course.
+std::optional<dem::SavedRun> earlier(const std::string& path, const dem::Case& c, std::uint64_t seed) {
   if (!std::filesystem::exists(path)) return {};
   try {
     dem::SavedRun saved = dem::read_run(path);
-    if (saved.settings == dem::settings_text(c) && saved.result.seed == seed) return std::move(saved.result);
+    if (course_of(saved.settings) == course_of(dem::settings_text(c)) && saved.result.seed == seed) return saved;
   } catch (const data::InputError&) {  // damaged, or of another version: made again
   }
   return {};
 }
 
+/// Whether the run has ended as this case's would.
+bool ended(const dem::SavedRun& saved, const dem::Case& c) {
+  // A run that failed fails again: it depends on its point, seed and settings alone.
+  return saved.result.status != dem::RunStatus::interrupted && saved.settings == dem::settings_text(c);
+}
+
 }  // namespace
+
+bool is_done(const Workspace& workspace, const Point& point, const std::string& path) {
+  const dem::Case c = case_at(workspace, point);
+  const std::optional<dem::SavedRun> before = earlier(path, c, run_seed(workspace, point));
+  return before && ended(*before, c);
+}
 
 dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options) {
   const dem::Case c = case_at(workspace, point);
   const std::uint64_t seed = run_seed(workspace, point);
-  const std::optional<dem::RunResult> before = earlier(options.path, c, seed);
-  // A run that failed fails again: it depends on its point, seed and settings alone.
-  if (before && before->status != dem::RunStatus::interrupted) return *before;
+  std::optional<dem::SavedRun> before = earlier(options.path, c, seed);
+  if (before && ended(*before, c)) return before->result;
 
   dem::RunOptions run{.threads = options.threads, .stop = options.stop, .progress = options.progress};
   run.checkpoint = [&](const dem::Checkpoint& checkpoint) {
@@ -36,9 +65,11 @@ dem::RunResult run_point(const Workspace& workspace, const Point& point, const P
     so_far.diagnostics.isa = dem::isa();
     dem::write_run(options.path, c, so_far);
   };
-  if (before) run.resume = &before->checkpoint;
+  if (before && before->result.status != dem::RunStatus::failed && !before->result.checkpoint.state.position.empty())
+    run.resume = &before->result.checkpoint;
   dem::RunResult result = dem::run(c, seed, run);
-  if (result.status == dem::RunStatus::done && !options.keep_state) result.checkpoint = {};
+  const bool steady = result.status == dem::RunStatus::done && result.summary.state == dem::Steady::yes;
+  if (steady && !options.keep_state) result.checkpoint = {};
   dem::write_run(options.path, c, result);
   return result;
 }

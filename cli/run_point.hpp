@@ -12,12 +12,16 @@ namespace cli {
 struct PointRun {
   std::string path;  ///< of the run's file
   int threads = 1;
-  bool keep_state = true;  ///< the finished run's file holds its last state, to look at or go on from
+  bool keep_state = true;  ///< a steady run's file holds its last state too, to look at; another's always does
   std::stop_token stop = {};
   std::function<void(const dem::RunProgress&)> progress = {};
 };
 
-/// The result, which the file holds too. A file of another point, seed or setting is replaced.
+/// Whether the file holds this run, ended as it would end now.
+bool is_done(const Workspace& workspace, const Point& point, const std::string& path);
+
+/// The result, which the file holds too. A finished run of which the study now wants more, or less, goes on from its
+/// last state or is cut short: to the same bits as a new one. A file of another point, seed or setting is replaced.
 dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options);
 
 }  // namespace cli

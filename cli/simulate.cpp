@@ -23,11 +23,17 @@ struct Options {
 
 nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
   const dem::Derived derived = dem::derive(case_at(workspace, point));
-  nlohmann::json json{
-      {"material", point.material},    {"seed", workspace.study.seed},
-      {"isa", result.diagnostics.isa}, {"settings", settings_hash(workspace, point.material)},
-      {"bond_number", derived.bond},   {"time_step", {{"s", derived.time_step}, {"from", derived.duration_of}}},
-      {"warnings", result.warnings}};
+  nlohmann::json json{{"material", point.material},
+                      {"seed", workspace.study.seed},
+                      {"isa", result.diagnostics.isa},
+                      {"settings", settings_hash(workspace, point.material)},
+                      {"bond_number", derived.bond},
+                      {"time_step", {{"s", derived.time_step}, {"from", derived.duration_of}}},
+                      {"warnings", result.warnings},
+                      {"state", dem::name_of(result.summary.state)},
+                      {"why", result.summary.why},
+                      {"ordering", result.summary.ordering},
+                      {"measured", {{"from_s", result.summary.measured_from}, {"turns", result.summary.turns}}}};
   for (const dem::ContactKind& kind : derived.kinds)
     json["contacts"].push_back({{"between", {kind.first, kind.second}},
                                 {"pull_off_N", kind.pull_off},
@@ -43,7 +49,8 @@ nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem
     const data::Output& output = workspace.study.outputs[i];
     json["outputs"][output.name] = {{"unit", output.unit.symbol},
                                     {"mean", std::stod(output.unit.digits(row.outputs[i]))},  // as a table has it
-                                    {"standard_error", row.standard_errors[i] / output.unit.factor}};
+                                    {"standard_error", row.standard_errors[i] / output.unit.factor},
+                                    {"reliable", dem::output(result, output.name).reliable}};
   }
   return json;
 }
@@ -52,12 +59,15 @@ std::string summary(const Workspace& workspace, const Point& point, const dem::R
   const dem::Case c = case_at(workspace, point);
   std::string text;
   for (const std::string& line : dem::describe(c, dem::derive(c))) text += line + "\n";
-  text += fmt::format("{:.3g} s of turning\n", result.diagnostics.simulated);
+  const dem::Summary& s = result.summary;
+  text += fmt::format("{}: measured from {:.3g} to {:.3g} s of turning, {:.3g} turns\n", dem::name_of(s.state),
+                      s.measured_from, result.diagnostics.simulated, s.turns);
   const data::RunRow row = to_row(workspace, point, result);
   for (std::size_t i = 0; i < row.outputs.size(); ++i) {
     const data::Output& output = workspace.study.outputs[i];
-    text += fmt::format("  {:<20} {:>10.4g} +- {:.2g} {}\n", output.name, output.unit.from_si(row.outputs[i]),
-                        row.standard_errors[i] / output.unit.factor, output.unit.symbol);
+    text += fmt::format("  {:<20} {:>10.4g} +- {:.2g} {}{}\n", output.name, output.unit.from_si(row.outputs[i]),
+                        row.standard_errors[i] / output.unit.factor, output.unit.symbol,
+                        dem::output(result, output.name).reliable ? "" : " (too short to know this error)");
   }
   for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
   return text;

@@ -33,11 +33,22 @@ struct Ledger {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   data::RunTable table;
-  std::size_t finished = 0;
+  std::size_t finished = 0, unsteady = 0;
   std::vector<bool> ended;  ///< per point of the campaign: finished or failed
   std::vector<std::string> failures, warnings;
   std::exception_ptr error;
 };
+
+/// Adds the row, or puts it where an earlier, shorter run of the point stands.
+void put_row(data::RunTable& table, data::RunRow row) {
+  const std::string key = data::row_key(row);
+  for (data::RunRow& there : table.rows) {
+    if (data::row_key(there) != key) continue;
+    there = std::move(row);
+    return;
+  }
+  table.rows.push_back(std::move(row));
+}
 
 /// One worker: takes points until there are none, or the campaign is to stop.
 void work(const Workspace& workspace, const Campaign& campaign, Ledger& ledger, data::Progress& progress,
@@ -45,9 +56,8 @@ void work(const Workspace& workspace, const Campaign& campaign, Ledger& ledger, 
   try {
     for (std::size_t i = ledger.next++; i < campaign.points.size() && !stop.stop_requested(); i = ledger.next++) {
       const Point& point = campaign.points[i];
-      const std::string path = (fs::path(workspace.out) / "runs" / (run_name(workspace, point) + ".h5")).string();
-      const dem::RunResult result =
-          run_point(workspace, point, {.path = path, .keep_state = false, .stop = stop.get_token()});
+      const dem::RunResult result = run_point(
+          workspace, point, {.path = run_path(workspace, point), .keep_state = false, .stop = stop.get_token()});
       if (result.status == dem::RunStatus::interrupted) return;
       const std::string what = fmt::format("{} {}", point.material, describe(workspace.study, point));
       const std::lock_guard lock(ledger.mutex);
@@ -56,7 +66,8 @@ void work(const Workspace& workspace, const Campaign& campaign, Ledger& ledger, 
         ledger.failures.push_back(what + ": " + result.reason);
         progress.note("failed: " + ledger.failures.back());
       } else {
-        ledger.table.rows.push_back(to_row(workspace, point, result));
+        put_row(ledger.table, to_row(workspace, point, result));
+        if (result.summary.state != dem::Steady::yes) ++ledger.unsteady;
         write_tables(workspace, ledger.table);
         ++ledger.finished;
       }
@@ -91,8 +102,8 @@ Action add_train(CLI::App& program) {
     make_out(workspace, "runs");
     TrainingRows rows = training_rows(workspace);
     for (const std::string& note : rows.notes) say(common, "note: " + note);
-    const std::size_t before = rows.table.rows.size();
-    const Campaign campaign = plan_campaign(workspace, rows.table, options->runs);
+    const std::size_t before = rows.all.rows.size();
+    const Campaign campaign = plan_campaign(workspace, rows.all, options->runs);
     write_design(workspace, campaign.points);
     if (campaign.points.empty())
       say(common, fmt::format("nothing is missing: the table has {} runs. For more of them: --runs N", before));
@@ -101,7 +112,7 @@ Action add_train(CLI::App& program) {
                               campaign.continues ? ", left by an unfinished campaign" : "", before));
 
     Ledger ledger;
-    ledger.table = std::move(rows.table);
+    ledger.table = std::move(rows.all);
     ledger.ended.assign(campaign.points.size(), false);
     write_tables(workspace, ledger.table);
     std::stop_source stop;
@@ -125,6 +136,7 @@ Action add_train(CLI::App& program) {
     print_json(common, {{"finished", ledger.finished},
                         {"failed", ledger.failures},
                         {"warnings", ledger.warnings},
+                        {"unsteady", ledger.unsteady},
                         {"rows", ledger.table.rows.size()},
                         {"table", table}});
     if (interrupt.interrupted()) {
@@ -133,7 +145,13 @@ Action add_train(CLI::App& program) {
       return data::ExitStatus::interrupted;
     }
     say(common, fmt::format("{} new runs, {} in all: {}", ledger.finished, ledger.table.rows.size(), table));
-    return ledger.failures.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
+    if (workspace.unsteady == Unsteady::use) ledger.unsteady = 0;  // they were asked for
+    if (ledger.unsteady > 0)
+      say(common,
+          fmt::format("warning: {} of the new runs are not of the steady flow and train nothing (training.unsteady "
+                      "= \"use\" takes them)",
+                      ledger.unsteady));
+    return ledger.failures.empty() && ledger.unsteady == 0 ? data::ExitStatus::done : data::ExitStatus::warning;
   };
 }
 

@@ -87,6 +87,9 @@ Workspace open_workspace(const Common& common) {
         file.root().child("outputs").problem(output.name, fmt::format("the simulation has no output '{}'", output.name),
                                              "choose one of: " + dem::output_names());
   }
+  workspace.unsteady = file.root().child("training").choice("unsteady", {"leave_out", "use"}, "leave_out") == "use"
+                           ? Unsteady::use
+                           : Unsteady::leave_out;
   file.finish();
   workspace.out = fs::absolute(common.out.empty() ? study.name : common.out).lexically_normal().string();
   return workspace;
@@ -113,9 +116,29 @@ void make_out(const Workspace& workspace, const std::string& subfolder) {
         {(out / subfolder).string(), "cannot be made: " + failure.message(), "give another folder with --out DIR"});
 }
 
+namespace {
+
+void leave_out_unsteady(const Workspace& workspace, TrainingRows& rows) {
+  if (workspace.unsteady == Unsteady::use) return;
+  std::map<std::string, int> left_out;
+  std::erase_if(rows.table.rows, [&](const data::RunRow& row) {
+    const bool unsteady = data::is_unsteady(row);
+    if (unsteady) ++left_out[row.state];
+    return unsteady;
+  });
+  for (const auto& [state, count] : left_out)
+    rows.notes.push_back(fmt::format(
+        "{} of {} runs are not of the steady flow ({}) and are left out: raise run.longest and train again, "
+        "or set training.unsteady = \"use\"",
+        count, rows.all.rows.size(), state));
+  for (std::string& note : data::drop_unreliable(rows.table)) rows.notes.push_back(std::move(note));
+}
+
+}  // namespace
+
 TrainingRows training_rows(const Workspace& workspace) {
   const data::Study& study = workspace.study;
-  TrainingRows result{data::empty_table(study), {}, {}};
+  TrainingRows result{data::empty_table(study), {}, {}, {}};
   std::map<std::string, std::string> settings;
   for (const auto& [material, unused] : workspace.cases) settings[material] = settings_hash(workspace, material);
   const auto add = [&](const std::string& path) {
@@ -131,11 +154,13 @@ TrainingRows training_rows(const Workspace& workspace) {
           fmt::format("{}: {} of {} rows were simulated under other settings than the study's and are left out (demcal "
                       "train makes them again)",
                       path, stale, read.table.rows.size()));
-    result.table = data::merge(result.table, usable);
+    result.all = data::merge(result.all, usable);
   };
   if (!study.training.table.empty()) add(study.training.table);
   const std::string own = (fs::path(workspace.out) / "training.h5").string();
   if (fs::exists(own)) add(own);
+  result.table = result.all;
+  leave_out_unsteady(workspace, result);
   if (!study.training.low.empty()) {
     data::TableRead read = data::read_table(study.training.low, study);
     for (std::string& left_out : read.left_out) result.notes.push_back(std::move(left_out));

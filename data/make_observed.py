@@ -2,7 +2,7 @@
 """Remakes the synthetic torque series of a shipped study: python3 data/make_observed.py FOLDER [DEMCAL]
 
 FOLDER/observed/truth.toml says the truth of each material and how it is observed. Each point is the mean of `demcal
-simulate` of the study with several seeds that no training run uses; its error is that of the runs or of their scatter,
+simulate` of the study, of the steady flow, with several seeds that no training run uses; its error is that of the runs or of their scatter,
 whichever is larger, as runs scatter more than one run's own error says. Then measurement noise of a stated share of torque is added, from a
 seeded generator and with the same standard normal draws at every share. The standard error that is written is that of
 the measurement and of the simulated mean together. Runs are kept in ./observed-runs, so that a second start is quick.
@@ -33,7 +33,10 @@ def simulate(truth, name, point, rpm, seed):
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode not in (0, 2):  # 2: done, with a warning
         sys.exit(f"{' '.join(command)}\n{done.stderr}")
-    torque = json.loads(done.stdout)["outputs"]["torque"]
+    result = json.loads(done.stdout)
+    if result["state"] != "steady":
+        sys.exit(f"{name} at {rpm} rpm, seed {seed}: {result['state']}: {result['why']} (truth.toml: longest)")
+    torque = result["outputs"]["torque"]
     return torque["mean"], torque["standard_error"]
 
 

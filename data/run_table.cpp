@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <set>
 
 #include "data/run_table_files.hpp"
@@ -37,6 +38,26 @@ RunTable merge(const RunTable& first, const RunTable& second) {
     merged.rows.push_back(row);
   }
   return merged;
+}
+
+bool is_unsteady(const RunRow& row) { return !row.state.empty() && row.state != "steady"; }
+
+std::vector<std::string> drop_unreliable(RunTable& table) {
+  std::vector<std::string> notes;
+  for (std::size_t i = 0; i < table.outputs.size(); ++i) {
+    const std::string name = fmt::format(" {} ", table.outputs[i].name);
+    std::size_t dropped = 0;
+    for (RunRow& row : table.rows) {
+      if (fmt::format(" {} ", row.unreliable).find(name) == std::string::npos) continue;
+      row.outputs[i] = row.standard_errors[i] = std::numeric_limits<double>::quiet_NaN();
+      ++dropped;
+    }
+    if (dropped > 0)
+      notes.push_back(
+          fmt::format("{} of {} runs are too short to know the error of {}: they count for the other outputs", dropped,
+                      table.rows.size(), table.outputs[i].name));
+  }
+  return notes;
 }
 
 TableRead read_table(const std::string& path, const Study& study) {

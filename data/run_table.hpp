@@ -24,7 +24,11 @@ struct RunRow {
   std::string isa;                      ///< instruction set that made it
   std::string origin;                   ///< program and version, or file and line
   double cpu_seconds = 0.0;
+  std::string state;       ///< "steady", or why the means are not those of the steady flow; "" where nobody said
+  std::string unreliable;  ///< outputs whose errors are not known, by name, separated by spaces
 };
+/// Whether the row says of itself that it is not of the steady flow.
+bool is_unsteady(const RunRow& row);
 
 struct RunTable {
   std::vector<Column> parameters;
@@ -41,6 +45,9 @@ std::string row_key(const RunRow& row);
 
 /// Rows of `first`, then those of `second` whose key is not there yet.
 RunTable merge(const RunTable& first, const RunTable& second);
+
+/// Makes the outputs NaN whose errors the rows call unreliable; says how many of each.
+std::vector<std::string> drop_unreliable(RunTable& table);
 
 /// Reads .h5 or .csv with the study's columns, in any column order. CSV rows with NaN or an empty cell among the
 /// inputs, or in every output, are left out; one that lacks some of the outputs (NaN in the row) is kept. Both are

@@ -1,5 +1,5 @@
 // The run table as CSV, in the study's units:
-//   friction,cohesion,speed,torque,torque_se[,material,seed,settings,isa,origin,cpu_seconds]
+//   friction,cohesion,speed,torque,torque_se[,material,seed,settings,isa,origin,cpu_seconds,state,unreliable]
 // SI numbers go through the unit and back without losing a bit: v = (si - offset) / factor is taken to long double,
 // written with as few digits as read back to the same `si`, and read in long double again. Our own files state their
 // number of rows in the head ("# rows: 80"), so that one that was cut off is found out.
@@ -52,7 +52,7 @@ void check_whole(const Csv& csv, const std::string& text) {
 
 struct Columns {
   std::vector<std::size_t> inputs, outputs, errors;
-  std::optional<std::size_t> material, seed, settings, isa, origin, cpu_seconds;
+  std::optional<std::size_t> material, seed, settings, isa, origin, cpu_seconds, state, unreliable;
 };
 
 Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) {
@@ -69,6 +69,8 @@ Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) 
   at.isa = csv.find("isa");
   at.origin = csv.find("origin");
   at.cpu_seconds = csv.find("cpu_seconds");
+  at.state = csv.find("state");
+  at.unreliable = csv.find("unreliable");
   return at;
 }
 
@@ -159,6 +161,8 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     if (at.isa) row.isa = line.fields[*at.isa];
     row.origin = at.origin ? line.fields[*at.origin] : fmt::format("{}:{}", file_name, line.line);
     if (at.cpu_seconds) row.cpu_seconds = csv.number(line, *at.cpu_seconds);
+    if (at.state) row.state = line.fields[*at.state];
+    if (at.unreliable) row.unreliable = line.fields[*at.unreliable];
     table.rows.push_back(std::move(row));
   }
   return result;
@@ -180,7 +184,7 @@ void write_table_csv(const std::string& path, const RunTable& table, const Study
   }
   text += fmt::format("# units: {}; NAME_se: the standard error of NAME; cpu_seconds [s]\n# rows: {}\n", units,
                       table.rows.size());
-  text += header + "material,seed,settings,isa,origin,cpu_seconds\n";
+  text += header + "material,seed,settings,isa,origin,cpu_seconds,state,unreliable\n";
   for (const RunRow& row : table.rows) {
     for (std::size_t i = 0; i < row.inputs.size(); ++i) {
       const bool parameter = i < table.parameters.size();
@@ -193,8 +197,9 @@ void write_table_csv(const std::string& path, const RunTable& table, const Study
       difference.offset = 0.0;
       text += text_of(row.standard_errors.at(i), difference) + ',';
     }
-    text += fmt::format("{},{},{},{},{},{}\n", csv_field(row.material), row.seed, csv_field(row.settings),
-                        csv_field(row.isa), csv_field(row.origin), shortest(row.cpu_seconds));
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_field(row.material), row.seed, csv_field(row.settings),
+                        csv_field(row.isa), csv_field(row.origin), shortest(row.cpu_seconds), csv_field(row.state),
+                        csv_field(row.unreliable));
   }
   write_atomically(path, text);
 }

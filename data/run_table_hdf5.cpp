@@ -1,7 +1,7 @@
 // training.h5: one dataset per column, SI.
 //   /                 attributes format, version, demcal, study, rows, complete (set last)
 //   /parameters/NAME  /controls/NAME  /outputs/NAME  /standard_errors/NAME   attributes "SI unit", "study unit"
-//   /runs/            material, seed, settings, isa, origin, cpu_seconds
+//   /runs/            material, seed, settings, isa, origin, cpu_seconds, state, unreliable
 #include <fmt/format.h>
 
 #include "data/atomic_file.hpp"
@@ -97,7 +97,7 @@ void write_table_hdf5(const std::string& path, const RunTable& table, const Stud
       write_column(errors, table.outputs[i],
                    column_of(table, [i](const RunRow& row) { return row.standard_errors.at(i); }));
     }
-    std::vector<std::string> materials, settings, isas, origins;
+    std::vector<std::string> materials, settings, isas, origins, states, unreliable;
     std::vector<std::uint64_t> seeds;
     for (const RunRow& row : table.rows) {
       materials.push_back(row.material);
@@ -105,12 +105,16 @@ void write_table_hdf5(const std::string& path, const RunTable& table, const Stud
       settings.push_back(row.settings);
       isas.push_back(row.isa);
       origins.push_back(row.origin);
+      states.push_back(row.state);
+      unreliable.push_back(row.unreliable);
     }
     runs.write_texts("material", materials);
     runs.write("seed", seeds);
     runs.write_texts("settings", settings);
     runs.write_texts("isa", isas);
     runs.write_texts("origin", origins);
+    runs.write_texts("state", states);
+    runs.write_texts("unreliable", unreliable);
     runs.write("cpu_seconds", column_of(table, [](const RunRow& row) { return row.cpu_seconds; }));
     runs.set("unit", "s", "cpu_seconds");
     root.set("complete", std::int64_t{1});
@@ -153,6 +157,10 @@ TableRead read_table_hdf5(const std::string& path, const Study& study) {
   const auto settings = checked(runs, "settings", runs.read_texts("settings"), rows);
   const auto isas = checked(runs, "isa", runs.read_texts("isa"), rows);
   const auto origins = checked(runs, "origin", runs.read_texts("origin"), rows);
+  const auto texts_or_none = [&](const char* name) {  // tables of older versions have no such column
+    return runs.has(name) ? checked(runs, name, runs.read_texts(name), rows) : std::vector<std::string>(rows);
+  };
+  const auto states = texts_or_none("state"), unreliable = texts_or_none("unreliable");
   const auto seconds = checked(runs, "cpu_seconds", runs.read<double>("cpu_seconds").values, rows);
   for (std::size_t r = 0; r < rows; ++r) {
     RunRow& row = table.rows[r];
@@ -162,6 +170,8 @@ TableRead read_table_hdf5(const std::string& path, const Study& study) {
     row.isa = isas[r];
     row.origin = origins[r];
     row.cpu_seconds = seconds[r];
+    row.state = states[r];
+    row.unreliable = unreliable[r];
   }
   return result;
 }

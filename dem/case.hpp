@@ -122,13 +122,14 @@ struct RunControl {
   double overlap_limit = 0.1;       ///< of a radius; a deeper contact ends the run, half as deep is counted
   double skin = 0.12;               ///< of the neighbour list, in diameters
   double settle = 0.08;             ///< s, filling comes to rest before the tool turns
-  double start_up = 0.2;            ///< s of turning dropped at least, before means are taken
+  double start_up = 0.2;            ///< s of turning dropped at least, before means are taken, and
+  double start_up_turns = 0.25;     ///< turns at least
   double sample_interval = 0.2e-3;  ///< s between samples; each is the mean over the steps since the last
   double window = 20e-3;            ///< s, torque_fluctuation is the deviation of torque averaged over it
   double standard_error = 0.02;     ///< wanted relative standard error of the mean torque
   double shortest = 0.3;            ///< s of measured turning at least, and
-  double shortest_turns = 0.25;     ///< turns at least
-  double longest = 1.4;             ///< s of turning at most, start-up included
+  double shortest_turns = 2.0;      ///< turns at least
+  double longest = 6.0;             ///< s of turning at most, start-up included
 };
 
 struct Case {

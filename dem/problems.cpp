@@ -153,6 +153,25 @@ void check_restitution(const Case& c, const Derived& d, Found& found) {
   }
 }
 
+/// Sample, window and length of a run, each against the next.
+void check_times(const Case& c, Found& found) {
+  const RunControl& r = c.run;
+  constexpr double windows = 8.0;  // for a fluctuation
+  if (!(r.sample_interval <= r.window))
+    found.push_back({"run.sample_interval",
+                     fmt::format("is {:g} s, longer than run.window, {:g} s, of which samples are parts",
+                                 r.sample_interval, r.window),
+                     "shorten it, or lengthen the window"});
+  if (!(r.longest > r.start_up))
+    found.push_back({"run.longest", fmt::format("leaves nothing to measure after the start-up of {:g} s", r.start_up),
+                     "make it longer"});
+  else if (!(windows * r.window <= (r.longest - r.start_up) * (1.0 + 1e-9)))
+    found.push_back({"run.window",
+                     fmt::format("is {:g} s, of which fewer than {:g} are in the {:g} s from start_up to longest",
+                                 r.window, windows, r.longest - r.start_up),
+                     "shorten it, or lengthen run.longest"});
+}
+
 }  // namespace
 
 std::vector<data::Problem> problems(const Case& c) {
@@ -176,8 +195,7 @@ std::vector<data::Problem> problems(const Case& c) {
           "make it longer, or the minimum separation shorter");
     }
   }
-  if (!(c.run.longest > c.run.start_up))
-    add("run.longest", "leaves nothing to measure after the start-up", "make it longer");
+  check_times(c, found);
   if (c.run.time_step) {
     if (!(*c.run.time_step <= d.contact_duration / 15.0))
       add("run.time_step",

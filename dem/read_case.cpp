@@ -151,6 +151,7 @@ void read_run(const Section& s, RunControl& r) {
   r.skin = s.number("skin", {.low = 0.01, .high = 1.0}, r.skin);
   r.settle = s.quantity("settle", "s", data::non_negative, r.settle);
   r.start_up = s.quantity("start_up", "s", data::non_negative, r.start_up);
+  r.start_up_turns = s.number("start_up_turns", data::non_negative, r.start_up_turns);
   r.sample_interval = s.quantity("sample_interval", "s", data::positive, r.sample_interval);
   r.window = s.quantity("window", "s", data::positive, r.window);
   r.shortest = s.quantity("shortest", "s", data::positive, r.shortest);

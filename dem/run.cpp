@@ -10,7 +10,9 @@
 
 #include "data/error.hpp"
 #include "dem/isa.hpp"
+#include "dem/order.hpp"
 #include "dem/rig.hpp"
+#include "dem/summary.hpp"
 #include "dem/target.hpp"
 
 namespace dem {
@@ -30,65 +32,19 @@ std::uint64_t steps_in(double duration, double time_step) {
 
 /// The run's plan in whole steps.
 struct Plan {
-  std::uint64_t settle, sample, start_up, shortest, longest, check;  ///< steps; start_up and on count from turning
+  std::uint64_t settle = 0, sample = 1, check = 1;  ///< all but settle count from turning
+  LookRule rule;
 };
 
 Plan make_plan(const Case& c, const Derived& d, const Sensor& sensor) {
   const RunControl& r = c.run;
   const double dt = d.time_step;
-  Plan p{};
+  Plan p;
   p.sample = std::max<std::uint64_t>(1, steps_in(r.sample_interval, dt));
   p.settle = steps_in(r.settle, dt);
-  p.start_up = steps_in(r.start_up, dt);
-  p.longest = std::max(steps_in(r.longest, dt), p.start_up + p.sample);
-  p.shortest = std::min(p.longest, p.start_up + steps_in(std::max(r.shortest, r.shortest_turns * sensor.period), dt));
   p.check = std::max<std::uint64_t>(1, steps_in(check_interval, dt) / p.sample) * p.sample;
+  p.rule = look_rule(r, static_cast<double>(p.sample) * dt, sensor.period);
   return p;
-}
-
-std::span<const double> after(const Series& series, const std::vector<double>& values, double start_up) {
-  const auto first = std::upper_bound(series.time.begin(), series.time.end(), start_up) - series.time.begin();
-  return std::span(values).subspan(static_cast<std::size_t>(first));
-}
-
-/// Deviation of the window means; the error is that of independent windows.
-data::SeriesMean fluctuation(std::span<const double> torque, std::size_t dropped, std::size_t window) {
-  std::vector<double> means;
-  for (std::size_t at = dropped; at + window <= torque.size(); at += window) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < window; ++k) sum += torque[at + k];
-    means.push_back(sum / static_cast<double>(window));
-  }
-  data::SeriesMean result;
-  const double n = static_cast<double>(means.size());
-  result.effective_samples = n;
-  result.dropped = dropped;
-  result.reliable = means.size() >= 8;
-  if (means.size() < 2) {
-    result.mean = result.standard_error = std::numeric_limits<double>::quiet_NaN();
-    return result;
-  }
-  double mean = 0.0, square = 0.0;
-  for (const double m : means) mean += m / n;
-  for (const double m : means) square += (m - mean) * (m - mean);
-  result.mean = std::sqrt(square / (n - 1.0));
-  result.standard_error = result.mean / std::sqrt(2.0 * (n - 1.0));
-  result.sd = result.standard_error * std::sqrt(n);
-  return result;
-}
-
-Summary summarise(const Case& c, const Series& s) {
-  Summary summary;
-  const double start = c.run.start_up;
-  const std::span<const double> torque = after(s, s.torque, start);
-  const data::SeriesMean mean = data::mean_with_error(torque);
-  const auto window = static_cast<std::size_t>(std::max(1.0, std::round(c.run.window / c.run.sample_interval)));
-  summary.mean = {mean, fluctuation(torque, mean.dropped, window)};
-  for (const std::vector<double>* values : {&s.axial_flow, &s.coordination, &s.kinetic_energy, &s.normal_stress}) {
-    summary.mean.push_back(data::mean_with_error(after(s, *values, start)));
-  }
-  summary.reached_target = mean.standard_error <= c.run.standard_error * std::abs(mean.mean);
-  return summary;
 }
 
 /// What does not change from sample to sample.
@@ -98,24 +54,50 @@ struct Sampling {
 };
 
 void take_sample(const Sampling& of, const Simulation& simulation, std::uint64_t turning_steps, Checkpoint& now) {
-  const Sensor& sensor = of.sensor;
   const double n = static_cast<double>(now.under_way.steps),
                spheres = static_cast<double>(simulation.state().particles());
-  const double momentum = dot(sensor.flow_axis, simulation.momentum());
   Series& s = now.series;
   s.time.push_back(static_cast<double>(turning_steps) * simulation.setup().time_step);
   s.torque.push_back(now.under_way.torque / n);
-  s.axial_flow.push_back(momentum / sensor.flow_length);
+  s.axial_flow.push_back(now.under_way.flow / n / of.sensor.flow_length);
   s.coordination.push_back(2.0 * now.under_way.contacts / n / spheres);
-  s.kinetic_energy.push_back(simulation.kinetic_energy());
+  s.kinetic_energy.push_back(now.under_way.kinetic_energy / n);
   s.normal_stress.push_back(now.under_way.virial / n / (3.0 * of.solid_volume));
   now.under_way.steps = 0;
   now.under_way.torque = now.under_way.contacts = now.under_way.virial = 0.0;
+  now.under_way.flow = now.under_way.kinetic_energy = 0.0;
   if (!std::isfinite(s.kinetic_energy.back() + s.torque.back())) {
     throw Fault(
         fmt::format("the kinetic energy or torque is not a number at {:.6g} s (a contact too stiff for the time step)",
                     simulation.time()));
   }
+}
+
+void look_at_bed(const Simulation& simulation, const Box& box, std::uint64_t turning_steps, Series& s) {
+  const double time = static_cast<double>(turning_steps) * simulation.setup().time_step;
+  s.look_time.push_back(time);
+  s.bond_order.push_back(bond_order(simulation.state(), box));
+}
+
+void cut(Series& s, std::size_t samples) {
+  for (std::vector<double>* values :
+       {&s.time, &s.torque, &s.axial_flow, &s.coordination, &s.kinetic_energy, &s.normal_stress})
+    values->resize(std::min(values->size(), samples));
+  const auto looks = std::upper_bound(s.look_time.begin(), s.look_time.end(), s.time.empty() ? 0.0 : s.time.back());
+  s.bond_order.resize(static_cast<std::size_t>(looks - s.look_time.begin()));
+  s.look_time.erase(looks, s.look_time.end());
+}
+
+RunProgress progress_of(const Series& s, const Plan& plan) {
+  RunProgress now;
+  const double done = static_cast<double>(s.time.size());
+  now.fraction = done / static_cast<double>(plan.rule.longest);
+  now.simulated = s.time.empty() ? 0.0 : s.time.back();
+  if (s.time.size() <= plan.rule.start_up) return now;
+  const data::SeriesMean mean = data::mean_with_error(std::span(s.torque).subspan(plan.rule.start_up));
+  now.torque = mean.mean;
+  now.relative_error = mean.standard_error / std::abs(mean.mean);
+  return now;
 }
 
 }  // namespace
@@ -150,6 +132,8 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   const Sensor sensor = rig.sensor;
   const Sampling sampling{sensor, solid_volume(rig.grains, rig.position.size())};
   const Plan plan = make_plan(c, d, sensor);
+  const Box box{rig.low, rig.high, rig.periodic};
+  Looks looks = begin_looks(plan.rule);
   RunResult result;
   result.seed = seed;
   result.diagnostics.derived = d;
@@ -175,7 +159,8 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
       kept = now;
       kept.state = simulation.state();
     };
-    bool done = false;
+    take_looks(plan.rule, now.series, looks);  // those of before the restart
+    bool done = looks.ended;
     Checkpoint good;
     keep(good);
     try {
@@ -192,23 +177,19 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
         now.under_way.torque += dot(sensor.torque_axis, sums.body[sensor.body].torque);
         now.under_way.contacts += static_cast<double>(sums.contacts);
         now.under_way.virial += sums.virial;
+        now.under_way.flow += dot(sensor.flow_axis, simulation.carried().momentum);
+        now.under_way.kinetic_energy += simulation.carried().kinetic_energy;
         now.under_way.deep_contacts += sums.deep;
         now.under_way.max_overlap = std::max(now.under_way.max_overlap, sums.max_overlap);
-        if (turning % plan.sample == 0) take_sample(sampling, simulation, turning, now);
-        if (turning % plan.check == 0 || turning >= plan.longest) {
+        if (turning % plan.sample == 0) {
+          take_sample(sampling, simulation, turning, now);
+          take_looks(plan.rule, now.series, looks);
+          done = done || looks.ended;
+        }
+        if (turning % plan.check == 0) {
+          look_at_bed(simulation, box, turning, now.series);
           keep(good);
-          double torque = 0.0, error = 1.0;
-          if (turning > plan.start_up) {
-            const data::SeriesMean mean = data::mean_with_error(after(now.series, now.series.torque, c.run.start_up));
-            torque = mean.mean;
-            error = mean.standard_error / std::abs(mean.mean);
-            if (turning >= plan.shortest && error <= c.run.standard_error) done = true;
-          }
-          if (turning >= plan.longest) done = true;
-          if (options.progress) {
-            options.progress({static_cast<double>(turning) / static_cast<double>(plan.longest),
-                              static_cast<double>(turning) * d.time_step, torque, error});
-          }
+          if (options.progress) options.progress(progress_of(now.series, plan));
         }
         if (options.checkpoint && look % 256 == 0 &&
             std::chrono::duration<double>(Clock::now() - saved).count() > options.checkpoint_interval) {
@@ -232,8 +213,13 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
     result.reason = fault.what();
   }
 
+  if (looks.ended && looks.next < now.series.time.size()) {  // a longer run is cut to what this case asks for
+    cut(now.series, looks.next);
+    now.state = {};
+  }
   result.series = now.series;
-  result.summary = summarise(c, now.series);
+  if (looks.last.count == 0) looks.last = measure(plan.rule, now.series, now.series.time.size());
+  result.summary = summarise(c, sensor.period, now.series, looks);
   result.summary.cpu_seconds = now.under_way.cpu_seconds;
   Diagnostics& g = result.diagnostics;
   g.deep_contacts = now.under_way.deep_contacts;
@@ -242,6 +228,7 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   if (result.summary.cpu_seconds > 0.0) {
     g.steps_per_second = static_cast<double>(g.steps) * static_cast<double>(d.spheres) / result.summary.cpu_seconds;
   }
+  if (result.status == RunStatus::done) result.warnings = warnings_of(c, result.summary);
   if (g.deep_contacts > 0) {
     result.warnings.push_back(fmt::format(
         "{} contact-steps overlap by more than {:g} of a radius, half of run.overlap_limit (largest {:.3g}): raise {}",

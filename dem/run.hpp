@@ -1,7 +1,8 @@
 #pragma once
 // One run of a case: fill, settle, turn, sample until the mean torque is known well enough.
 //
-// Samples are means over the steps since the last one, so that nothing aliases; those of the settling are not kept.
+// Every sample is the mean over the steps since the last one, so that nothing aliases; those of the settling are not
+// kept.
 //   torque              N m, what the drive must supply: minus the powder's moment on the mixer about its axis,
 //                       positive when the powder resists (a rig from STL says which mesh: dem/stl_rig.hpp)
 //   torque_fluctuation  N m, standard deviation of the torque averaged over windows of RunControl::window; its error is
@@ -12,7 +13,7 @@
 //   kinetic_energy      J, translation and rotation, of the whole box
 //   normal_stress       Pa, sum over sphere contacts of normal force * distance of the centres / (3 * volume of the
 //                       spheres): the mean pressure divided by the solid fraction
-// Means drop `start_up`, and beyond it what the truncation rule of data/time_series.hpp drops.
+// What of the series is measured, and when the run has been long enough, is in dem/looks.hpp.
 #include <cstdint>
 #include <functional>
 #include <stop_token>
@@ -23,6 +24,7 @@
 #include "data/time_series.hpp"
 #include "dem/case.hpp"
 #include "dem/derived.hpp"
+#include "dem/looks.hpp"
 #include "dem/state.hpp"
 
 namespace dem {
@@ -34,6 +36,8 @@ struct Series {
   std::vector<double> coordination;    ///< 1
   std::vector<double> kinetic_energy;  ///< J
   std::vector<double> normal_stress;   ///< Pa
+  std::vector<double> look_time;       ///< s, of the looks at the bed, each 0.05 s
+  std::vector<double> bond_order;      ///< 1, dem/order.hpp, at a look
 };
 
 struct Output {
@@ -57,15 +61,21 @@ struct Diagnostics {
 };
 
 struct Summary {
-  std::vector<data::SeriesMean> mean;  ///< in the order of outputs()
+  std::vector<data::SeriesMean> mean;  ///< in the order of outputs(); each with its own `reliable`
   double cpu_seconds = 0.0;
-  bool reached_target = false;  ///< the wanted standard error was reached before `longest`
+  bool reached_target = false;     ///< the standard error of torque is the wanted one or smaller
+  Steady state = Steady::unclear;  ///< whether the means are those of the steady flow
+  std::string why;                 ///< it is not steady: what drifts or lacks, and the remedy
+  double measured_from = 0.0;      ///< s of turning, the start of what is measured
+  double turns = 0.0;              ///< measured
+  std::vector<double> drift_p;     ///< of torque, coordination, kinetic energy (dem/looks.hpp)
+  std::string ordering;            ///< how the bed ordered; empty when it did not
 };
 
 /// What a run has summed since its last sample, and over all.
 struct Progressing {
   std::uint64_t steps = 0;  ///< in the sample under way
-  double torque = 0.0, contacts = 0.0, virial = 0.0;
+  double torque = 0.0, contacts = 0.0, virial = 0.0, flow = 0.0, kinetic_energy = 0.0;
   std::uint64_t deep_contacts = 0;
   double max_overlap = 0.0;
   double cpu_seconds = 0.0;

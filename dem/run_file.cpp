@@ -14,7 +14,7 @@
 namespace dem {
 namespace {
 
-constexpr std::int64_t format = 2;
+constexpr std::int64_t format = 3;
 
 /// Calls visit(name, vector) for each vector of the state; rows are plain data.
 template <class AnyState, class Visit>
@@ -91,6 +91,8 @@ void each_series(AnySeries& s, Visit&& visit) {
   visit("coordination", "1", s.coordination);
   visit("kinetic_energy", "J", s.kinetic_energy);
   visit("normal_stress", "Pa", s.normal_stress);
+  visit("look_time", "s", s.look_time);
+  visit("bond_order", "1", s.bond_order);
 }
 
 void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
@@ -110,7 +112,8 @@ void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
   each_pooled(history, memory, write);
   const Progressing& p = now.under_way;
   group.write("under_way", std::vector<double>{static_cast<double>(p.steps), p.torque, p.contacts, p.virial,
-                                               static_cast<double>(p.deep_contacts), p.max_overlap, p.cpu_seconds});
+                                               static_cast<double>(p.deep_contacts), p.max_overlap, p.cpu_seconds,
+                                               p.flow, p.kinetic_energy});
 }
 
 Checkpoint read_checkpoint(const data::Hdf5Group& group) {
@@ -136,10 +139,18 @@ Checkpoint read_checkpoint(const data::Hdf5Group& group) {
   now.state.history = unpooled(history);
   now.state.wall_memory = unpooled(memory);
   const std::vector<double> p = group.read<double>("under_way").values;
-  if (p.size() != 7)
+  if (p.size() != 9)
     throw data::InputError(data::ExitStatus::bad_data,
-                           {group.place("under_way"), "does not have 7 numbers", "start the run again"});
-  now.under_way = {static_cast<std::uint64_t>(p[0]), p[1], p[2], p[3], static_cast<std::uint64_t>(p[4]), p[5], p[6]};
+                           {group.place("under_way"), "does not have 9 numbers", "start the run again"});
+  now.under_way = {.steps = static_cast<std::uint64_t>(p[0]),
+                   .torque = p[1],
+                   .contacts = p[2],
+                   .virial = p[3],
+                   .flow = p[7],
+                   .kinetic_energy = p[8],
+                   .deep_contacts = static_cast<std::uint64_t>(p[4]),
+                   .max_overlap = p[5],
+                   .cpu_seconds = p[6]};
   return now;
 }
 
@@ -168,6 +179,27 @@ void write_diagnostics(const data::Hdf5Group& group, const Diagnostics& g) {
   group.set("spheres", static_cast<std::int64_t>(d.spheres));
   group.set("rebuilds", static_cast<std::int64_t>(g.rebuilds));
   group.set("threads", static_cast<std::int64_t>(g.threads));
+}
+
+void write_state(const data::Hdf5Group& group, const Summary& s) {
+  group.set("reached_target", static_cast<std::int64_t>(s.reached_target));
+  group.set("state", std::string(name_of(s.state)));
+  group.set("why", s.why);
+  group.set("ordering", s.ordering);
+  group.set("measured_from_s", s.measured_from);
+  group.set("turns", s.turns);
+  group.write("drift_p", s.drift_p);
+}
+
+void read_state(const data::Hdf5Group& group, Summary& s) {
+  s.reached_target = group.integer("reached_target") != 0;
+  for (const Steady state : {Steady::yes, Steady::drifting, Steady::unclear})
+    if (group.text("state") == name_of(state)) s.state = state;
+  s.why = group.text("why");
+  s.ordering = group.text("ordering");
+  s.measured_from = group.number("measured_from_s");
+  s.turns = group.number("turns");
+  s.drift_p = group.read<double>("drift_p").values;
 }
 
 }  // namespace
@@ -211,7 +243,7 @@ void write_run(const std::string& path, const Case& c, const RunResult& result) 
     constexpr std::array<const char*, 7> heads{
         "mean", "standard_error", "sd", "integrated_time", "effective_samples", "dropped", "reliable"};
     for (std::size_t j = 0; j < heads.size(); ++j) summary.write(heads[j], columns[j]);
-    summary.set("reached_target", static_cast<std::int64_t>(result.summary.reached_target));
+    write_state(summary, result.summary);
     write_diagnostics(file.create_group("diagnostics"), result.diagnostics);
     write_checkpoint(file.create_group("checkpoint"), result.checkpoint);
     file.flush();
@@ -245,7 +277,7 @@ SavedRun read_run(const std::string& path) {
     r.summary.mean.push_back(
         {mean[k], error[k], sd[k], time[k], samples[k], static_cast<std::size_t>(dropped[k]), reliable[k] != 0.0});
   }
-  r.summary.reached_target = summary.integer("reached_target") != 0;
+  read_state(summary, r.summary);
   r.checkpoint = read_checkpoint(file.group("checkpoint"));
   r.checkpoint.series = r.series;
   Diagnostics& g = r.diagnostics;

@@ -3,7 +3,9 @@
 //
 // /            attributes: format, demcal, isa, created, seed, status, reason, settings (text of settings_text), ...
 // /series      time and one dataset per sampled output, each with a `unit`
-// /summary     per output: mean, standard_error, integrated_time, effective_samples, dropped (columns), `names`
+// /summary     per output: mean, standard_error, integrated_time, effective_samples, dropped, reliable (columns),
+//              `names`; attributes state ("steady", "drifting" or "short"), why, ordering, measured_from_s, turns;
+//              drift_p of torque, coordination and kinetic energy
 // /diagnostics attributes, SI
 // /checkpoint  the state, to go on from; bytes as they are in memory, so only for the same build
 #include <string>

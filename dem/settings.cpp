@@ -58,6 +58,7 @@ std::string settings_text(const Case& c) {
   text.number("run.skin", r.skin, "1");
   text.number("run.settle", r.settle, "s");
   text.number("run.start_up", r.start_up, "s");
+  text.number("run.start_up_turns", r.start_up_turns, "1");
   text.number("run.sample_interval", r.sample_interval, "s");
   text.number("run.window", r.window, "s");
   text.number("run.standard_error", r.standard_error, "1");

@@ -154,6 +154,7 @@ void Simulation::integrate() {
     const Four step{dt, dt, dt, 0.0}, fourth{0.0, 0.0, 0.0, 1.0};
     const Four gravity{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z, 0.0};
     Four late{};  // force * (v*(n) - v(n)) and the same of torque and spin
+    Four momentum{}, twice_energy{};
     double farthest = 0.0, fastest = 0.0;
     for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
       HalfRow& half = s.half[i];
@@ -175,17 +176,26 @@ void Simulation::integrate() {
       farthest = d2 <= farthest ? farthest : d2;  // a NaN stays and forces a rebuild, which reports it
       const Four speeds = velocity * velocity;
       fastest = std::max(fastest, speeds[0] + speeds[1] + speeds[2]);
+      const double radius = s.position[i].radius;
+      momentum += motion.mass * velocity;
+      twice_energy += motion.mass * (speeds + (0.4 * radius * radius) * (spin * spin));
       four(load.force.x) = fourth * four(load.force.x);
       four(load.torque.x) = fourth * torque;
     }
-    chunk_steps_[c] = {farthest, fastest, late[0] + late[1] + late[2]};
+    chunk_steps_[c] = {farthest,
+                       fastest,
+                       late[0] + late[1] + late[2],
+                       {three(momentum), 0.5 * (twice_energy[0] + twice_energy[1] + twice_energy[2])}};
   });
   max_displacement2_ = 0.0;
+  carried_ = {};
   double fastest2 = 0.0;
   for (const ChunkStep& moved : chunk_steps_) {
     fastest2 = std::max(fastest2, moved.speed2);
     max_displacement2_ = moved.displacement2 <= max_displacement2_ ? max_displacement2_ : moved.displacement2;
     s.dissipated += dt * moved.late_power;
+    carried_.momentum += moved.carried.momentum;
+    carried_.kinetic_energy += moved.carried.kinetic_energy;
   }
   fastest_ = std::sqrt(fastest2);
   ++s.step;

@@ -62,6 +62,12 @@ struct Energy {
   double total() const { return translation + rotation + gravity + elastic + attraction; }
 };
 
+/// What all spheres carried in the last step, at its half, where leapfrog has their velocities.
+struct Carried {
+  Vec3 momentum;                ///< kg m/s
+  double kinetic_energy = 0.0;  ///< J, translation and rotation
+};
+
 /// The grid along which rows are sorted: x outermost, z innermost.
 struct Cells {
   Vec3 low, size;  ///< m, origin and edge lengths of one cell
@@ -91,6 +97,7 @@ class Simulation {
   void restore(State state);
   double time() const { return static_cast<double>(state_.step) * setup_.time_step; }  ///< s
   const StepSums& sums() const { return sums_; }
+  const Carried& carried() const { return carried_; }
   double kinetic_energy() const;  ///< J, translation and rotation
   Energy energy() const;
   Vec3 momentum() const;  ///< kg m/s
@@ -138,11 +145,13 @@ class Simulation {
   double fastest_ = 0.0;            ///< m/s, of all spheres in the last step
   double watched_speed_ = 0.0;      ///< m/s, that pairs out of range count on while they sleep
   StepSums sums_;
+  Carried carried_;
   std::vector<StepSums> chunk_sums_;
   struct ChunkStep {
     double displacement2 = 0.0;  ///< m2, since the rebuild
     double speed2 = 0.0;         ///< m2/s2
     double late_power = 0.0;     ///< W, of the loads on v*(n) less that on v(n), which are known only after the forces
+    Carried carried;
   };
   std::vector<ChunkStep> chunk_steps_;
   Team team_;

@@ -27,7 +27,7 @@ def demcal(program, case, folder, seconds, cores, *more):
     out = folder / "demcal"
     shutil.rmtree(out, ignore_errors=True)
     command = [program, "simulate", case, "--out", out, "--quiet", "--json", "--threads", cores, *more]
-    for key, value in {"start_up": 0.25 * seconds, "shortest": 0.5 * seconds, "longest": seconds}.items():
+    for key, value in {"start_up": 0.25 * seconds, "shortest": seconds, "longest": seconds, "window": 0.05 * seconds}.items():
         command += ["--set", f"run.{key}={value:.9g} s"]
     return run(command, folder, cores)
 
@@ -147,7 +147,7 @@ def answer(program, options, folder):
     time, with the time step that its users take, a fiftieth of the contact's duration."""
     case = make_slice(1, folder)
     ours = run([program, "simulate", case, "--out", folder / "demcal", "--quiet", "--json", "--set", "training.standard_error=0.02",
-                "--set", "run.start_up=0.2 s", "--set", "run.shortest=0.3 s", "--set", "run.longest=5 s"], folder, 1)
+                "--set", "run.longest=8 s"], folder, 1)
     result = json.loads((folder / "log").read_text())
     found, duration = result["outputs"]["torque"], min(pair["duration_s"] for pair in result["contacts"])
     simulated = read_attribute(folder / "demcal/run.h5", "/diagnostics/simulated_s")

@@ -95,8 +95,11 @@ TEST_CASE("training runs are interrupted, go on where they were, and give the ta
           "[slow]") {
   const std::string study = DEMCAL_SOURCE_DIR "/data/quick";
   const Folder whole, halted;
-  const std::vector<std::string> arguments{"train", study,         "--runs", "3",
-                                           "--set", "rig.fill=60", "--set",  "run.longest=\"0.3 s\""};
+  const std::vector<std::string> arguments{"train",  study,
+                                           "--runs", "3",
+                                           "--set",  "rig.fill=60",
+                                           "--set",  "run.longest=\"0.4 s\"",
+                                           "--set",  "training.unsteady=\"use\""};
   CHECK(whole.demcal(arguments).status == 0);
   CHECK(halted.demcal(arguments, "quick/runs").status == 75);
   const auto rest = halted.demcal(arguments);
@@ -141,7 +144,8 @@ TEST_CASE("shipped rows and an observed point come out again", "[slow]") {
 TEST_CASE("a run with another instruction set is recorded as such and gives the same") {
   const Folder folder;
   std::vector<std::string> few{"--set", "run.start_up=\"0.004 s\"", "--set", "run.shortest=\"0.008 s\"",
-                               "--set", "run.shortest_turns=0",     "--set", "run.longest=\"0.01 s\""};
+                               "--set", "run.shortest_turns=0",     "--set", "run.longest=\"0.01 s\"",
+                               "--set", "run.window=\"0.6 ms\""};
   nlohmann::json widest = simulate(folder, few);
   few.insert(few.end(), {"--isa", "x86-64"});
   nlohmann::json least = simulate(folder, few);

@@ -35,6 +35,8 @@ data::RunTable random_table(const data::Study& study, std::size_t rows) {
     row.isa = "x86-64-v3";
     row.origin = "demcal 0.1.0, \"quoted\"";
     row.cpu_seconds = random.uniform(1.0, 30.0);
+    row.state = i % 3 == 0 ? "" : i % 3 == 1 ? "steady" : "drifting";
+    row.unreliable = i % 2 == 0 ? "" : "torque_fluctuation axial_flow";
     table.rows.push_back(row);
   }
   return table;
@@ -52,6 +54,8 @@ void check_same(const data::RunTable& a, const data::RunTable& b) {
     CHECK(a.rows[i].isa == b.rows[i].isa);
     CHECK(a.rows[i].origin == b.rows[i].origin);
     CHECK(a.rows[i].cpu_seconds == b.rows[i].cpu_seconds);
+    CHECK(a.rows[i].state == b.rows[i].state);
+    CHECK(a.rows[i].unreliable == b.rows[i].unreliable);
   }
 }
 
@@ -234,4 +238,32 @@ TEST_CASE("the key of a row tells material, point, seed and settings apart, and 
   CHECK(data::row_key(row) == data::row_key(same));
   same.material = "carrier";
   CHECK(data::row_key(row) != data::row_key(same));
+}
+
+TEST_CASE("an output whose error is not known is dropped from its row by its whole name, and said") {
+  data::RunTable table;
+  table.outputs = {{"torque", {}}, {"torque_fluctuation", {}}};
+  data::RunRow row;
+  row.outputs = {1.0, 2.0};
+  row.standard_errors = {0.1, 0.2};
+  table.rows = {row, row};
+  table.rows[1].unreliable = "coordination torque_fluctuation";
+  const std::vector<std::string> notes = data::drop_unreliable(table);
+  CHECK(table.rows[0].outputs[1] == 2.0);
+  CHECK(table.rows[1].outputs[0] == 1.0);
+  CHECK(std::isnan(table.rows[1].outputs[1]));
+  CHECK(std::isnan(table.rows[1].standard_errors[1]));
+  REQUIRE(notes.size() == 1);
+  CHECK_THAT(notes[0], Catch::Contains("1 of 2 runs") && Catch::Contains("torque_fluctuation"));
+}
+
+TEST_CASE("a row is unsteady where it says so, and not where nobody looked") {
+  data::RunRow row;
+  CHECK_FALSE(data::is_unsteady(row));
+  row.state = "steady";
+  CHECK_FALSE(data::is_unsteady(row));
+  row.state = "drifting";
+  CHECK(data::is_unsteady(row));
+  row.state = "short";
+  CHECK(data::is_unsteady(row));
 }

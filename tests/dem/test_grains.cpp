@@ -162,6 +162,7 @@ TEST_CASE("a mixture runs to its torque, and its coordination and stress are tho
   c.run.settle = 0.04;
   c.run.start_up = 0.02;
   c.run.shortest = c.run.longest = 0.06;
+  c.run.window = 5e-3;
   const dem::RunResult result = dem::run(c, 2);
   REQUIRE(result.status == dem::RunStatus::done);
   const double coordination = dem::output(result, "coordination").mean;

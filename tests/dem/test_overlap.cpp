@@ -16,6 +16,7 @@ dem::Case pinched() {
   c.run.settle = 0.02;
   c.run.start_up = 0.01;
   c.run.shortest = c.run.longest = 0.05;
+  c.run.window = 5e-3;
   return c;
 }
 
@@ -61,7 +62,8 @@ TEST_CASE("overlaps beyond half the limit are counted in a warning that says wha
   c.run.overlap_limit = 1.5 * result.diagnostics.max_overlap;
   const dem::RunResult warned = dem::run(c, 1);
   CHECK(warned.series.torque == result.series.torque);  // the limit does not change a run
-  REQUIRE(warned.warnings.size() == 1);
-  CHECK_THAT(warned.warnings[0], Catch::Contains("half of run.overlap_limit") && Catch::Contains("contact.stiffness"));
+  REQUIRE(!warned.warnings.empty());
+  CHECK_THAT(warned.warnings.back(),
+             Catch::Contains("half of run.overlap_limit") && Catch::Contains("contact.stiffness"));
   CHECK(warned.diagnostics.deep_contacts > 0);
 }

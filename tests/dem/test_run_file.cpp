@@ -97,6 +97,7 @@ TEST_CASE("a run file gives back the run, and its checkpoint goes on with the sa
   c.run.start_up = 0.01;
   c.run.shortest = 0.01;
   c.run.longest = 0.03;
+  c.run.window = 2e-3;
   const dem::RunResult whole = dem::run(c, 9);
   std::stop_source stop;
   dem::RunOptions options;
@@ -121,6 +122,115 @@ TEST_CASE("a run file gives back the run, and its checkpoint goes on with the sa
   CHECK(resumed.series.torque == whole.series.torque);
   CHECK(resumed.series.time == whole.series.time);
   CHECK(resumed.summary.mean[0].mean == whole.summary.mean[0].mean);
+  CHECK(resumed.series.axial_flow == whole.series.axial_flow);
+  CHECK(resumed.series.kinetic_energy == whole.series.kinetic_energy);
+}
+
+TEST_CASE("a finished run goes on to more turns, or is cut to fewer, with the bits of a run of that length") {
+  const TemporaryFolder folder;
+  dem::Case longer;
+  longer.rig.fill = 200.0;
+  longer.material.diameter = 1.6e-3;
+  longer.rig.trough_radius = 8e-3;
+  longer.contact.stiffness = 400.0;
+  longer.run.settle = 0.02;
+  longer.run.start_up = 0.01;
+  longer.run.longest = 0.12;
+  longer.run.window = 2e-3;
+  dem::Case brief = longer;
+  brief.run.longest = 0.04;
+  const dem::RunResult whole = dem::run(longer, 4), part = dem::run(brief, 4);
+  const std::string path = folder.path("run.h5");
+  dem::write_run(path, longer, whole);
+  dem::write_run(folder.path("brief.h5"), brief, part);
+  const auto continued = [](const dem::Case& c, const std::string& from) {
+    const dem::SavedRun saved = dem::read_run(from);
+    dem::RunOptions resume;
+    resume.resume = &saved.result.checkpoint;
+    return dem::run(c, 4, resume);
+  };
+  const dem::RunResult grown = continued(longer, folder.path("brief.h5")), cut = continued(brief, path);
+  CHECK(grown.series.torque == whole.series.torque);
+  CHECK(grown.series.bond_order == whole.series.bond_order);
+  CHECK(cut.series.torque == part.series.torque);
+  CHECK(cut.series.look_time == part.series.look_time);
+  for (std::size_t k = 0; k < dem::outputs().size(); ++k) {
+    INFO(dem::outputs()[k].name);
+    CHECK(grown.summary.mean[k].mean == whole.summary.mean[k].mean);
+    CHECK(grown.summary.mean[k].standard_error == whole.summary.mean[k].standard_error);
+    CHECK(cut.summary.mean[k].mean == part.summary.mean[k].mean);
+    CHECK(cut.summary.mean[k].standard_error == part.summary.mean[k].standard_error);
+  }
+  CHECK(cut.checkpoint.state.position.empty());  // what is left of it is no state of that time
+}
+
+TEST_CASE("every output's sample is the mean over its interval: ten short ones make a long one") {
+  dem::Case fine;
+  fine.rig.fill = 200.0;
+  fine.material.diameter = 1.6e-3;
+  fine.rig.trough_radius = 8e-3;
+  fine.contact.stiffness = 400.0;
+  fine.run.settle = 0.02;
+  fine.run.start_up = 0.01;
+  fine.run.longest = 0.05;
+  fine.run.window = 4e-3;
+  fine.run.time_step = 1e-5;
+  fine.run.sample_interval = 2e-4;
+  dem::Case coarse = fine;
+  coarse.run.sample_interval = 2e-3;
+  const dem::Series a = dem::run(fine, 5).series, b = dem::run(coarse, 5).series;
+  REQUIRE(b.time.size() >= 20);
+  REQUIRE(a.time.size() >= 10 * b.time.size());
+  for (const auto values : {&dem::Series::torque, &dem::Series::axial_flow, &dem::Series::coordination,
+                            &dem::Series::kinetic_energy, &dem::Series::normal_stress}) {
+    for (std::size_t k = 0; k < b.time.size(); ++k) {
+      double mean = 0.0;
+      for (std::size_t j = 0; j < 10; ++j) mean += 0.1 * (a.*values)[10 * k + j];
+      CHECK((b.*values)[k] == Approx(mean).epsilon(1e-9).margin(1e-18));
+    }
+  }
+}
+
+TEST_CASE("a run too short to be steady, or to know its error, says so in its result, its warnings and its file") {
+  const TemporaryFolder folder;
+  dem::Case c;
+  c.rig.fill = 200.0;
+  c.material.diameter = 1.6e-3;
+  c.rig.trough_radius = 8e-3;
+  c.contact.stiffness = 400.0;
+  c.run.settle = 0.02;
+  c.run.start_up = 0.01;
+  c.run.longest = 0.03;
+  c.run.window = 2e-3;
+  const dem::RunResult run = dem::run(c, 6);
+  CHECK(run.status == dem::RunStatus::done);
+  CHECK(run.summary.state == dem::Steady::unclear);
+  REQUIRE(!run.warnings.empty());
+  CHECK_THAT(run.warnings[0], Catch::Contains("fewer than run.shortest_turns") && Catch::Contains("run.longest"));
+  const std::string path = folder.path("run.h5");
+  dem::write_run(path, c, run);
+  const dem::Summary back = dem::read_run(path).result.summary;
+  CHECK(back.state == run.summary.state);
+  CHECK(back.why == run.summary.why);
+  CHECK(back.drift_p == run.summary.drift_p);
+  CHECK(back.measured_from == run.summary.measured_from);
+  CHECK(back.turns == run.summary.turns);
+}
+
+TEST_CASE("sample, window and length of a run that do not fit into each other are refused, each by name") {
+  const auto said = [](double sample, double window, double longest) {
+    dem::Case c;
+    c.run.sample_interval = sample;
+    c.run.window = window;
+    c.run.longest = longest;
+    std::string all;
+    for (const data::Problem& p : dem::problems(c)) all += p.place + " " + p.what + "; ";
+    return all;
+  };
+  CHECK_THAT(said(10.0, 0.02, 0.3), Catch::Contains("run.sample_interval is 10 s, longer than run.window"));
+  CHECK_THAT(said(1e-3, 0.5, 1.0), Catch::Contains("run.window is 0.5 s, of which fewer than 8"));
+  CHECK_THAT(said(1e-3, 0.02, 0.1), Catch::Contains("run.longest leaves nothing to measure"));
+  CHECK_THAT(said(1e-3, 0.02, 1.0), !Catch::Contains("run.sample") && !Catch::Contains("run.window"));
 }
 
 TEST_CASE("a run file that is cut short, or is something else, is refused by name") {

@@ -22,6 +22,7 @@ dem::Case small_case() {
   c.run.start_up = 0.02;
   c.run.shortest = 0.03;
   c.run.longest = 0.05;
+  c.run.window = 3e-3;
   return c;
 }
 

@@ -56,6 +56,7 @@ settle = "20 ms"
 start_up = "10 ms"
 shortest = "10 ms"
 longest = "30 ms"
+window = "2 ms"
 )";
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

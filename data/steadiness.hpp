@@ -1,0 +1,30 @@
+#pragma once
+// Whether a series is stationary, and its mean with an error that is true for a correlated one.
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "data/time_series.hpp"
+
+namespace data {
+
+struct SteadinessOptions {
+  std::size_t fewest_modes = 8;  ///< of the error's degrees of freedom; with fewer, the series is too short
+  std::size_t most_modes = 16;   ///< so that the error sees the slowest motion alone
+};
+
+struct Steadiness {
+  SeriesMean mean;        ///< `reliable`: there are `fewest_modes`
+  std::size_t modes = 0;  ///< of which the error is made
+  double drift_p = 1.0;   ///< how often a stationary series has as much power in its slowest two modes
+};
+
+/// Of a series from which the start-up is gone already. Throws nothing; a series that is too short is not reliable.
+Steadiness steadiness(std::span<const double> series, const SteadinessOptions& options = {});
+
+/// Whether series of the same span are steady together, with a chance of `level` to call steady ones drifting however
+/// they depend on each other: each p is compared with level / number (Bonferroni).
+bool drifts(std::span<const double> p, double level);
+
+}  // namespace data

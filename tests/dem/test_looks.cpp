@@ -1,0 +1,137 @@
+// The stopping rule on series of known mean: torque, coordination and kinetic energy as autoregressive series.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "data/random.hpp"
+#include "dem/run.hpp"
+
+namespace {
+
+constexpr double tau = 12.0;  // samples
+
+std::vector<double> autoregressive(std::size_t n, std::uint32_t index, std::uint32_t which) {
+  const double phi = (tau - 1.0) / (tau + 1.0);
+  data::RandomStream random(31 + which, data::Purpose::test, index);
+  std::vector<double> x(n);
+  double value = random.normal();
+  for (double& out : x) {
+    out = value;
+    value = phi * value + std::sqrt(1.0 - phi * phi) * random.normal();
+  }
+  return x;
+}
+
+/// Means of 1 with relative deviations of a sample of 0.3 (torque), 0.02, 0.1; the torque falls by `fall` in all.
+dem::Series flow(std::size_t n, std::uint32_t index, double fall = 0.0) {
+  dem::Series s;
+  s.torque = autoregressive(n, index, 0);
+  s.coordination = autoregressive(n, index, 1);
+  s.kinetic_energy = autoregressive(n, index, 2);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double part = static_cast<double>(k) / static_cast<double>(n);
+    s.time.push_back(1e-3 * static_cast<double>(k + 1));
+    s.torque[k] = 1.0 + 0.3 * s.torque[k] - fall * part;
+    s.coordination[k] = 1.0 + 0.02 * s.coordination[k] + 0.7 * fall * part;
+    s.kinetic_energy[k] = 1.0 + 0.1 * s.kinetic_energy[k];
+  }
+  return s;
+}
+
+const dem::LookRule rule{.start_up = 200, .shortest = 600, .longest = 8000, .standard_error = 0.03};
+
+dem::Looks looks_at(const dem::Series& s) {
+  dem::Looks looks = dem::begin_looks(rule);
+  dem::take_looks(rule, s, looks);
+  return looks;
+}
+
+}  // namespace
+
+TEST_CASE("means of steady runs, stopped by looking at their errors, scatter by the errors stated") {
+  double square = 0.0, bias = 0.0;
+  int drifting = 0, stopped = 0;
+  const int runs = 800;
+  for (int i = 0; i < runs; ++i) {
+    const dem::Looks looks = looks_at(flow(rule.longest, static_cast<std::uint32_t>(i)));
+    const double z = (looks.last.torque.mean - 1.0) / looks.last.torque.standard_error;
+    square += z * z / runs;
+    bias += z / runs;
+    drifting += looks.last.state == dem::Steady::drifting;
+    stopped += looks.next < rule.longest;
+  }
+  INFO("sd of mean over error " << std::sqrt(square) << ", mean " << bias << ", drifting " << drifting << ", stopped "
+                                << stopped << " of " << runs);
+  CHECK(std::sqrt(square) > 0.9);
+  CHECK(std::sqrt(square) < 1.15);
+  CHECK(std::abs(bias) < 0.12);  // three deviations of that mean
+  CHECK(drifting <= 0.05 * runs);
+  CHECK(stopped > 0.95 * runs);
+}
+
+TEST_CASE("a bed that orders all along, torque down by a quarter and coordination up, is never called steady") {
+  int steady = 0;
+  for (int i = 0; i < 200; ++i)
+    steady += looks_at(flow(rule.longest, static_cast<std::uint32_t>(i), 0.25)).last.state == dem::Steady::yes;
+  CHECK(steady == 0);
+}
+
+TEST_CASE("a start-up longer than the least one is dropped") {
+  int steady = 0, clear = 0;
+  const int runs = 200;
+  for (int i = 0; i < runs; ++i) {
+    dem::Series s = flow(rule.longest, static_cast<std::uint32_t>(i));
+    for (std::size_t k = 0; k < s.time.size(); ++k)
+      s.coordination[k] += 0.1 * std::exp(-1e-3 * static_cast<double>(k) / 0.2);
+    const dem::Looks looks = looks_at(s);
+    steady += looks.last.state == dem::Steady::yes;
+    clear += std::abs(looks.last.torque.mean - 1.0) < 3.0 * looks.last.torque.standard_error;
+  }
+  CHECK(steady > 0.95 * runs);
+  CHECK(clear > 0.97 * runs);
+}
+
+TEST_CASE("a run is judged alike whether its series comes at once, sample by sample, or longer than it was needed") {
+  const dem::Series whole = flow(rule.longest, 3);
+  const dem::Looks at_once = looks_at(whole);
+  dem::Looks one_by_one = dem::begin_looks(rule);
+  dem::Series growing;
+  for (std::size_t k = 0; k < whole.time.size() && !one_by_one.ended; ++k) {
+    growing.time.push_back(whole.time[k]);
+    growing.torque.push_back(whole.torque[k]);
+    growing.coordination.push_back(whole.coordination[k]);
+    growing.kinetic_energy.push_back(whole.kinetic_energy[k]);
+    dem::take_looks(rule, growing, one_by_one);
+  }
+  CHECK(one_by_one.ended);
+  CHECK(at_once.next == one_by_one.next);
+  CHECK(at_once.last.torque.mean == one_by_one.last.torque.mean);
+  CHECK(at_once.last.torque.standard_error == one_by_one.last.torque.standard_error);
+  CHECK(growing.time.size() == at_once.next);
+}
+
+TEST_CASE("turns and seconds count, whichever are more") {
+  dem::RunControl run;
+  run.start_up = 0.2;
+  run.start_up_turns = 0.25;
+  run.shortest = 0.3;
+  run.shortest_turns = 2.0;
+  run.longest = 5.0;
+  const dem::LookRule slow = dem::look_rule(run, 1e-3, 1.2), fast = dem::look_rule(run, 1e-3, 0.1),
+                      still = dem::look_rule(run, 1e-3, 0.0);
+  CHECK(slow.start_up == 300);
+  CHECK(slow.shortest == 2400);
+  CHECK(fast.start_up == 200);
+  CHECK(fast.shortest == 300);
+  CHECK(still.shortest == 300);
+  CHECK(slow.longest == 5000);
+}
+
+TEST_CASE("a run that ends before its turns are done says so") {
+  dem::LookRule brief = rule;
+  brief.longest = 500;
+  dem::Looks looks = dem::begin_looks(brief);
+  dem::take_looks(brief, flow(500, 1), looks);
+  CHECK(looks.ended);
+  CHECK(looks.last.state == dem::Steady::unclear);
+  CHECK(dem::name_of(looks.last.state) == "short");
+}
