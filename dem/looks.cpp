@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "dem/order.hpp"
 #include "dem/run.hpp"
 
 namespace dem {
@@ -17,6 +19,17 @@ std::size_t samples_in(double duration, double time) {
 
 std::size_t grown(std::size_t count, double by) {
   return static_cast<std::size_t>(std::llround(std::ceil(static_cast<double>(count) * by)));
+}
+
+/// Over the looks at the bed while these samples were taken.
+double bonds_rise(const Series& s, std::size_t first, std::size_t count) {
+  if (count == 0 || first + count > s.time.size()) return 0.0;
+  const auto from = std::lower_bound(s.look_time.begin(), s.look_time.end(), s.time[first]) - s.look_time.begin();
+  const auto to =
+      std::upper_bound(s.look_time.begin(), s.look_time.end(), s.time[first + count - 1]) - s.look_time.begin();
+  if (to <= from) return 0.0;
+  const auto at = static_cast<std::size_t>(from), looks = static_cast<std::size_t>(to - from);
+  return ordering_rise(std::span(s.look_time).subspan(at, looks), std::span(s.bond_order).subspan(at, looks));
 }
 
 }  // namespace
@@ -48,13 +61,14 @@ Measured measure(const LookRule& rule, const Series& series, std::size_t samples
       here.drift_p.push_back(s.drift_p);
       known.push_back(s.mean.reliable ? s.drift_p : 1.0);
     }
-    const bool moves = data::drifts(here.drift_p, drift_level);
+    here.bonds_rise = bonds_rise(series, here.first, count);
+    const bool moves = data::drifts(here.drift_p, drift_level) || here.bonds_rise > 0.0;
     if (!here.torque.reliable || count < rule.shortest)
       here.state = Steady::unclear;
     else if (!moves)
       here.state = Steady::yes;
     else
-      here.state = data::drifts(known, drift_level) ? Steady::drifting : Steady::unclear;
+      here.state = data::drifts(known, drift_level) || here.bonds_rise > 0.0 ? Steady::drifting : Steady::unclear;
     if (cut == 0 || here.state == Steady::yes) found = std::move(here);
     if (found.state == Steady::yes || !moves) break;
   }

@@ -6,6 +6,7 @@
 // goes in steps of a tenth of it, up to half (P. Heidelberger, P. D. Welch, Oper. Res. 31 (1983) 1109), until torque,
 // coordination and kinetic energy do not drift. Each is tested by data/steadiness.hpp, and together they call a steady
 // run drifting with a chance of `drift_level` at most.
+// A bed whose bonds align meanwhile (dem/order.hpp) is not steady either, however steady its torque seems.
 // Measured are run.shortest and run.shortest_turns at least.
 //
 // Looks. The first comes when the shortest measurement is done, each next one when half as much again is (1983, alike).
@@ -49,6 +50,7 @@ struct Measured {
   std::size_t first = 0, count = 0;  ///< samples measured: first ... first + count - 1
   data::SeriesMean torque;
   std::vector<double> drift_p;  ///< of torque, coordination, kinetic energy
+  double bonds_rise = 0.0;      ///< of the bond order meanwhile, 0 where none is seen
 };
 /// Of the first `samples` samples.
 Measured measure(const LookRule& rule, const Series& series, std::size_t samples);

@@ -130,4 +130,25 @@ double bond_order(const State& state, const Box& box) {
   return pairs > 0.0 ? sum / pairs : 0.0;
 }
 
+double ordering_rise(std::span<const double> time, std::span<const double> bond_order) {
+  const auto n = static_cast<double>(time.size());
+  if (time.size() < 5) return 0.0;
+  double t = 0.0, b = 0.0, tt = 0.0, tb = 0.0, rest = 0.0;
+  for (std::size_t k = 0; k < time.size(); ++k) {
+    t += time[k] / n;
+    b += bond_order[k] / n;
+  }
+  for (std::size_t k = 0; k < time.size(); ++k) {
+    tt += (time[k] - t) * (time[k] - t);
+    tb += (time[k] - t) * (bond_order[k] - b);
+  }
+  const double slope = tb / tt, span = time.back() - time.front();
+  for (std::size_t k = 0; k < time.size(); ++k) {
+    const double off = bond_order[k] - b - slope * (time[k] - t);
+    rest += off * off;
+  }
+  const double error = std::sqrt(rest / (n - 2.0) / tt);
+  return slope * span >= least_rise && slope >= 3.5 * error ? slope * span : 0.0;
+}
+
 }  // namespace dem

@@ -7,6 +7,8 @@
 #include <limits>
 #include <span>
 
+#include "dem/order.hpp"
+
 namespace dem {
 namespace {
 
@@ -53,24 +55,20 @@ double mean_between(const std::vector<double>& time, const std::vector<double>& 
   return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// A bed orders when spheres touch more of each other and bonds align: between the first and the last quarter of what
-/// comes after the start-up.
+/// What changed between the first and the last quarter of all that comes after the start-up, where bonds align.
 std::string ordering_of(const Series& s, double start_up) {
-  if (s.time.empty()) return {};
+  const auto first = std::upper_bound(s.look_time.begin(), s.look_time.end(), start_up) - s.look_time.begin();
+  const auto at = static_cast<std::size_t>(first);
+  if (!(ordering_rise(std::span(s.look_time).subspan(at), std::span(s.bond_order).subspan(at)) > 0.0)) return {};
   const double end = s.time.back(), part = 0.25 * (end - start_up), far = std::numeric_limits<double>::infinity();
   const auto change = [&](const std::vector<double>& time, const std::vector<double>& values) {
-    return std::pair{mean_between(time, values, start_up, start_up + part),
-                     mean_between(time, values, end - part, far)};
+    return fmt::format("{:.3g} -> {:.3g}", mean_between(time, values, start_up, start_up + part),
+                       mean_between(time, values, end - part, far));
   };
-  const auto [few, many] = change(s.time, s.coordination);
-  const auto [loose, aligned] = change(s.look_time, s.bond_order);
-  const auto [before, after] = change(s.time, s.torque);
-  if (!(many > (1.0 + ordering_coordination) * few && aligned > loose + ordering_bonds)) return {};
   return fmt::format(
-      "the bed orders: coordination {:.3g} -> {:.3g}, bond order {:.2g} -> {:.2g}, torque {:.4g} -> {:.4g} N m from "
-      "the "
-      "first to the last quarter of {:.3g} s",
-      few, many, loose, aligned, before, after, end - start_up);
+      "the bed orders: bond order {}, coordination {}, torque {} N m from the first to the last quarter of "
+      "{:.3g} s",
+      change(s.look_time, s.bond_order), change(s.time, s.coordination), change(s.time, s.torque), end - start_up);
 }
 
 std::string why_not(const Case& c, const Measured& m, double turns) {
@@ -89,6 +87,8 @@ std::string why_not(const Case& c, const Measured& m, double turns) {
     if (m.drift_p[k] < each)
       drifting += fmt::format("{}{} (p {:.1g})", drifting.empty() ? "" : ", ", names[k], m.drift_p[k]);
   }
+  if (m.bonds_rise > 0.0)
+    drifting += fmt::format("{}bond order (by {:.2g})", drifting.empty() ? "" : ", ", m.bonds_rise);
   return fmt::format("by run.longest, {:g} s, still drift {}", c.run.longest, drifting);
 }
 

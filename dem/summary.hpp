@@ -4,9 +4,6 @@
 
 namespace dem {
 
-/// A bed has ordered when its coordination rose by this share and its bond order by so much.
-inline constexpr double ordering_coordination = 0.04, ordering_bonds = 0.02;
-
 /// Of a run whose looks are these; all but the processor time.
 Summary summarise(const Case& c, double turn, const Series& series, const Looks& looks);
 

@@ -51,7 +51,7 @@ TEST_CASE("the mean of a correlated series scatters by its stated error") {
 TEST_CASE("three steady series are called drifting in at most 5 of 100, however much they have in common") {
   for (const double share : {0.0, 0.5, 1.0}) {
     int called = 0;
-    const int runs = 2000;
+    const int runs = 1000;
     for (int i = 0; i < runs; ++i) {
       std::vector<double> p;
       for (std::uint32_t which = 0; which < 3; ++which)
@@ -59,7 +59,7 @@ TEST_CASE("three steady series are called drifting in at most 5 of 100, however 
       if (data::drifts(p, 0.05)) ++called;
     }
     INFO("share " << share << ", called drifting " << called << " of " << runs);
-    CHECK(called < 0.06 * runs);  // 5 % and two standard deviations of the count
+    CHECK(called < 0.065 * runs);  // 5 % and two standard deviations of the count
     CHECK(called > (share == 1.0 ? 0.008 : 0.03) * runs);
   }
 }

@@ -21,7 +21,7 @@ std::vector<double> autoregressive(std::size_t n, std::uint32_t index, std::uint
   return x;
 }
 
-/// Means of 1 with relative deviations of a sample of 0.3 (torque), 0.02, 0.1; the torque falls by `fall` in all.
+/// Means of 1 with relative deviations of a sample of 0.3 (torque), 0.02, 0.1; torque falls and coordination rises by `fall` in all.
 dem::Series flow(std::size_t n, std::uint32_t index, double fall = 0.0) {
   dem::Series s;
   s.torque = autoregressive(n, index, 0);
@@ -31,7 +31,7 @@ dem::Series flow(std::size_t n, std::uint32_t index, double fall = 0.0) {
     const double part = static_cast<double>(k) / static_cast<double>(n);
     s.time.push_back(1e-3 * static_cast<double>(k + 1));
     s.torque[k] = 1.0 + 0.3 * s.torque[k] - fall * part;
-    s.coordination[k] = 1.0 + 0.02 * s.coordination[k] + 0.7 * fall * part;
+    s.coordination[k] = 1.0 + 0.02 * s.coordination[k] + fall * part;
     s.kinetic_energy[k] = 1.0 + 0.1 * s.kinetic_energy[k];
   }
   return s;
@@ -68,11 +68,29 @@ TEST_CASE("means of steady runs, stopped by looking at their errors, scatter by 
   CHECK(stopped > 0.95 * runs);
 }
 
-TEST_CASE("a bed that orders all along, torque down by a quarter and coordination up, is never called steady") {
+TEST_CASE("a torque that falls by a twentieth over the first look's measurement is not called steady there") {
+  // With the coordination up by as much, as in a bed of equal spheres (series/equal.csv: 15 and 18 % in 2.4 s).
   int steady = 0;
-  for (int i = 0; i < 200; ++i)
-    steady += looks_at(flow(rule.longest, static_cast<std::uint32_t>(i), 0.25)).last.state == dem::Steady::yes;
-  CHECK(steady == 0);
+  const int runs = 200;
+  const std::size_t first = rule.start_up + rule.shortest;
+  for (int i = 0; i < runs; ++i) {
+    const dem::Series s = flow(first, static_cast<std::uint32_t>(i), 0.05 * static_cast<double>(first) / 600.0);
+    steady += dem::measure(rule, s, first).state == dem::Steady::yes;
+  }
+  INFO("called steady " << steady << " of " << runs);
+  CHECK(steady <= 0.1 * runs);
+}
+
+TEST_CASE("a bed whose bonds align is drifting, however steady its torque is") {
+  dem::Series s = flow(rule.longest, 5);
+  data::RandomStream random(9, data::Purpose::test);
+  for (double time = 0.05; time <= s.time.back(); time += 0.05) {
+    s.look_time.push_back(time);
+    s.bond_order.push_back(0.4 + 0.03 * time + 0.007 * random.normal());
+  }
+  CHECK(looks_at(s).last.state == dem::Steady::drifting);
+  for (double& value : s.bond_order) value = 0.4 + 0.007 * random.normal();
+  CHECK(looks_at(s).last.state == dem::Steady::yes);
 }
 
 TEST_CASE("a start-up longer than the least one is dropped") {

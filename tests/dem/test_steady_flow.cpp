@@ -1,0 +1,124 @@
+// The stopping rule on stored series of our own DEM (series/): a bed that orders, one that does not, a cohesive one.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "data/csv.hpp"
+#include "dem/run.hpp"
+
+namespace {
+
+dem::Series stored(const std::string& name) {
+  const data::Csv csv = data::read_csv(DEMCAL_SOURCE_DIR "/tests/dem/series/" + name + ".csv");
+  const auto column = [&](const char* head) {
+    std::vector<double> values;
+    for (const data::CsvRow& row : csv.rows) values.push_back(csv.number(row, csv.column(head)));
+    return values;
+  };
+  dem::Series s;
+  s.time = column("time");
+  s.torque = column("torque");
+  s.coordination = column("coordination");
+  s.kinetic_energy = column("kinetic_energy");
+  const std::vector<double> order = column("bond_order");
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (k > 0 && order[k] == order[k - 1]) continue;
+    s.look_time.push_back(s.time[k]);
+    s.bond_order.push_back(order[k]);
+  }
+  return s;
+}
+
+/// The part of a series from one sample on, as a run of its own.
+dem::Series part(const dem::Series& whole, std::size_t from, std::size_t count) {
+  dem::Series s;
+  const auto cut = [&](const std::vector<double>& values) {
+    return std::vector<double>(values.begin() + static_cast<long>(from),
+                               values.begin() + static_cast<long>(from + count));
+  };
+  s.time = cut(whole.time);
+  s.torque = cut(whole.torque);
+  s.coordination = cut(whole.coordination);
+  s.kinetic_energy = cut(whole.kinetic_energy);
+  for (std::size_t k = 0; k < whole.look_time.size(); ++k) {
+    if (whole.look_time[k] < s.time.front() || whole.look_time[k] > s.time.back()) continue;
+    s.look_time.push_back(whole.look_time[k]);
+    s.bond_order.push_back(whole.bond_order[k]);
+  }
+  return s;
+}
+
+constexpr double sample = 4e-3;  // s
+constexpr std::size_t samples(double time) { return static_cast<std::size_t>(time / sample + 0.5); }
+
+}  // namespace
+
+TEST_CASE("equal spheres that order are caught: no part of a second before they have ordered is called steady") {
+  const dem::Series s = stored("equal");
+  int steady = 0, windows = 0;
+  for (double from = 0.2; from < 0.65; from += 0.05) {
+    const dem::LookRule rule{.start_up = 0, .shortest = samples(0.6), .longest = samples(0.6), .standard_error = 0.02};
+    const dem::Measured m = dem::measure(rule, part(s, samples(from), samples(0.6)), samples(0.6));
+    INFO("from " << from << " s, torque " << 1e6 * m.torque.mean << " +- " << 1e6 * m.torque.standard_error
+                 << " uN m, bonds rise " << m.bonds_rise);
+    CHECK(m.state != dem::Steady::yes);
+    steady += m.state == dem::Steady::yes;
+    ++windows;
+  }
+  CHECK(steady == 0);
+  CHECK(windows >= 9);
+}
+
+TEST_CASE("parts of steady runs of our own are called drifting in at most 5 of 100") {
+  // Each third of a second from 0.3 s on; halves of the cohesive series, whose energy is correlated for longer.
+  int drifting = 0, windows = 0;
+  for (const auto& [name, width] : {std::pair{"spread", 0.32}, {"spread", 0.6}, {"cohesive", 0.6}}) {
+    const dem::Series s = stored(name);
+    const dem::LookRule rule{
+        .start_up = 0, .shortest = samples(width), .longest = samples(width), .standard_error = 0.02};
+    for (std::size_t from = samples(0.3); from + samples(width) <= s.time.size(); from += samples(width) / 2) {
+      const dem::Measured m = dem::measure(rule, part(s, from, samples(width)), samples(width));
+      INFO(name << " from " << s.time[from] << " s: p " << m.drift_p[0] << " " << m.drift_p[1] << " " << m.drift_p[2]
+                << ", bonds rise " << m.bonds_rise);
+      drifting += m.state == dem::Steady::drifting;
+      ++windows;
+    }
+  }
+  INFO(drifting << " of " << windows);
+  CHECK(windows >= 20);
+  CHECK(drifting <= std::ceil(0.05 * windows));
+}
+
+TEST_CASE("the torque of the first steady part of a run is that of all that follows, within its error") {
+  for (const char* name : {"spread", "cohesive"}) {
+    const dem::Series s = stored(name);
+    const dem::LookRule rule{
+        .start_up = samples(0.2), .shortest = samples(0.3), .longest = s.time.size(), .standard_error = 0.02};
+    dem::Looks looks = dem::begin_looks(rule);
+    dem::take_looks(rule, s, looks);
+    CHECK(looks.last.state == dem::Steady::yes);
+    CHECK(looks.next < s.time.size());
+    const dem::Measured all = dem::measure(rule, s, s.time.size());
+    INFO(name << ": " << 1e6 * looks.last.torque.mean << " +- " << 1e6 * looks.last.torque.standard_error << ", all "
+              << 1e6 * all.torque.mean << " +- " << 1e6 * all.torque.standard_error << " uN m");
+    CHECK(std::abs(looks.last.torque.mean - all.torque.mean) < 3.0 * looks.last.torque.standard_error);
+  }
+}
+
+TEST_CASE("five parts in a hundred more torque at the end than at the start of a second are caught in 9 of 10") {
+  // As ordering does it: the coordination moves against it by as much, by which it is seen.
+  const dem::Series s = stored("spread");
+  int caught = 0, windows = 0;
+  for (double from = 0.3; from + 1.0 <= s.time.back(); from += 0.1) {
+    dem::Series p = part(s, samples(from), samples(1.0));
+    for (std::size_t k = 0; k < p.time.size(); ++k) {
+      const double way = static_cast<double>(k) / static_cast<double>(p.time.size()) - 0.5;
+      p.torque[k] *= 1.0 - 0.05 * way;
+      p.coordination[k] *= 1.0 + 0.05 * way;
+    }
+    const dem::LookRule rule{.start_up = 0, .shortest = samples(1.0), .longest = samples(1.0), .standard_error = 0.02};
+    caught += dem::measure(rule, p, samples(1.0)).state == dem::Steady::drifting;
+    ++windows;
+  }
+  INFO(caught << " of " << windows);
+  CHECK(caught >= 0.9 * windows);
+}
