@@ -41,7 +41,8 @@ std::optional<dem::SavedRun> earlier(const std::string& path, const dem::Case& c
 /// Whether the run has ended as this case's would.
 bool ended(const dem::SavedRun& saved, const dem::Case& c) {
   // A run that failed fails again: it depends on its point, seed and settings alone.
-  return saved.result.status != dem::RunStatus::interrupted && saved.settings == dem::settings_text(c);
+  return saved.result.status != dem::RunStatus::interrupted && saved.settings == dem::settings_text(c) &&
+         saved.rule == dem::look_rule_version;
 }
 
 }  // namespace

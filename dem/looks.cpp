@@ -81,7 +81,8 @@ void take_looks(const LookRule& rule, const Series& series, Looks& looks) {
   while (!looks.ended && series.torque.size() >= looks.next) {
     const Measured m = looks.last = measure(rule, series, looks.next);
     const bool steady = m.state == Steady::yes;
-    const double ratio = m.torque.standard_error / (rule.standard_error * std::abs(m.torque.mean));
+    const double wanted = rule.standard_error * std::abs(m.torque.mean),
+                 ratio = m.torque.standard_error > 0.0 ? m.torque.standard_error / wanted : 0.0;
     looks.ended = looks.next >= rule.longest || (steady && (looks.planned || ratio <= 1.0));
     if (looks.ended) return;
     const double by = steady ? std::min(ratio * ratio, 1e6) : growth;

@@ -215,6 +215,7 @@ void write_run(const std::string& path, const Case& c, const RunResult& result) 
     file.set("reason", result.reason);
     file.set("material", c.material.name);
     file.set("settings", settings_text(c));
+    file.set("rule", std::int64_t{look_rule_version});
     file.set("cpu_seconds", result.summary.cpu_seconds);
     file.write_texts("warnings", result.warnings);
     const data::Hdf5Group series = file.create_group("series");
@@ -259,6 +260,7 @@ SavedRun read_run(const std::string& path) {
   SavedRun saved;
   RunResult& r = saved.result;
   saved.settings = file.text("settings");
+  if (file.has_attribute("rule")) saved.rule = static_cast<int>(file.integer("rule"));
   r.seed = std::stoull(file.text("seed"));
   r.status = static_cast<RunStatus>(file.integer("status"));
   r.reason = file.text("reason");

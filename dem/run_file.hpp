@@ -21,6 +21,7 @@ void write_run(const std::string& path, const Case& c, const RunResult& result);
 struct SavedRun {
   RunResult result;
   std::string settings;  ///< settings_text of the case that was run
+  int rule = 0;          ///< look_rule_version by which it was judged
 };
 
 /// Throws data::InputError: 66 missing, 65 not such a file.

@@ -125,7 +125,7 @@ std::vector<std::string> warnings_of(const Case& c, const Summary& summary) {
   if (summary.state == Steady::unclear)
     warnings.push_back(fmt::format("whether the flow is steady is not known: {}; raise run.longest", summary.why));
   const data::SeriesMean& torque = summary.mean.front();
-  const double error = torque.standard_error / std::abs(torque.mean);
+  const double error = torque.mean == 0.0 ? 0.0 : torque.standard_error / std::abs(torque.mean);
   if (summary.state == Steady::yes && error > 1.5 * c.run.standard_error)
     warnings.push_back(
         fmt::format("the mean torque is known to {:.2g} %, where {:.2g} % were wanted: raise run.longest",

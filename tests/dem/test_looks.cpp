@@ -21,7 +21,8 @@ std::vector<double> autoregressive(std::size_t n, std::uint32_t index, std::uint
   return x;
 }
 
-/// Means of 1 with relative deviations of a sample of 0.3 (torque), 0.02, 0.1; torque falls and coordination rises by `fall` in all.
+/// Means of 1 with relative deviations of a sample of 0.3 (torque), 0.02, 0.1; torque falls and coordination rises by
+/// `fall` in all.
 dem::Series flow(std::size_t n, std::uint32_t index, double fall = 0.0) {
   dem::Series s;
   s.torque = autoregressive(n, index, 0);
@@ -125,6 +126,15 @@ TEST_CASE("a run is judged alike whether its series comes at once, sample by sam
   CHECK(at_once.last.torque.mean == one_by_one.last.torque.mean);
   CHECK(at_once.last.torque.standard_error == one_by_one.last.torque.standard_error);
   CHECK(growing.time.size() == at_once.next);
+}
+
+TEST_CASE("a torque that is 0 throughout ends the run at the first look, and one that is 0 on average at the last") {
+  dem::Series nothing = flow(rule.longest, 2);
+  for (double& value : nothing.torque) value = 0.0;
+  CHECK(looks_at(nothing).next == rule.start_up + rule.shortest);
+  dem::Series around = flow(rule.longest, 2);
+  for (double& value : around.torque) value = 1e-9 * (value - 1.0);
+  CHECK(looks_at(around).ended);
 }
 
 TEST_CASE("turns and seconds count, whichever are more") {
