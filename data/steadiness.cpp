@@ -19,8 +19,9 @@
 // 171): the drift itself does not enter it and hide, and the law is exact for a few degrees of freedom.
 //
 // L. The modes must lie where the spectrum is known. That of a Lorentzian with integrated time tau falls as
-// 1/(1 + (pi j tau/(2 n))^2), which each P_j is divided by; used are modes up to j = n/(2 tau), where that is 0.62. tau is
-// that of the series without its slowest two modes (data/time_series.hpp), so that a drift does not pass for correlation.
+// 1/(1 + (pi j tau/(2 n))^2), which each P_j is divided by; used are modes up to j = n/(2 tau), where that is 0.62. tau
+// is that of the series without its slowest two modes (data/time_series.hpp), so that a drift does not pass for
+// correlation.
 #include "data/steadiness.hpp"
 
 #include <algorithm>
