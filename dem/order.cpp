@@ -143,11 +143,15 @@ double ordering_rise(std::span<const double> time, std::span<const double> bond_
     tb += (time[k] - t) * (bond_order[k] - b);
   }
   const double slope = tb / tt, span = time.back() - time.front();
+  double neighbours = 0.0, before = 0.0;  // looks hang together: their correlation makes the line's error larger
   for (std::size_t k = 0; k < time.size(); ++k) {
     const double off = bond_order[k] - b - slope * (time[k] - t);
     rest += off * off;
+    if (k > 0) neighbours += before * off;
+    before = off;
   }
-  const double error = std::sqrt(rest / (n - 2.0) / tt);
+  const double together = rest > 0.0 ? std::clamp(neighbours / rest, 0.0, 0.9) : 0.0;
+  const double error = std::sqrt(rest / (n - 2.0) / tt * (1.0 + together) / (1.0 - together));
   return slope * span >= least_rise && slope >= 3.5 * error ? slope * span : 0.0;
 }
 

@@ -28,7 +28,7 @@ struct Box {
 double bond_order(const State& state, const Box& box);
 
 /// How much bond order rose over the times by a line of least squares; 0 unless that is `least_rise` and 3.5 of its
-/// errors, or more.
+/// errors, or more. The error counts that neighbouring looks are correlated.
 inline constexpr double least_rise = 0.02;
 double ordering_rise(std::span<const double> time, std::span<const double> bond_order);
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 
+#include "dem/grains.hpp"
 #include "dem/order.hpp"
 
 namespace dem {
@@ -132,7 +133,9 @@ std::vector<std::string> warnings_of(const Case& c, const Summary& summary) {
                     100.0 * error, 100.0 * c.run.standard_error));
   if (torque.mean == 0.0) warnings.push_back("the torque is exactly 0: nothing touches what is measured");
   if (!summary.ordering.empty())
-    warnings.push_back(summary.ordering + "; spheres of several sizes (materials.NAME.sizes) do not");
+    warnings.push_back(summary.ordering + (summarise_bed(c).equal
+                                               ? "; equal spheres do: give sizes that differ by a tenth"
+                                               : "; give sizes that differ by more"));
   return warnings;
 }
 

@@ -138,7 +138,7 @@ TEST_CASE("shipped rows of the steady flow and an observed point come out again"
   const Row& point = observed.back();
   const auto outcome =
       folder.demcal({"simulate", DEMCAL_SOURCE_DIR "/data/quick", "--out", "observed", "--json", "--quiet", "--at",
-                     "friction=0.4,hamaker=4e-18,rpm=" + point.field.at("rpm"), "--seed", "40911", "--set",
+                     "friction=0.4,hamaker=1.5e-18,rpm=" + point.field.at("rpm"), "--seed", "40911", "--set",
                      "training.standard_error=0.04", "--set", "run.longest=\"8 s\""});
   const nlohmann::json run = nlohmann::json::parse(outcome.out);
   CHECK(run["state"] == "steady");

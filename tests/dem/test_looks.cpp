@@ -87,7 +87,7 @@ TEST_CASE("a bed whose bonds align is drifting, however steady its torque is") {
   data::RandomStream random(9, data::Purpose::test);
   for (double time = 0.05; time <= s.time.back(); time += 0.05) {
     s.look_time.push_back(time);
-    s.bond_order.push_back(0.4 + 0.03 * time + 0.007 * random.normal());
+    s.bond_order.push_back(0.3 + 0.08 * time + 0.007 * random.normal());
   }
   CHECK(looks_at(s).last.state == dem::Steady::drifting);
   for (double& value : s.bond_order) value = 0.4 + 0.007 * random.normal();
