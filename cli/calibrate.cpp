@@ -25,6 +25,7 @@ Action add_calibrate(CLI::App& program) {
                                  {.surrogates = surrogates,
                                   .sampler = *sampler,
                                   .seed = workspace.study.seed,
+                                  .findings = rows.findings,
                                   .progress = std::ref(progress)});
     }
     keep_surrogates(workspace, rows, surrogates, result.surrogates);
@@ -33,6 +34,9 @@ Action add_calibrate(CLI::App& program) {
       if (!sampled.draws.chains.empty())
         uq::write_posterior(posterior_path(workspace, sampled.model->name), workspace.study, sampled,
                             workspace.study.seed);
+    std::vector<uq::SupportReport> supports;
+    for (const uq::CaseReport& one : result.report.cases) supports.push_back(one.support);
+    write_next_runs(workspace, supports);
     add_provenance(result.report, workspace, rows);
     uq::save_results(result.report, (std::filesystem::path(workspace.out) / "results.json").string());
     return write_report(*common, workspace, result.report);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "data/finding.hpp"
 #include "data/study.hpp"
 
 namespace data {
@@ -24,6 +25,8 @@ struct RunRow {
   std::string isa;                      ///< instruction set that made it
   std::string origin;                   ///< program and version, or file and line
   double cpu_seconds = 0.0;
+  std::string place = {};     ///< "runs.csv:31": where the row stands, by which the user names it; not stored
+  std::string left_out = {};  ///< why the row is not learnt from ("a copy of runs.csv:12"); empty: it is. Not stored
 };
 
 struct RunTable {
@@ -39,18 +42,29 @@ RunTable empty_table(const Study& study);
 /// Identity of a row: material, inputs (to 12 digits), seed and settings.
 std::string row_key(const RunRow& row);
 
-/// Rows of `first`, then those of `second` whose key is not there yet.
+/// Rows of `first`, then those of `second` whose key `first` does not have. Rows of one table are never merged with
+/// each other: two of the same point and seed are replicates of a code that writes no seed of its own.
 RunTable merge(const RunTable& first, const RunTable& second);
 
 /// Reads .h5 or .csv with the study's columns, in any column order. CSV rows with NaN or an empty cell among the
 /// inputs, or in every output, are left out; one that lacks some of the outputs (NaN in the row) is kept. Both are
-/// named in `left_out`. Throws InputError: 66 missing file; 65 truncated, missing column, text for a number
+/// named in `left_out`. Rows that say themselves that they are none keep their place in the table and are marked
+/// (RunRow::left_out): what [training] leave_out names, a status column with a word of failure, an output of exactly 0
+/// with a standard error of exactly 0 among others that have errors, and copies to the last digit. `findings` says so,
+/// and which columns nobody reads. Throws InputError: 66 missing file; 65 truncated, missing column, text for a number
 /// (file:line).
 struct TableRead {
   RunTable table;
   std::vector<std::string> left_out;
+  std::vector<Finding> findings = {};
 };
 TableRead read_table(const std::string& path, const Study& study);
+
+/// Rows that are learnt from.
+std::size_t used_rows(const RunTable& table);
+
+/// Lines of a written CSV before its first row.
+inline constexpr int run_table_head_lines = 4;
 
 /// Atomic writes (temporary file, fsync, rename). Throw InputError (73).
 void write_table_hdf5(const std::string& path, const RunTable& table, const Study& study);

@@ -4,6 +4,8 @@
 //   /runs/            material, seed, settings, isa, origin, cpu_seconds
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "data/hdf5.hpp"
@@ -162,6 +164,9 @@ TableRead read_table_hdf5(const std::string& path, const Study& study) {
     row.isa = isas[r];
     row.origin = origins[r];
     row.cpu_seconds = seconds[r];
+    // The CSV beside it has the same rows, and is what a user can read.
+    row.place = fmt::format("{}.csv:{}", std::filesystem::path(path).stem().string(),
+                            static_cast<std::size_t>(run_table_head_lines) + r + 1);
   }
   return result;
 }

@@ -110,6 +110,7 @@ Identification identify(const CaseModel& model, const Eigen::MatrixXd& draws, co
                                .deviance_at_low = profile.deviance_at_low,
                                .deviance_at_high = profile.deviance_at_high,
                                .physical_low = physical_low(slot)};
+    if (k < options.unsupported.size()) evidence.unsupported = options.unsupported[k];
     if (profile.low_pinned) evidence.low_pinned_by = model.slots[static_cast<std::size_t>(*profile.low_pinned)].label;
     if (profile.high_pinned)
       evidence.high_pinned_by = model.slots[static_cast<std::size_t>(*profile.high_pinned)].label;

@@ -17,6 +17,7 @@ namespace uq {
 struct IdentifyOptions {
   VerdictThresholds thresholds = {};
   ProfileOptions profile = {};
+  std::vector<std::string> unsupported = {};  ///< per own parameter (ParameterEvidence); empty: all are supported
 };
 
 struct Identification {

@@ -10,6 +10,7 @@
 #include "uq/discrepancy.hpp"
 #include "uq/posterior.hpp"
 #include "uq/quadrature.hpp"
+#include "uq/support.hpp"
 
 namespace uq {
 namespace {
@@ -142,7 +143,42 @@ void add_sampler_warnings(CaseReport& report, const Draws& draws) {
         fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
 }
 
+/// Where the runs cannot carry a verdict, that is the finding, and what is printed beside it is no result.
+void doubt(CaseReport& report, Words& words, const data::Study& study) {
+  const bool own_engine = study.training.engine == "demcal";
+  words.finding = fmt::format("No verdict: {}.{}", report.doubt,
+                              report.fits ? "" : " As it stands, the surrogate does not reproduce the data either.");
+  report.traded.clear();
+  if (report.unusable) {
+    words.consequence = "What the surrogate gives for the parameters is not the model's, and is not shown.";
+    words.remedy = "See the surrogate's remedy above; then calibrate again.";
+  } else if (!report.support.supported) {
+    words.consequence = "The values are extrapolated, and no results.";
+    words.remedy =
+        fmt::format("Run {} of the posterior's points ({}), and calibrate again.", report.support.next_runs.size(),
+                    own_engine ? "demcal train STUDY --at-posterior N" : "next-runs.csv beside the report");
+  } else {
+    words.consequence = "The values with and without those runs are both shown; neither is a result yet.";
+    words.remedy = "Correct the runs or leave them out ([training] leave_out), and calibrate again.";
+  }
+}
+
+/// The first remedy is that of the larger share of the width.
+void put_surrogate_first(Words& words, const CaseReport& report, const data::Study& study) {
+  const bool all_known = std::all_of(report.parameters.begin(), report.parameters.end(),
+                                     [](const ParameterReport& p) { return p.verdict == Verdict::identified; });
+  if (!report.fits || all_known || !(report.surrogate_share > 1.0)) return;
+  const bool own_engine = study.training.engine == "demcal";
+  words.remedy = fmt::format(
+      "Add training runs where the posterior lies ({}): the surrogate's error is {:.1f} times the measurement's. Only "
+      "then: {}",
+      own_engine ? "demcal train STUDY --at-posterior N" : "next-runs.csv beside the report", report.surrogate_share,
+      words.remedy);
+}
+
 void add_warnings(CaseReport& report, const SampledCase& sampled) {
+  if (!report.doubt.empty() && !report.unusable)
+    report.warnings.push_back(fmt::format("case {}: {}", report.name, report.doubt));
   if (!report.converged)
     report.warnings.push_back(
         fmt::format("case {}: the chains have not converged: {}", report.name, sampled.draws.reason));
@@ -196,7 +232,13 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.draws = static_cast<int>(sampled.draws.chains.front().x.rows());
 
   const Eigen::MatrixXd draws = sampled.draws.pooled();
-  Identification found = identify(model, draws, options.identify);
+  report.support = sampled.support;
+  IdentifyOptions judged = options.identify;
+  if (judged.unsupported.empty()) judged.unsupported = unsupported_parameters(model, sampled.support);
+  if (!judged.unsupported.empty()) report.doubt = judged.unsupported.front();
+  report.unusable = !doubt_of(model).empty();
+  Identification found = identify(model, draws, judged);
+  report.surrogate_share = found.surrogate_share;
   take_cut_verdicts(found, sampled, options);
   report.chi2 = found.check.chi2;
   report.dof = found.check.dof;
@@ -229,6 +271,10 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
       words.remedy = sets.remedy + " " + words.remedy;
     }
   }
+  if (report.doubt.empty())
+    put_surrogate_first(words, report, study);
+  else
+    doubt(report, words, study);
   report.finding = words.finding;
   report.consequence = words.consequence;
   report.remedy = words.remedy;

@@ -19,10 +19,6 @@ std::string joined(const std::vector<std::string>& names) {
   return list;
 }
 
-std::string value(const ParameterReport& parameter) {
-  return text(format_with_error(parameter.mean, parameter.sd, parameter.unit, pretty));
-}
-
 std::string verdict_words(const CaseReport& result) {
   std::string out = "<div class=\"verdict\"><dl>\n";
   const auto entry = [&out](const char* heading, const std::string& words) {
@@ -35,6 +31,7 @@ std::string verdict_words(const CaseReport& result) {
   entry("Finding", result.finding);
   entry("Consequence", result.consequence);
   entry("Remedy", result.remedy);
+  entry("Without", without_sentence(result));
   for (const std::string& warning : result.warnings) entry("Warning", warning);
   return out + "</dl></div>\n";
 }
@@ -49,6 +46,8 @@ std::string parameter_table(const CaseReport& result) {
                        {"Verdict"}},
               .rows = {}};
   std::string sentences;
+  const bool believed = result.doubt.empty();
+  const std::string nothing = "\u2013";
   for (const ParameterReport& parameter : result.parameters) {
     const Verdict verdict = shown_verdict(result, parameter);
     std::string said = badge(verdict);
@@ -57,11 +56,13 @@ std::string parameter_table(const CaseReport& result) {
     const Rounding rounding = rounding_of(parameter.mean, parameter.sd);
     table.rows.push_back(
         {{text(parameter.name)},
-         {value(parameter), "nowrap"},
-         {text(format_interval(parameter.q05, parameter.q95, rounding, parameter.unit, pretty)), "nowrap"},
-         {text(format_profile_interval(parameter, pretty)),
+         {text(shown_value(result, parameter, pretty)), "nowrap"},
+         {believed ? text(format_interval(parameter.q05, parameter.q95, rounding, parameter.unit, pretty)) : nothing,
+          "nowrap"},
+         {believed ? text(format_profile_interval(parameter, pretty)) : nothing,
           parameter.profile_low && parameter.profile_high ? "nowrap" : ""},
-         number(significant(parameter.contraction, std::abs(parameter.contraction) < 0.1 ? 1 : 2, pretty)),
+         number(believed ? significant(parameter.contraction, std::abs(parameter.contraction) < 0.1 ? 1 : 2, pretty)
+                         : nothing),
          {said}});
     const std::string sentence = shown_sentence(result, parameter);
     if (!sentence.empty()) sentences += "<li>" + text(sentence) + "</li>\n";
@@ -159,6 +160,32 @@ std::string predictive_table(const CaseReport& result, std::size_t rows_shown_op
   return "<details><summary>The numbers behind the figure</summary>\n" + html(table) + "</details>\n";
 }
 
+std::string percent(double share) { return fmt::format("{:.0f}\u00a0%", 100.0 * share); }
+
+std::string support_part(const CaseReport& result) {
+  const SupportReport& support = result.support;
+  if (!support.known) return {};
+  std::string out = fmt::format(
+      "<h3>Support by runs</h3>\n<p>{} of the posterior lies where no run speaks. The nearest run is {} length scales "
+      "away "
+      "(median), and the surrogate's variance there is {} of what it would be without runs.</p>\n",
+      percent(support.unsupported), significant(support.distance, 2, pretty),
+      significant(support.variance_ratio, 2, pretty));
+  Table table{.caption = {},
+              .head = {{"Input"}, {"Covered by runs"}, number("Posterior beyond"), number("Posterior in a gap")},
+              .rows = {}};
+  for (const InputSupport& input : support.inputs)
+    table.rows.push_back({{text(input.name)},
+                          {text(fmt::format("{:.4g} to {:.4g}{}{}", input.runs_low, input.runs_high,
+                                            input.unit.empty() ? "" : " ", input.unit)),
+                           "nowrap"},
+                          number(percent(input.outside)),
+                          number(percent(input.gap) +
+                                 (input.gap > 0.0 ? fmt::format(" ({:.4g} to {:.4g})", input.gap_low, input.gap_high)
+                                                  : std::string()))});
+  return out + html(table);
+}
+
 std::string predictive_part(const CaseReport& result, const std::string& id, const Context& context) {
   const auto curves = curves_to_draw(result);
   if (curves.empty() && result.predictive.empty()) return {};
@@ -227,9 +254,9 @@ std::string profile_part(const CaseReport& result, const std::string& id, const 
 std::string case_section(const CaseReport& result, std::size_t index, const Context& context) {
   const std::string id = case_id(index, result);
   return fmt::format("<section id=\"{}\">\n<h2>Case {}</h2>\n", id, text(result.name)) + verdict_words(result) +
-         parameter_table(result) + comparison_part(result) + nuisance_table(result) + fit_and_data(result) +
-         predictive_part(result, id, context) + discrepancy_part(result, id, context) +
-         joint_part(result, id, context) + profile_part(result, id, context) + "</section>\n";
+         parameter_table(result) + support_part(result) + comparison_part(result) + nuisance_table(result) +
+         fit_and_data(result) + predictive_part(result, id, context) + discrepancy_part(result, id, context) +
+         (result.unusable ? "" : joint_part(result, id, context) + profile_part(result, id, context)) + "</section>\n";
 }
 
 }  // namespace uq::page

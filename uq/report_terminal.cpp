@@ -64,9 +64,9 @@ std::string parameter_lines(const CaseReport& result, int columns) {
     std::string said = to_text(verdict);
     if (parameter.reason && verdict == parameter.verdict) said += " (" + *parameter.reason + ")";
     if (parameter.borderline && result.fits) said += ", borderline";
-    rows.push_back({harmless(parameter.name),
-                    harmless(format_with_error(parameter.mean, parameter.sd, parameter.unit, Typography::ascii)), said,
-                    "95 % profile: " + format_profile_interval(parameter, Typography::ascii)});
+    rows.push_back(
+        {harmless(parameter.name), harmless(shown_value(result, parameter, Typography::ascii)), said,
+         result.doubt.empty() ? "95 % profile: " + format_profile_interval(parameter, Typography::ascii) : ""});
     names = std::max(names, width_of(rows.back().name));
     values = std::max(values, width_of(rows.back().value));
     verdicts = std::max(verdicts, width_of(rows.back().verdict));
@@ -74,7 +74,8 @@ std::string parameter_lines(const CaseReport& result, int columns) {
   std::string text;
   for (const Row& row : rows) {
     const std::string start = "  " + pad(row.name, names) + "  " + pad(row.value, values) + "  ";
-    const std::string whole = start + pad(row.verdict, verdicts) + "  " + row.profile;
+    const std::string whole =
+        row.profile.empty() ? start + row.verdict : start + pad(row.verdict, verdicts) + "  " + row.profile;
     if (width_of(whole) <= static_cast<std::size_t>(columns)) {
       text += whole + "\n";
     } else {
@@ -109,6 +110,7 @@ std::string case_text(const CaseReport& result, int columns) {
   }
   for (const ModelComparison& comparison : result.comparisons) text += fold("  ", comparison.sentence, columns);
   text += fold("  ", result.finding, columns);
+  text += fold("  ", without_sentence(result), columns);
   text += fold("  ", result.consequence, columns);
   text += fold("  -> ", result.remedy, columns);
   return text;
@@ -119,6 +121,7 @@ std::string case_text(const CaseReport& result, int columns) {
 std::string terminal_summary(const CalibrationReport& report, const TerminalOptions& options) {
   std::string text;
   for (const std::string& line : first_lines(report)) text += fold("WARNING: ", line, options.columns);
+  for (const std::string& caution : report.cautions) text += fold("note: ", caution, options.columns);
   if (!text.empty()) text += "\n";
   for (const CaseReport& result : report.cases) text += case_text(result, options.columns) + "\n";
   if (report.cases.empty()) text += "No case was calibrated.\n";

@@ -186,6 +186,14 @@ std::string shown_sentence(const CaseReport& result, const ParameterReport& para
   return shown_verdict(result, parameter) == parameter.verdict ? parameter.sentence : std::string();
 }
 
+std::string shown_value(const CaseReport& result, const ParameterReport& parameter, Typography typography) {
+  if (result.unusable) return "not shown";
+  const std::string value = format_with_error(parameter.mean, parameter.sd, parameter.unit, typography);
+  return result.doubt.empty() ? value : "[" + value + "]";
+}
+
+std::string without_sentence(const CaseReport& result) { return result.without ? result.without->sentence : ""; }
+
 std::string program_version(const CalibrationReport& report) {
   for (const char* const key : {"demcal", "version", "demcal version"}) {
     for (const auto& [name, value] : report.provenance) {

@@ -50,6 +50,13 @@ Verdict shown_verdict(const CaseReport& result, const ParameterReport& parameter
 /// A parameter's sentence as shown; one that contradicts shown_verdict is left out.
 std::string shown_sentence(const CaseReport& result, const ParameterReport& parameter);
 
+/// A parameter's value as shown: in brackets where no verdict can rest on it, and not at all where the surrogate is
+/// unusable.
+std::string shown_value(const CaseReport& result, const ParameterReport& parameter, Typography typography);
+
+/// "Without runs.csv:31: friction ..."; empty where no run is contradicted.
+std::string without_sentence(const CaseReport& result);
+
 /// The version of demcal that made the results, from their provenance; "unknown" where it does not say.
 std::string program_version(const CalibrationReport& report);
 

@@ -13,6 +13,21 @@ namespace uq {
 enum class Verdict { identified, weakly_identified, not_identified, does_not_fit };
 const char* to_text(Verdict verdict);  ///< "identified", "weakly identified", "not identified", "model does not fit"
 
+/// What is odd in the data (data/finding.hpp), as told.
+struct DataFinding {
+  std::string kind, place;
+  std::string severity;  ///< "note", "warning"
+  std::string what, remedy;
+  std::vector<std::string> places;
+};
+
+/// A run that the others contradict (uq/outlying_runs.hpp).
+struct OutlyingRun {
+  std::string place;                      ///< "runs.csv:31"
+  double observed = 0.0, expected = 0.0;  ///< unit of the output
+  double deviations = 0.0;                ///< difference in robust standard deviations, signed
+};
+
 /// Validation of one surrogate.
 struct SurrogateReport {
   std::string output, material;
@@ -38,6 +53,7 @@ struct SurrogateReport {
   bool converged = true;               ///< the maximisation of the likelihood
   int low_runs = 0;                    ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
   double rho = 0.0, rho_sd = 0.0;      ///< this level's output per the cheaper one's
+  std::vector<OutlyingRun> outlying;   ///< runs that the others contradict
 };
 
 struct ParameterReport {
@@ -103,6 +119,43 @@ struct ModelComparison {
   std::string sentence;           ///< the finding in words
 };
 
+/// How one input's runs lie about the posterior.
+struct InputSupport {
+  std::string name, unit;
+  double runs_low = 0.0, runs_high = 0.0;  ///< that the runs cover
+  double outside = 0.0;                    ///< share of the posterior beyond them
+  double gap = 0.0;                        ///< share of the posterior in a gap of them
+  double gap_low = 0.0, gap_high = 0.0;    ///< that gap; equal: there is none
+};
+
+/// A point to run next.
+struct NextRun {
+  std::string material;
+  std::map<std::string, double> point;  ///< every parameter and control of the study
+};
+
+/// Whether the runs speak where the posterior lies (uq/support.hpp).
+struct SupportReport {
+  bool known = false;                                             ///< the emulators are learnt from runs
+  bool supported = true;                                          ///< the unsupported share is below its threshold
+  double unsupported = 0.0;                                       ///< share of the draws
+  double outside = 0.0, gap = 0.0, empty = 0.0, uncertain = 0.0;  ///< of them: by which test
+  double distance = 0.0;        ///< median over the draws: to the nearest run, in length scales
+  double variance_ratio = 0.0;  ///< median over the draws: surrogate's variance over that without any runs
+  std::vector<InputSupport> inputs;
+  std::string sentence;            ///< what is not supported, and how far; empty where all is
+  std::vector<NextRun> next_runs;  ///< points of the posterior far from the runs, the first the most useful
+};
+
+/// The case again without the runs that the others contradict.
+struct WithoutRuns {
+  std::vector<std::string> places;
+  std::vector<std::string> parameters, verdicts;
+  std::vector<double> mean, sd;
+  bool fits = true;
+  std::string sentence;
+};
+
 struct CaseReport {
   std::string name;
   std::vector<std::string> observed_sets;  ///< names, with what the file's header says of each in observed_notes
@@ -132,6 +185,11 @@ struct CaseReport {
   std::vector<DiscrepancyBand> discrepancies;
   std::vector<std::string> cuts;  ///< "friction from zirconia-800": taken without feedback
   std::string sampler;            ///< "mixture", "nuts", "cut"
+  SupportReport support;
+  std::optional<WithoutRuns> without;  ///< where runs are contradicted by the others
+  std::string doubt;                   ///< why no verdict can rest on the surrogate; empty: it can
+  bool unusable = false;               ///< the doubt is of the surrogate itself: the values are not shown
+  double surrogate_share = 0.0;        ///< surrogate's sd over the measurement's, median of the rows
   double energy_fraction = std::numeric_limits<double>::quiet_NaN();  ///< smallest of the chains (E-BFMI); NaN where
                                                                       ///< the sampler has no energy
 };
@@ -154,8 +212,10 @@ struct CalibrationReport {
   std::vector<ErrorScan> error_scan;
   std::vector<std::pair<std::string, std::string>> thresholds;  ///< "contraction for identified" -> "0.9"
   std::vector<std::pair<std::string, std::string>>
-      provenance;                  ///< version, hashes, instruction set, seeds, table, times
-  std::vector<std::string> notes;  ///< choices the source does not give, shown beside the verdicts
+      provenance;                     ///< version, hashes, instruction set, seeds, table, times
+  std::vector<std::string> notes;     ///< choices the source does not give, shown beside the verdicts
+  std::vector<DataFinding> findings;  ///< of rows and observations
+  std::vector<std::string> cautions;  ///< said on the first screen, without making the status a warning
 };
 
 }  // namespace uq

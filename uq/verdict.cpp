@@ -82,6 +82,11 @@ ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fi
         parameter.name, fit.predictive_p, fit.best_fit_p, value);
     return found;
   }
+  if (!parameter.unsupported.empty()) {
+    found.reason = "unsupported";
+    found.sentence = fmt::format("{} is not identified: {}.", parameter.name, parameter.unsupported);
+    return found;
+  }
   const bool open_low = !parameter.profile_low, open_high = !parameter.profile_high;
   const bool contracted = parameter.contraction >= thresholds.contraction_identified;
   const bool narrowed = parameter.contraction >= thresholds.contraction_weak;

@@ -6,9 +6,10 @@
 //   `contraction_identified` weakly identified   closed, and contraction is at least `contraction_weak`; or an upper
 //   limit: closed above, and open below
 //                       only because the parameter cannot go below its physical bound 0
-//   not identified      anything else
+//   not identified      anything else; and whatever is not supported by runs, or rests on an unusable surrogate
 // Reasons: structural (no better measurement of the same kind would close the interval), one-sided (open on one side at
-// the end of the range), bound (open at the physical bound 0), practical (the noise). Borderline: a threshold lies
+// the end of the range), bound (open at the physical bound 0), practical (the noise), unsupported (no
+// run speaks there). Borderline: a threshold lies
 // within the scatter that another data set of the same kind would bring.
 #include <optional>
 #include <string>
@@ -50,6 +51,7 @@ struct ParameterEvidence {
   bool physical_low = false;                  ///< the support's low end is a bound that nature sets (0), not the user
   std::string low_pinned_by, high_pinned_by;  ///< another parameter whose range ends an open side; may be empty
   bool structural = false;                    ///< a better measurement of the same kind would not close it
+  std::string unsupported = {};  ///< why the runs cannot carry a verdict, a clause; empty: they can (uq/support.hpp)
 };
 
 /// How well the case fits.
