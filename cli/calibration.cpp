@@ -111,10 +111,10 @@ void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>
   for (const uq::FittedSurrogate& one : fitted) {
     const uq::SurrogateReport& r = one.report;
     say(common, fmt::format("surrogate of {}{}{}: {} (Q2 {:.4f} left out, {:.4f} held out; 95 % intervals cover {:.0f} "
-                            "%; {} runs{}). {}",
+                            "%; {} runs{}).{}",
                             r.material, r.material.empty() ? "" : " ", r.output, r.verdict, r.q2, r.q2_held_out,
                             100.0 * r.coverage95, r.runs, r.low_runs > 0 ? fmt::format(" over {}", r.low_runs) : "",
-                            r.verdict == "good" ? "" : r.remedy));
+                            r.verdict == "good" ? "" : " " + r.remedy));
     for (const std::string& note : r.notes) say(common, "  " + note);
   }
 }

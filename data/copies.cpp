@@ -25,7 +25,7 @@ double resolution(const std::vector<double>& numbers) {
   for (int decimals = 0; decimals < 12; ++decimals, step /= 10.0) {
     const bool whole = std::all_of(numbers.begin(), numbers.end(), [&](double number) {
       const double steps = number / step;
-      return std::abs(steps - std::round(steps)) <= 1e-9 * std::max(1.0, std::abs(steps));
+      return std::abs(steps - std::round(steps)) <= 1e-6 + 1e-14 * std::abs(steps);
     });
     if (whole) return step;
   }

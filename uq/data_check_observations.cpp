@@ -91,7 +91,7 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
     const double ratio = median(seen.values) / median(runs.values);
     const bool apart = seen.high < runs.low || seen.low > runs.high;
     const bool far = seen.high < runs.low - reach || seen.low > runs.high + reach || !(ratio > 0.2 && ratio < 5.0);
-    if (!apart || !far) continue;
+    if (!(reach > 0.0) || !apart || !far) continue;
     const auto shown = [&](double si) { return output.unit.from_si(si); };
     const std::string unit = output.unit.symbol.empty() ? "" : " " + output.unit.symbol;
     Finding finding{
@@ -127,8 +127,13 @@ void check_control_unit(const data::Study& study, const data::RunTable& table, c
       return value >= runs.low - 0.2 * slack && value <= runs.high + 0.2 * slack;
     });
     if (2 * static_cast<std::size_t>(met) >= seen.values.size()) continue;
-    const auto known = known_factor(median(seen.values), median(runs.values), 1.6);
-    if (!known) continue;
+    const UnitFactor* known = nullptr;  // that takes all readings into the range
+    for (const UnitFactor& candidate : unit_factors())
+      for (const double factor : {candidate.factor, 1.0 / candidate.factor})
+        if (known == nullptr && factor * seen.low > control.low - 0.2 * slack &&
+            factor * seen.high < control.high + 0.2 * slack)
+          known = &candidate;
+    if (known == nullptr) continue;
     findings.push_back(
         {.kind = "unit",
          .place = place_of(set, set.points.front()) + ": " + control.name,

@@ -116,6 +116,7 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
   std::optional<surrogate::GaussianProcess> current = process;
   Errors errors = errors_of(training, kept, aside, *current);
   RobustScale scale = robust_scale(errors.standardised, kept);
+  const VectorXd with_all = errors.expected;
   for (int round = 0; round < options.rounds; ++round) {
     // Without a floor: among runs that one outlier has made look harmless, it still stands out.
     const auto suspicion = [&](int i) {
@@ -156,12 +157,21 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
     scale = robust_scale(errors.standardised, kept);
   }
   found.scatter = scale.spread;
+  const auto rms = [&](const VectorXd& expected) {
+    double sum = 0.0;
+    for (const int i : kept) sum += std::pow(training.y[i] - expected[i], 2);
+    return std::sqrt(sum / static_cast<double>(kept.size()));
+  };
+  found.harm = rms(with_all) / std::max(rms(errors.expected), 1e-300);
+  if (found.harm < options.harm) return found;
   const VectorXd y = training.y(kept);
   const double spread = std::sqrt((y.array() - y.mean()).square().mean());
   const auto z = [&](int i) { return (errors.standardised[i] - scale.centre) / std::max(scale.spread, 1.0); };
   std::vector<int> outlying;
   for (const int i : aside)
-    if (std::abs(z(i)) > options.outlying && errors.sd[i] < options.spread * spread) outlying.push_back(i);
+    if (std::abs(z(i)) > options.outlying && errors.sd[i] < options.spread * spread &&
+        std::abs(training.y[i] - errors.expected[i]) > options.least * spread)
+      outlying.push_back(i);
   std::sort(outlying.begin(), outlying.end(), [&](int a, int b) { return std::abs(z(a)) > std::abs(z(b)); });
   for (const int i : outlying) {
     found.runs.push_back(i);
