@@ -54,6 +54,27 @@ void add_nuisances(CaseReport& report, const SampledCase& sampled) {
   }
 }
 
+/// Separate regions of the posterior, in the study's units. Where the sampler has missed one, it has not converged.
+void add_modes(CaseReport& report, const CaseModel& model, const Identification& found) {
+  if (found.modes.size() > 1)
+    for (const Mode& mode : found.modes) {
+      ModeReport made{.weight = mode.weight, .mean = {}, .sd = {}};
+      for (int k = 0; k < model.own_count(); ++k) {
+        const Slot& slot = model.slots[static_cast<std::size_t>(k)];
+        const data::Unit& unit = slot.prior.parameter().unit;
+        made.mean[slot.label] = unit.from_si(slot.value(mode.mean[k]));
+        made.sd[slot.label] = mode.sd[k] * std::abs(slot.slope(mode.mean[k])) / unit.factor;
+      }
+      report.modes.push_back(std::move(made));
+    }
+  for (const std::string& place : found.unvisited) {
+    report.converged = false;
+    report.warnings.push_back(
+        fmt::format("case {}: the chains have not converged: {} fits the data as well, and no draw lies there",
+                    report.name, place));
+  }
+}
+
 /// Draws of the case's own parameters in the study's units, and their correlation.
 void add_draws(CaseReport& report, const CaseModel& model, const Eigen::MatrixXd& draws) {
   const Eigen::Index own = model.own_count();
@@ -143,7 +164,7 @@ void add_sampler_warnings(CaseReport& report, const Draws& draws) {
 }
 
 void add_warnings(CaseReport& report, const SampledCase& sampled) {
-  if (!report.converged)
+  if (!sampled.draws.converged)
     report.warnings.push_back(
         fmt::format("case {}: the chains have not converged: {}", report.name, sampled.draws.reason));
   if (!report.fits) report.warnings.push_back(fmt::format("case {}: the model does not fit the data", report.name));
@@ -211,6 +232,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
       for (PredictiveCurve& curve :
            mean_curves(study, model, Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()))))
         pair.curves.push_back(std::move(curve));
+  add_modes(report, model, found);
   add_diagnostics(report, sampled);
   add_nuisances(report, sampled);
   add_draws(report, model, draws);
@@ -220,7 +242,8 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.discrepancies = discrepancy_bands(study, model, draws, seed);
   if (options.quadrature && model.dimension() <= 2 && report.cuts.empty())
     add_quadrature(report, sampled, draws, options);
-  Words words = summarise(model, found, options.identify.thresholds);
+  report.modes_parted_by = parted_by(study, model, found.modes);
+  Words words = summarise(found, report.modes_parted_by);
   if (!found.fits) {
     const Contradiction sets =
         describe_contradiction(fits_alone(study, model, found.best_fit.x), options.identify.thresholds.best_fit_p);

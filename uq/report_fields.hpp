@@ -47,6 +47,31 @@ void visit_fields(Visit&& visit, T& s) {
   visit("rho_sd", s.rho_sd);
 }
 
+template <class Visit, SameAs<ValueRange> T>
+void visit_fields(Visit&& visit, T& v) {
+  visit("low", v.low);
+  visit("high", v.high);
+  visit("low_open", v.low_open);
+  visit("high_open", v.high_open);
+  visit("weight", v.weight);
+  visit("mean", v.mean);
+  visit("sd", v.sd);
+}
+
+template <class Visit, SameAs<ProfileHole> T>
+void visit_fields(Visit&& visit, T& h) {
+  visit("low", h.low);
+  visit("high", h.high);
+  visit("deviance", h.deviance);
+  visit("in_doubt", h.in_doubt);
+}
+
+template <class Visit, SameAs<WordProbability> T>
+void visit_fields(Visit&& visit, T& w) {
+  visit("verdict", w.verdict);
+  visit("probability", w.probability);
+}
+
 template <class Visit, SameAs<ParameterReport> T>
 void visit_fields(Visit&& visit, T& p) {
   visit("name", p.name);
@@ -76,6 +101,15 @@ void visit_fields(Visit&& visit, T& p) {
   visit("reason", p.reason);
   visit("borderline", p.borderline);
   visit("sentence", p.sentence);
+  visit("intervals", p.intervals);
+  visit("holes", p.holes);
+  visit("low_pinned_by", p.low_pinned_by);
+  visit("high_pinned_by", p.high_pinned_by);
+  visit("word_probabilities", p.word_probabilities);
+  visit("share_measurement", p.share_measurement);
+  visit("share_surrogate", p.share_surrogate);
+  visit("share_structure", p.share_structure);
+  visit("share_range", p.share_range);
 }
 
 template <class Visit, SameAs<NuisanceReport> T>
@@ -112,11 +146,24 @@ template <class Visit, SameAs<TradedPair> T>
 void visit_fields(Visit&& visit, T& t) {
   visit("first", t.first);
   visit("second", t.second);
+  visit("parameters", t.parameters);
   visit("combination", t.combination);
+  visit("form", t.form);
+  visit("value", t.value);
+  visit("error", t.error);
+  visit("unit", t.unit);
+  visit("statement", t.statement);
   visit("correlation", t.correlation);
   visit("equivalent", t.equivalent);
   visit("equivalent_u", t.equivalent_u);
   visit("curves", t.curves);
+}
+
+template <class Visit, SameAs<ModeReport> T>
+void visit_fields(Visit&& visit, T& m) {
+  visit("weight", m.weight);
+  visit("mean", m.mean);
+  visit("sd", m.sd);
 }
 
 template <class Visit, SameAs<ModelComparison> T>
@@ -188,6 +235,8 @@ void visit_fields(Visit&& visit, T& c) {
   visit("cuts", c.cuts);
   visit("sampler", c.sampler);
   visit("energy_fraction", c.energy_fraction);
+  visit("modes", c.modes);
+  visit("modes_parted_by", c.modes_parted_by);
 }
 
 template <class Visit, SameAs<ErrorScan> T>

@@ -45,10 +45,16 @@ std::string glance(const CalibrationReport& report) {
           first ? fmt::format("<a href=\"#{}\">{}</a>", page::case_id(i, result), text(result.name)) : "";
       table.rows.push_back({{link},
                             {text(parameter.name)},
-                            {text(format_with_error(parameter.mean, parameter.sd, parameter.unit, pretty)), "nowrap"},
+                            {text(format_estimate(parameter, pretty)), parameter.intervals.size() > 1 ? "" : "nowrap"},
                             {page::badge(shown_verdict(result, parameter))}});
       first = false;
     }
+    for (const TradedPair& traded : result.traded)
+      if (std::isfinite(traded.value))
+        table.rows.push_back({{""},
+                              {text(traded.combination)},
+                              {text(format_with_error(traded.value, traded.error, traded.unit, pretty)), "nowrap"},
+                              {"<span class=\"soft\">known together</span>"}});
   }
   return page::html(table);
 }
@@ -99,9 +105,8 @@ std::string error_scan_section(const CalibrationReport& report) {
     table.rows.push_back(std::move(row));
     previous = key.first;
   }
-  return "<section id=\"error-scan\">\n<h2>If the measurement were better or worse</h2>\n<p>The verdicts for data of "
-         "the same "
-         "kind whose standard error is another share of the measured value.</p>\n" +
+  return "<section id=\"error-scan\">\n<h2>If the measurement were better or worse</h2>\n<p>The verdicts for "
+         "made-up data of the same kind: what the posterior predicts, with noise of another share of the value.</p>\n" +
          page::html(table) + "</section>\n";
 }
 

@@ -67,6 +67,42 @@ Json surrogate_json(const SurrogateReport& surrogate) {
           {"rho_sd", surrogate.low_runs > 0 ? number(surrogate.rho_sd) : Json(nullptr)}};
 }
 
+Json intervals_json(const ParameterReport& parameter) {
+  Json array = Json::array();
+  for (const ValueRange& part : parameter.intervals)
+    array.push_back({{"low", number(part.low)},
+                     {"high", number(part.high)},
+                     {"low_open", part.low_open},
+                     {"high_open", part.high_open},
+                     {"weight", number(part.weight)},
+                     {"mean", number(part.mean)},
+                     {"sd", number(part.sd)}});
+  return array;
+}
+
+Json holes_json(const ParameterReport& parameter) {
+  Json array = Json::array();
+  for (const ProfileHole& hole : parameter.holes)
+    array.push_back({{"low", number(hole.low)},
+                     {"high", number(hole.high)},
+                     {"deviance", number(hole.deviance)},
+                     {"within_surrogate_error", hole.in_doubt}});
+  return array;
+}
+
+Json words_json(const ParameterReport& parameter) {
+  Json object = Json::object();
+  for (const WordProbability& word : parameter.word_probabilities) object[word.verdict] = number(word.probability);
+  return object;
+}
+
+Json modes_json(const CaseReport& result) {
+  Json array = Json::array();
+  for (const ModeReport& mode : result.modes)
+    array.push_back({{"weight", number(mode.weight)}, {"mean", numbers(mode.mean)}, {"sd", numbers(mode.sd)}});
+  return array;
+}
+
 Json parameter_json(const CaseReport& result, const ParameterReport& parameter) {
   const Verdict verdict = shown_verdict(result, parameter);
   return {{"name", parameter.name},
@@ -91,7 +127,18 @@ Json parameter_json(const CaseReport& result, const ParameterReport& parameter) 
             {"high", number(parameter.prior_high)},
             {"mean", number(parameter.prior_mean)},
             {"sd", number(parameter.prior_sd)}}},
-          {"sentence", shown_sentence(result, parameter)}};
+          {"sentence", shown_sentence(result, parameter)},
+          {"intervals", intervals_json(parameter)},
+          {"holes", holes_json(parameter)},
+          {"open_for_range_of",
+           {{"low", parameter.low_pinned_by.empty() ? Json(nullptr) : Json(parameter.low_pinned_by)},
+            {"high", parameter.high_pinned_by.empty() ? Json(nullptr) : Json(parameter.high_pinned_by)}}},
+          {"word_probabilities", words_json(parameter)},
+          {"width_shares",
+           {{"measurement", number(parameter.share_measurement)},
+            {"surrogate", number(parameter.share_surrogate)},
+            {"structure", number(parameter.share_structure)},
+            {"range", number(parameter.share_range)}}}};
 }
 
 Json nuisance_json(const NuisanceReport& nuisance) {
@@ -134,7 +181,13 @@ Json traded_json(const TradedPair& traded) {
                       {"x", numbers(curve.x)},
                       {"mean", numbers(curve.mean)}});
   return {{"pair", Json::array({traded.first, traded.second})},
+          {"parameters", traded.parameters},
           {"combination", traded.combination},
+          {"form", traded.form},
+          {"value", number(traded.value)},
+          {"error", number(traded.error)},
+          {"unit", traded.unit},
+          {"statement", traded.statement},
           {"equivalent", std::move(points)},
           {"equivalent_curves", std::move(curves)},
           {"correlation", number(traded.correlation)}};
@@ -187,7 +240,9 @@ Json case_json(const CaseReport& result) {
       {"discrepancies", Json::array()},
       {"cuts", result.cuts},
       {"sampler", result.sampler},
-      {"energy_fraction", number(result.energy_fraction)}};
+      {"energy_fraction", number(result.energy_fraction)},
+      {"modes", modes_json(result)},
+      {"modes_parted_by", result.modes_parted_by}};
   for (const auto& parameter : result.parameters) json["parameters"].push_back(parameter_json(result, parameter));
   for (const auto& one : result.comparisons) json["comparisons"].push_back(comparison_json(one));
   for (const auto& nuisance : result.nuisances) json["nuisances"].push_back(nuisance_json(nuisance));

@@ -64,8 +64,7 @@ std::string parameter_lines(const CaseReport& result, int columns) {
     std::string said = to_text(verdict);
     if (parameter.reason && verdict == parameter.verdict) said += " (" + *parameter.reason + ")";
     if (parameter.borderline && result.fits) said += ", borderline";
-    rows.push_back({harmless(parameter.name),
-                    harmless(format_with_error(parameter.mean, parameter.sd, parameter.unit, Typography::ascii)), said,
+    rows.push_back({harmless(parameter.name), harmless(format_estimate(parameter, Typography::ascii)), said,
                     "95 % profile: " + format_profile_interval(parameter, Typography::ascii)});
     names = std::max(names, width_of(rows.back().name));
     values = std::max(values, width_of(rows.back().value));
@@ -101,11 +100,19 @@ std::string case_text(const CaseReport& result, int columns) {
                          format_with_error(nuisance.mean, nuisance.sd, nuisance.unit, Typography::ascii),
                          format_with_error(nuisance.prior_mean, nuisance.prior_sd, nuisance.unit, Typography::ascii)),
              columns);
+  for (const ModeReport& mode : result.modes) {
+    std::string values;
+    for (const auto& [name, mean] : mode.mean)
+      values +=
+          fmt::format("{}{} {}", values.empty() ? "" : ", ", name,
+                      format_with_error(mean, mode.sd.contains(name) ? mode.sd.at(name) : 0.0, "", Typography::ascii));
+    text += fold("  together: ", fmt::format("{:.0f} %: {}", 100.0 * mode.weight, values), columns);
+  }
   for (const TradedPair& traded : result.traded) {
-    text += fold("  traded: ",
-                 fmt::format("{} against {}; the data fix only {} (correlation {:.3f})", traded.first, traded.second,
-                             traded.combination, traded.correlation),
-                 columns);
+    const std::string& known = traded.statement.empty() ? traded.combination : traded.statement;
+    // Said once: the finding has it, unless it is another's.
+    if (result.finding.find(known) != std::string::npos) continue;
+    text += fold("  known together: ", fmt::format("{} (correlation {:.3f})", known, traded.correlation), columns);
   }
   for (const ModelComparison& comparison : result.comparisons) text += fold("  ", comparison.sentence, columns);
   text += fold("  ", result.finding, columns);

@@ -10,8 +10,9 @@
 
 namespace uq {
 
-enum class Verdict { identified, weakly_identified, not_identified, does_not_fit };
-const char* to_text(Verdict verdict);  ///< "identified", "weakly identified", "not identified", "model does not fit"
+enum class Verdict { identified, weakly_identified, several_values, not_identified, does_not_fit };
+/// "identified", "weakly identified", "several values", "not identified", "model does not fit"
+const char* to_text(Verdict verdict);
 
 /// Validation of one surrogate.
 struct SurrogateReport {
@@ -40,6 +41,26 @@ struct SurrogateReport {
   double rho = 0.0, rho_sd = 0.0;      ///< this level's output per the cheaper one's
 };
 
+/// One connected part of a parameter's 95 % profile interval, with the posterior inside it.
+struct ValueRange {
+  double low = 0.0, high = 0.0;               ///< the range's end where the part is open
+  bool low_open = false, high_open = false;   ///< the data do not end it: the range does, or another parameter's
+  double weight = 0.0, mean = 0.0, sd = 0.0;  ///< posterior probability of the part; mean and sd within it
+};
+
+/// Values between two parts of a profile interval.
+struct ProfileHole {
+  double low = 0.0, high = 0.0;
+  double deviance = 0.0;  ///< largest in between
+  bool in_doubt = false;  ///< the surrogate cannot tell what it predicts there from what it predicts beside it
+};
+
+/// What a word has for a chance when the measurement is repeated (uq/repeats.hpp).
+struct WordProbability {
+  std::string verdict;  ///< as to_text
+  double probability = 0.0;
+};
+
 struct ParameterReport {
   std::string name, unit;
   double prior_low = 0.0, prior_high = 0.0, prior_mean = 0.0, prior_sd = 0.0;
@@ -51,9 +72,16 @@ struct ParameterReport {
   bool low_is_bound = false, high_is_bound = false;  ///< the range ended before the likelihood fell
   std::vector<double> profile_x, profile_deviance;   ///< the profile itself: 2 (log L_max - log L)
   Verdict verdict = Verdict::not_identified;
-  std::optional<std::string> reason;  ///< "structural", "practical", "one-sided", "bound"
+  /// "structural", "practical", "surrogate", "one-sided", "bound", "no influence" (uq/verdict_words.hpp)
+  std::optional<std::string> reason;
   bool borderline = false;
-  std::string sentence;  ///< the verdict in words with its numbers
+  std::string sentence;                       ///< the verdict in words with its numbers
+  std::vector<ValueRange> intervals;          ///< the parts of the profile interval, rising; holes in doubt are filled
+  std::vector<ProfileHole> holes;             ///< between them, and those in doubt
+  std::string low_pinned_by, high_pinned_by;  ///< parameter whose range ends an open side; may be empty
+  std::vector<WordProbability> word_probabilities;        ///< falling; none where they were not asked for
+  double share_measurement = 0.0, share_surrogate = 0.0;  ///< of the interval's width, what brings it about
+  double share_structure = 0.0, share_range = 0.0;
 };
 
 /// An unknown of the measurement that was sampled with the parameters and integrated out.
@@ -85,14 +113,27 @@ struct PredictiveCurve {
   std::vector<double> x, mean, q05, q95;
 };
 
-/// A pair whose values are traded against each other.
+/// Parameters whose values are traded against each other: what the data know is a combination of them.
 struct TradedPair {
-  std::string first, second;
-  std::string combination;  ///< "friction^0.9 * hamaker^1" or a direction, in the reader's symbols
+  std::string first, second;            ///< of `parameters`, those that are traded most
+  std::vector<std::string> parameters;  ///< all of the combination
+  std::string combination;              ///< "friction * hamaker^0.9", "a + b + c", or that the relation is curved
+  std::string form;                     ///< "product", "sum", "curved"
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< of the combination, posterior mean; NaN of a curved one
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< posterior sd
+  std::string unit;                                         ///< of both
+  std::string statement;                                    ///< "a + b + c = 0.300 +- 0.006", or the combination alone
   double correlation = 0.0;
   std::vector<std::map<std::string, double>> equivalent;  ///< points along the ridge, each with every free parameter
   std::vector<std::vector<double>> equivalent_u;          ///< the same with every unknown, scaled (uq/prior.hpp's u)
   std::vector<PredictiveCurve> curves;                    ///< what the model's mean is at them, point by point; no band
+};
+
+/// A separate region of the posterior.
+struct ModeReport {
+  double weight = 0.0;                 ///< posterior probability
+  std::map<std::string, double> mean;  ///< of each free parameter inside it
+  std::map<std::string, double> sd;
 };
 
 /// The case again with some free parameters held, beside the case itself.
@@ -134,6 +175,8 @@ struct CaseReport {
   std::string sampler;            ///< "mixture", "nuts", "cut"
   double energy_fraction = std::numeric_limits<double>::quiet_NaN();  ///< smallest of the chains (E-BFMI); NaN where
                                                                       ///< the sampler has no energy
+  std::vector<ModeReport> modes;  ///< separate regions of the posterior, by falling weight; none where there is one
+  std::string modes_parted_by;    ///< the measurement that would tell the modes apart
 };
 
 /// How the verdict changes when the measurement error is another one.
