@@ -25,17 +25,22 @@ Action add_calibrate(CLI::App& program) {
                                  {.surrogates = surrogates,
                                   .sampler = *sampler,
                                   .seed = workspace.study.seed,
+                                  .findings = rows.findings,
                                   .progress = std::ref(progress)});
     }
     keep_surrogates(workspace, rows, surrogates, result.surrogates);
-    say_surrogates(*common, result.surrogates);
     for (const uq::SampledCase& sampled : result.cases)
       if (!sampled.draws.chains.empty())
         uq::write_posterior(posterior_path(workspace, sampled.model->name), workspace.study, sampled,
                             workspace.study.seed);
+    std::vector<uq::SupportReport> supports;
+    for (const uq::CaseReport& one : result.report.cases) supports.push_back(one.support);
+    write_next_runs(workspace, supports);
     add_provenance(result.report, workspace, rows);
     uq::save_results(result.report, (std::filesystem::path(workspace.out) / "results.json").string());
-    return write_report(*common, workspace, result.report);
+    const data::ExitStatus status = write_report(*common, workspace, result.report);  // warnings are its first lines
+    say_surrogates(*common, result.surrogates);
+    return status;
   };
 }
 

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "cli/point.hpp"
+#include "cli/campaign.hpp"
 #include "data/hash.hpp"
 #include "data/provenance.hpp"
 #include "dem/derived.hpp"
+#include "uq/data_check.hpp"
 #include "uq/report_html.hpp"
 #include "uq/report_json.hpp"
 #include "uq/report_results.hpp"
@@ -40,12 +41,51 @@ TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace
   data::require_cases(workspace.study);
   TrainingRows rows = training_rows(workspace);
   for (const std::string& note : rows.notes) say(common, "note: " + note);
-  if (rows.table.rows.empty())
+  if (data::used_rows(rows.table) == 0)
     throw data::InputError(data::ExitStatus::missing_input,
                            {workspace.study.file, "has no usable training runs",
                             workspace.cases.empty() ? "name a table of runs under [training] table"
                                                     : "make them: demcal train " + common.study});
+  std::vector<data::Finding> found =
+      uq::check_data(workspace.study, rows.table, rows.low, workspace.surrogates->log_outputs);
+  rows.findings.insert(rows.findings.end(), found.begin(), found.end());
+  if (data::has(rows.findings, data::Severity::refusal))  // what is suspected beside it may be its cause
+    for (const data::Finding& finding : rows.findings)
+      if (finding.severity == data::Severity::warning) say(common, "WARNING: " + data::describe(finding));
+  data::refuse(rows.findings);
   return rows;
+}
+
+std::vector<std::string> say_warnings(const Common& common, const TrainingRows& rows,
+                                      const std::vector<uq::FittedSurrogate>& fitted,
+                                      const std::vector<std::string>& more) {
+  std::vector<std::string> warnings, notes;
+  for (const data::Finding& finding : rows.findings)
+    (finding.severity == data::Severity::note ? notes : warnings).push_back(data::describe(finding));
+  for (std::string& warning : uq::surrogate_warnings(fitted)) warnings.push_back(std::move(warning));
+  warnings.insert(warnings.end(), more.begin(), more.end());
+  for (std::string& caution : uq::surrogate_cautions(fitted)) notes.push_back(std::move(caution));
+  for (const std::string& warning : warnings) say(common, "WARNING: " + warning);
+  for (const std::string& note : notes) say(common, "note: " + note);
+  return warnings;
+}
+
+void write_next_runs(const Workspace& workspace, const std::vector<uq::SupportReport>& supports) {
+  const data::Study& study = workspace.study;
+  std::vector<Point> points;
+  for (std::size_t i = 0, left = 1; left > 0; ++i) {  // the cases in turn
+    left = 0;
+    for (const uq::SupportReport& support : supports) {
+      if (i >= support.next_runs.size()) continue;
+      ++left;
+      const uq::NextRun& run = support.next_runs[i];
+      Point point{run.material, {}};
+      for (const data::Parameter& p : study.parameters) point.inputs.push_back(p.unit.to_si(run.point.at(p.name)));
+      for (const data::Control& c : study.controls) point.inputs.push_back(c.unit.to_si(run.point.at(c.name)));
+      points.push_back(std::move(point));
+    }
+  }
+  if (!points.empty()) write_points(workspace, next_runs_path(workspace), points);
 }
 
 uq::SurrogateOptions surrogate_options(const Common& common, const Workspace& workspace, const TrainingRows& rows) {
@@ -71,10 +111,10 @@ void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>
   for (const uq::FittedSurrogate& one : fitted) {
     const uq::SurrogateReport& r = one.report;
     say(common, fmt::format("surrogate of {}{}{}: {} (Q2 {:.4f} left out, {:.4f} held out; 95 % intervals cover {:.0f} "
-                            "%; {} runs{}). {}",
+                            "%; {} runs{}).{}",
                             r.material, r.material.empty() ? "" : " ", r.output, r.verdict, r.q2, r.q2_held_out,
                             100.0 * r.coverage95, r.runs, r.low_runs > 0 ? fmt::format(" over {}", r.low_runs) : "",
-                            r.verdict == "good" ? "" : r.remedy));
+                            r.verdict == "good" ? "" : " " + r.remedy));
     for (const std::string& note : r.notes) say(common, "  " + note);
   }
 }
@@ -87,7 +127,7 @@ void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, c
     report.provenance.emplace_back(name, value);
   };
   add("study", fmt::format("{} (xxh3 {})", fs::path(study.file).filename().string(), data::hash_file(study.file)));
-  add("training table", fmt::format("{} rows (xxh3 {})", rows.table.rows.size(), uq::table_hash(rows.table)));
+  add("training table", fmt::format("{} rows (xxh3 {})", data::used_rows(rows.table), uq::table_hash(rows.table)));
   if (rows.low)
     add("rows of the cheaper level", fmt::format("{} (xxh3 {})", rows.low->rows.size(), uq::table_hash(*rows.low)));
   for (const data::ObservationSet& set : study.observations)

@@ -11,8 +11,8 @@
 
 namespace cli {
 
-/// The rows of the run table. Throws InputError (66) when there are none, saying how to get some; prints what was left
-/// out.
+/// The rows of the run table, looked at (uq/data_check.hpp): its findings are added to theirs. Throws InputError (66)
+/// when there are none, saying how to get some, and (65, 78) for what cannot be meant; prints what was left out.
 TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace);
 
 /// The study's options of every surrogate, with those that OUT/surrogate.h5 holds, if it is still of this study and
@@ -22,6 +22,15 @@ uq::SurrogateOptions surrogate_options(const Common& common, const Workspace& wo
 /// Writes OUT/surrogate.h5 if there is anything new; what it held and still holds true stays.
 void keep_surrogates(const Workspace& workspace, const TrainingRows& rows, const uq::SurrogateOptions& options,
                      const std::vector<uq::FittedSurrogate>& fitted);
+
+/// What stands in the first lines of `fit` and `sample`, as `calibrate` says it: warnings, then notes. Returns the
+/// warnings.
+std::vector<std::string> say_warnings(const Common& common, const TrainingRows& rows,
+                                      const std::vector<uq::FittedSurrogate>& fitted,
+                                      const std::vector<std::string>& more = {});
+
+/// Writes OUT/next-runs.csv: points of the posteriors that lie far from the runs, a training design for any code.
+void write_next_runs(const Workspace& workspace, const std::vector<uq::SupportReport>& supports);
 
 /// How each did, and what its fit has to say.
 void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>& fitted);

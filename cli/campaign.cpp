@@ -1,6 +1,6 @@
 #include "cli/campaign.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
@@ -23,6 +23,8 @@ double scaled(const data::Parameter& p, double u) {
 }
 
 std::string point_key(const Workspace& workspace, const Point& point) {
+  // Another code's rows have no seed and settings of ours: the point alone tells them apart.
+  if (workspace.cases.empty()) return data::row_key({.material = point.material, .inputs = point.inputs});
   return data::row_key({.material = point.material,
                         .inputs = point.inputs,
                         .seed = workspace.study.seed,
@@ -65,19 +67,31 @@ std::vector<Point> training_design(const Workspace& workspace, const std::string
 
 Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int runs) {
   std::set<std::string> known;
-  for (const data::RunRow& row : table.rows)
-    if (!data::is_unsteady(row) || cannot_do_better(workspace, row)) known.insert(data::row_key(row));
+  const bool simulated = !workspace.cases.empty();
+  std::map<std::string, int> rows_of;
+  for (const data::RunRow& row : table.rows) {
+    if (!data::is_unsteady(row) || cannot_do_better(workspace, row))
+      known.insert(simulated ? data::row_key(row) : data::row_key({.material = row.material, .inputs = row.inputs}));
+    ++rows_of[row.material];
+  }
   Campaign campaign;
   const auto add_missing = [&](const std::vector<Point>& points) {
     for (const Point& point : points)
       if (known.insert(point_key(workspace, point)).second) campaign.points.push_back(point);
   };
-  add_missing(read_design(workspace));
-  campaign.continues = !campaign.points.empty();
   std::map<std::string, int> next;
-  for (const data::Material& material : workspace.study.materials) {
-    next[material.name] = material.runs.value_or(workspace.study.training.runs);
-    add_missing(training_design(workspace, material.name, 0, next[material.name]));
+  if (simulated) {
+    add_missing(read_design(workspace));
+    campaign.continues = !campaign.points.empty();
+    for (const data::Material& material : workspace.study.materials) {
+      next[material.name] = material.runs.value_or(workspace.study.training.runs);
+      add_missing(training_design(workspace, material.name, 0, next[material.name]));
+    }
+  } else {
+    // Another code's design is not ours to complete: further points, past as many of the sequence as there are rows.
+    constexpr int usual = 16;
+    if (runs == 0) runs = usual;
+    for (const data::Material& material : workspace.study.materials) next[material.name] = rows_of[material.name];
   }
   // Further points go to the materials in turn, each continuing its own sequence past what is known already.
   for (std::size_t turn = 0; !campaign.continues && static_cast<int>(campaign.points.size()) < runs; ++turn) {
@@ -93,12 +107,16 @@ Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, 
 std::vector<Point> read_design(const Workspace& workspace) {
   const std::string path = design_path(workspace);
   if (!std::filesystem::exists(path)) return {};
+  return read_points(workspace, path);
+}
+
+std::vector<Point> read_points(const Workspace& workspace, const std::string& path) {
   const data::Study& study = workspace.study;
   const data::Csv csv = data::read_csv(path);
-  const std::size_t material = csv.column("material");
+  const std::optional<std::size_t> material = csv.find("material");
   std::vector<Point> points;
   for (const data::CsvRow& row : csv.rows) {
-    Point point{choose_material(study, row.fields[material]), {}};
+    Point point{choose_material(study, material ? row.fields[*material] : ""), {}};
     const auto read = [&](const std::string& name, const data::Unit& unit) {
       const std::size_t column = csv.column(name);
       static_cast<void>(csv.number(row, column));  // throws where it is none
@@ -112,19 +130,44 @@ std::vector<Point> read_design(const Workspace& workspace) {
 }
 
 void write_design(const Workspace& workspace, const std::vector<Point>& points) {
+  write_points(workspace, design_path(workspace), points);
+}
+
+std::string next_runs_path(const Workspace& workspace) {
+  return (std::filesystem::path(workspace.out) / "next-runs.csv").string();
+}
+
+Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& table, int runs) {
+  const std::string path = next_runs_path(workspace);
+  if (!std::filesystem::exists(path))
+    throw data::InputError(data::ExitStatus::missing_input,
+                           {path, "is not there: nothing is known of a posterior yet", "run demcal calibrate first"});
+  std::set<std::string> known;
+  for (const data::RunRow& row : table.rows) known.insert(data::row_key(row));
+  Campaign campaign;
+  for (const Point& point : read_points(workspace, path))
+    if (static_cast<int>(campaign.points.size()) < runs && known.insert(point_key(workspace, point)).second)
+      campaign.points.push_back(point);
+  return campaign;
+}
+
+void write_points(const Workspace& workspace, const std::string& path, const std::vector<Point>& points) {
   const data::Study& study = workspace.study;
-  std::string text = "material";
-  for (const data::Parameter& p : study.parameters) text += "," + p.name;
-  for (const data::Control& c : study.controls) text += "," + c.name;
-  text += "\n";
+  const bool has_materials = study.materials.size() > 1 || !study.materials.front().name.empty();
+  std::vector<std::string> fields;
+  if (has_materials) fields.push_back("material");
+  for (const data::Parameter& p : study.parameters) fields.push_back(p.name);
+  for (const data::Control& c : study.controls) fields.push_back(c.name);
+  std::string text = fmt::format("{}\n", fmt::join(fields, ","));
   for (const Point& point : points) {
-    text += data::csv_field(point.material);
+    fields.clear();
+    if (has_materials) fields.push_back(data::csv_field(point.material));
     std::size_t column = 0;
-    for (const data::Parameter& p : study.parameters) text += "," + p.unit.digits(point.inputs[column++]);
-    for (const data::Control& c : study.controls) text += "," + c.unit.digits(point.inputs[column++]);
-    text += "\n";
+    for (const data::Parameter& p : study.parameters) fields.push_back(p.unit.digits(point.inputs[column++]));
+    for (const data::Control& c : study.controls) fields.push_back(c.unit.digits(point.inputs[column++]));
+    text += fmt::format("{}\n", fmt::join(fields, ","));
   }
-  data::write_atomically(design_path(workspace), text);
+  data::write_atomically(path, text);
 }
 
 std::string run_name(const Workspace& workspace, const Point& point) {

@@ -5,6 +5,7 @@
 #include "dem/derived.hpp"
 #include "dem/rig.hpp"
 #include "dem/target.hpp"
+#include "uq/data_check.hpp"
 #include "uq/surrogates.hpp"
 
 namespace cli {
@@ -12,13 +13,18 @@ namespace {
 
 /// What a calibration would refuse of the runs that there are.
 std::vector<std::string> too_few_runs(const data::Study& study, const TrainingRows& rows) {
-  if (rows.table.rows.empty()) return {};
+  if (data::used_rows(rows.table) == 0) return {};
   try {
     uq::training_rows(study, rows.table, rows.low);
   } catch (const data::InputError& error) {
     return {error.what()};
   }
   return {};
+}
+
+/// "1 case", "2 cases".
+std::string counted(std::size_t count, const std::string& what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -30,8 +36,15 @@ Action add_check(CLI::App& program) {
   return [common] {
     const Workspace workspace = open_workspace(*common);
     const data::Study& study = workspace.study;
-    const TrainingRows rows = training_rows(workspace);
+    TrainingRows rows = training_rows(workspace);
     std::vector<std::string> warnings = rows.notes;
+    const std::vector<data::Finding> found =
+        uq::check_data(study, rows.table, rows.low, workspace.surrogates->log_outputs);
+    rows.findings.insert(rows.findings.end(), found.begin(), found.end());
+    for (const data::Finding& finding : rows.findings) {
+      if (finding.severity == data::Severity::warning) warnings.push_back(data::describe(finding));
+      if (finding.severity == data::Severity::note) say(*common, "note: " + data::describe(finding));
+    }
     for (const data::Problem& problem : data::outside_training_range(study))
       warnings.push_back(data::describe({problem}));
     for (std::string& warning : too_few_runs(study, rows)) warnings.push_back(std::move(warning));
@@ -48,11 +61,24 @@ Action add_check(CLI::App& program) {
     if (study.cases.empty())
       warnings.push_back("there is no [[calibrate]] case yet: the study can train, not calibrate");
     for (const std::string& warning : warnings) say(*common, "warning: " + warning);
-    say(*common, fmt::format("{}: {} parameters, {} controls, {} materials, {} observation sets, {} cases, {} training "
-                             "runs: no problems",
-                             study.name, study.parameters.size(), study.controls.size(), study.materials.size(),
-                             study.observations.size(), study.cases.size(), rows.table.rows.size()));
-    print_json(*common, {{"study", study.name}, {"rows", rows.table.rows.size()}, {"warnings", warnings}});
+    data::refuse(rows.findings);
+    say(*common,
+        fmt::format("{}: {}, {}, {}, {}, {}, {}: {}", study.name, counted(study.parameters.size(), "parameter"),
+                    counted(study.controls.size(), "control"), counted(study.materials.size(), "material"),
+                    counted(study.observations.size(), "observation set"), counted(study.cases.size(), "case"),
+                    counted(data::used_rows(rows.table), "training run"),
+                    warnings.empty() ? "no problems" : counted(warnings.size(), "warning")));
+    nlohmann::json findings = nlohmann::json::array();
+    for (const data::Finding& finding : rows.findings)
+      findings.push_back({{"kind", finding.kind},
+                          {"place", finding.place},
+                          {"severity", data::to_text(finding.severity)},
+                          {"what", finding.what},
+                          {"remedy", finding.remedy},
+                          {"places", finding.places}});
+    print_json(
+        *common,
+        {{"study", study.name}, {"rows", data::used_rows(rows.table)}, {"warnings", warnings}, {"findings", findings}});
     return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
   };
 }

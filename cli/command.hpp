@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "data/error.hpp"
+#include "data/finding.hpp"
 #include "data/run_table.hpp"
 #include "data/study.hpp"
 #include "data/study_file.hpp"
@@ -66,10 +67,11 @@ void make_out(const Workspace& workspace, const std::string& subfolder = "");
 
 /// The rows shipped with the study and those in OUT/training.h5, merged; rows of other settings are left out.
 struct TrainingRows {
-  data::RunTable all;                 ///< whatever their state
-  data::RunTable table;               ///< to fit: of the steady flow, without outputs whose errors are not known
-  std::optional<data::RunTable> low;  ///< rows of the cheaper level, where the study names some
-  std::vector<std::string> notes;     ///< rows left out and why
+  data::RunTable all;                   ///< whatever their state
+  data::RunTable table;                 ///< to fit: of the steady flow, without outputs whose errors are not known
+  std::optional<data::RunTable> low;    ///< rows of the cheaper level, where the study names some
+  std::vector<std::string> notes;       ///< rows left out and why
+  std::vector<data::Finding> findings;  ///< of who read the tables
 };
 TrainingRows training_rows(const Workspace& workspace);
 

@@ -14,12 +14,11 @@ Action add_fit(CLI::App& program) {
     const uq::SurrogateOptions options = surrogate_options(*common, workspace, rows);
     const std::vector<uq::FittedSurrogate> fitted = uq::fit_surrogates(workspace.study, rows.table, options);
     keep_surrogates(workspace, rows, options, fitted);
+    const std::vector<std::string> warnings = say_warnings(*common, rows, fitted);
     say_surrogates(*common, fitted);
     nlohmann::json json = nlohmann::json::array();
-    bool unusable = false;
     for (const uq::FittedSurrogate& one : fitted) {
       const uq::SurrogateReport& r = one.report;
-      unusable = unusable || r.verdict == "unusable";
       json.push_back({{"output", r.output},
                       {"material", r.material},
                       {"q2", r.q2},
@@ -31,8 +30,9 @@ Action add_fit(CLI::App& program) {
                       {"rho", r.rho},
                       {"notes", r.notes}});
     }
-    print_json(*common, {{"surrogates", json}});
-    return unusable ? data::ExitStatus::warning : data::ExitStatus::done;
+    print_json(*common,
+               {{"surrogates", json}, {"status", warnings.empty() ? "ok" : "warning"}, {"warnings", warnings}});
+    return !warnings.empty() ? data::ExitStatus::warning : data::ExitStatus::done;
   };
 }
 

@@ -10,6 +10,7 @@
 #include "uq/report_gnuplot.hpp"
 #include "uq/report_text.hpp"
 #include "uq/simulation_calibration.hpp"
+#include "uq/support.hpp"
 
 namespace cli {
 namespace {
@@ -77,17 +78,26 @@ Action add_sample(CLI::App& program) {
         .surrogates = surrogate_options(*common, workspace, rows), .sampler = *sampler, .seed = study.seed};
     const std::vector<uq::FittedSurrogate> fitted = uq::fit_surrogates(study, rows.table, options.surrogates);
     keep_surrogates(workspace, rows, options.surrogates, fitted);
-    if (*replicates > 0) return check_width(*common, workspace, uq::emulators_of(fitted), *replicates);
+    if (*replicates > 0) {
+      const bool warned = !say_warnings(*common, rows, fitted).empty();
+      const data::ExitStatus status = check_width(*common, workspace, uq::emulators_of(fitted), *replicates);
+      return warned ? data::ExitStatus::warning : status;
+    }
     nlohmann::json json = nlohmann::json::array();
-    bool converged = true;
+    std::vector<std::string> lines, more;
+    std::vector<uq::SupportReport> supports;
     for (std::size_t i = 0; i < study.cases.size(); ++i) {
       const uq::SampledCase sampled = uq::sample_case(study, uq::emulators_of(fitted), i, options);
       const std::string path = posterior_path(workspace, study.cases[i].name);
       const uq::Draws& draws = sampled.draws;
-      converged = converged && draws.converged;
       if (!draws.chains.empty()) uq::write_posterior(path, study, sampled, study.seed);
       if (!draws.chains.empty() && *csv)
         data::write_atomically(std::filesystem::path(path).replace_extension(".csv"), uq::draws_csv(sampled));
+      if (!draws.converged)
+        more.push_back(fmt::format("case {}: not converged ({})", study.cases[i].name, draws.reason));
+      const std::vector<std::string> doubts = uq::unsupported_parameters(*sampled.model, sampled.support);
+      if (!doubts.empty()) more.push_back(fmt::format("case {}: {}", study.cases[i].name, doubts.front()));
+      supports.push_back(sampled.support);
       const std::string found =
           draws.chains.empty()
               ? draws.reason
@@ -95,11 +105,17 @@ Action add_sample(CLI::App& program) {
                             draws.chains.size(), draws.chains.front().x.rows(), draws.rhat.maxCoeff(),
                             draws.ess_bulk.minCoeff(), draws.converged ? "" : ", NOT CONVERGED (" + draws.reason + ")",
                             path);
-      say(*common, study.cases[i].name + ": " + found);
-      json.push_back({{"case", study.cases[i].name}, {"converged", draws.converged}, {"file", path}});
+      lines.push_back(study.cases[i].name + ": " + found);
+      json.push_back({{"case", study.cases[i].name},
+                      {"converged", draws.converged},
+                      {"file", path},
+                      {"usable", draws.converged && doubts.empty()}});
     }
-    print_json(*common, {{"cases", json}});
-    return converged ? data::ExitStatus::done : data::ExitStatus::warning;
+    write_next_runs(workspace, supports);
+    const std::vector<std::string> warnings = say_warnings(*common, rows, fitted, more);
+    for (const std::string& line : lines) say(*common, line);
+    print_json(*common, {{"cases", json}, {"status", warnings.empty() ? "ok" : "warning"}, {"warnings", warnings}});
+    return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
   };
 }
 

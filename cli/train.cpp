@@ -19,7 +19,7 @@ namespace {
 struct Options {
   Common common;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  int runs = 0;
+  int runs = 0, at_posterior = 0;
 };
 
 void write_tables(const Workspace& workspace, const data::RunTable& table) {
@@ -94,6 +94,12 @@ Action add_train(CLI::App& program) {
       ->add_option("--runs", options->runs,
                    "so many runs: those still missing from the design, or, when there are none, further ones")
       ->check(CLI::Range(1, 100000));
+  command
+      ->add_option("--at-posterior", options->at_posterior,
+                   "instead: so many points of the last calibration's posteriors that lie far from the runs "
+                   "(OUT/next-runs.csv)")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("N");
   return [options] {
     const data::InterruptGuard interrupt;
     const Common& common = options->common;
@@ -103,7 +109,8 @@ Action add_train(CLI::App& program) {
     TrainingRows rows = training_rows(workspace);
     for (const std::string& note : rows.notes) say(common, "note: " + note);
     const std::size_t before = rows.all.rows.size();
-    const Campaign campaign = plan_campaign(workspace, rows.all, options->runs);
+    const Campaign campaign = options->at_posterior > 0 ? plan_at_posterior(workspace, rows.all, options->at_posterior)
+                                                        : plan_campaign(workspace, rows.all, options->runs);
     write_design(workspace, campaign.points);
     if (campaign.points.empty())
       say(common, fmt::format("nothing is missing: the table has {} runs. For more of them: --runs N", before));

@@ -1,10 +1,12 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 
 #include "cli/point.hpp"
+#include "data/run_table_files.hpp"
 #include "dem/isa.hpp"
 #include "dem/read_case.hpp"
 #include "dem/target.hpp"
@@ -39,6 +41,23 @@ void check_target(const data::Section& section, const std::string& target_name, 
   };
   outside("low", low);
   outside("high", high);
+}
+
+/// Lines of [training] leave_out at which no row stands.
+void tell_unknown_rows(const data::Study& study, TrainingRows& rows) {
+  const auto stands = [&](const std::string& label) {
+    const auto named = [&](const data::RunRow& row) { return data::names_row(label, row.place); };
+    return std::any_of(rows.table.rows.begin(), rows.table.rows.end(), named) ||
+           (rows.low && std::any_of(rows.low->rows.begin(), rows.low->rows.end(), named));
+  };
+  for (const std::string& label : study.training.leave_out)
+    if (!stands(label))
+      rows.findings.push_back({.kind = "rows left out",
+                               .place = study.training.place,
+                               .severity = data::Severity::warning,
+                               .what = fmt::format("leave_out names {}, where no row is read", label),
+                               .remedy = "name rows as the messages do: a line of the table, or \"FILE:LINE\"",
+                               .places = {}});
 }
 
 }  // namespace
@@ -144,6 +163,7 @@ TrainingRows training_rows(const Workspace& workspace) {
   const auto add = [&](const std::string& path) {
     const data::TableRead read = data::read_table(path, study);
     for (const std::string& left_out : read.left_out) result.notes.push_back(left_out);
+    result.findings.insert(result.findings.end(), read.findings.begin(), read.findings.end());
     data::RunTable usable = read.table;
     std::size_t stale = std::erase_if(usable.rows, [&](const data::RunRow& row) {
       const auto known = settings.find(row.material);
@@ -164,8 +184,10 @@ TrainingRows training_rows(const Workspace& workspace) {
   if (!study.training.low.empty()) {
     data::TableRead read = data::read_table(study.training.low, study);
     for (std::string& left_out : read.left_out) result.notes.push_back(std::move(left_out));
+    result.findings.insert(result.findings.end(), read.findings.begin(), read.findings.end());
     result.low = std::move(read.table);
   }
+  tell_unknown_rows(study, result);
   return result;
 }
 

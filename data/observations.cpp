@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "data/copies.hpp"
 #include "data/csv.hpp"
 #include "data/error.hpp"
 
@@ -18,6 +19,29 @@ double measured(const Csv& csv, const CsvRow& row, std::size_t column) {
                              "give a number, or remove the line"});
   }
   return value;
+}
+
+/// Takes copies out of the points and notes them.
+void count_copies_once(ObservationSet& set, const Study& study) {
+  std::vector<RepeatableRow> rows;
+  for (const Observation& point : set.points) {
+    RepeatableRow row{.at = point.controls, .values = {}, .errors = {}};
+    for (std::size_t i = 0; i < set.outputs.size(); ++i) {
+      const Unit& unit = study.outputs[set.outputs[i]].unit;
+      row.values.push_back(unit.from_si(point.values[i]));
+      row.errors.push_back(point.standard_errors[i] / unit.factor);
+    }
+    rows.push_back(std::move(row));
+  }
+  const auto copies = copies_of(rows);
+  std::vector<Observation> kept;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (copies[i])
+      set.copies.push_back({.line = set.points[i].line, .of = set.points[*copies[i]].line});
+    else
+      kept.push_back(set.points[i]);
+  }
+  set.points = std::move(kept);
 }
 
 }  // namespace
@@ -72,6 +96,7 @@ ObservationSet read_observations(const std::string& path, const Study& study,
     }
     set.points.push_back(std::move(point));
   }
+  count_copies_once(set, study);
   return set;
 }
 

@@ -29,14 +29,8 @@ RunTable merge(const RunTable& first, const RunTable& second) {
   RunTable merged = first;
   std::set<std::string> there;
   for (const RunRow& row : first.rows) there.insert(row_key(row));
-  for (const RunRow& row : second.rows) {
-    const std::string key = row_key(row);
-    if (there.count(key) > 0) continue;
-    const bool has_identity = row.seed != 0 || !row.settings.empty();
-    if (has_identity)
-      there.insert(key);  // rows without seed and settings may be another code's replicates of one point
-    merged.rows.push_back(row);
-  }
+  for (const RunRow& row : second.rows)
+    if (!there.contains(row_key(row))) merged.rows.push_back(row);
   return merged;
 }
 
@@ -60,10 +54,17 @@ std::vector<std::string> drop_unreliable(RunTable& table) {
   return notes;
 }
 
+std::size_t used_rows(const RunTable& table) {
+  return static_cast<std::size_t>(
+      std::count_if(table.rows.begin(), table.rows.end(), [](const RunRow& row) { return row.left_out.empty(); }));
+}
+
 TableRead read_table(const std::string& path, const Study& study) {
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  return ending == ".h5" || ending == ".hdf5" ? read_table_hdf5(path, study) : read_table_csv(path, study);
+  TableRead read = ending == ".h5" || ending == ".hdf5" ? read_table_hdf5(path, study) : read_table_csv(path, study);
+  mark_rows(read, path, study);
+  return read;
 }
 
 }  // namespace data

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "data/finding.hpp"
 #include "data/study.hpp"
 
 namespace data {
@@ -24,8 +25,10 @@ struct RunRow {
   std::string isa;                      ///< instruction set that made it
   std::string origin;                   ///< program and version, or file and line
   double cpu_seconds = 0.0;
-  std::string state;       ///< "steady", or why the means are not those of the steady flow; "" where nobody said
-  std::string unreliable;  ///< outputs whose errors are not known, by name, separated by spaces
+  std::string state = {};       ///< "steady", or why the means are not those of the steady flow; "" where nobody said
+  std::string unreliable = {};  ///< outputs whose errors are not known, by name, separated by spaces
+  std::string place = {};       ///< "runs.csv:31": where the row stands, by which the user names it; not stored
+  std::string left_out = {};    ///< why the row is not learnt from ("a copy of runs.csv:12"); empty: it is. Not stored
 };
 /// Whether the row says of itself that it is not of the steady flow.
 bool is_unsteady(const RunRow& row);
@@ -43,7 +46,8 @@ RunTable empty_table(const Study& study);
 /// Identity of a row: material, inputs (to 12 digits), seed and settings.
 std::string row_key(const RunRow& row);
 
-/// Rows of `first`, then those of `second` whose key is not there yet.
+/// Rows of `first`, then those of `second` whose key `first` does not have. Rows of one table are never merged with
+/// each other: two of the same point and seed are replicates of a code that writes no seed of its own.
 RunTable merge(const RunTable& first, const RunTable& second);
 
 /// Makes the outputs NaN whose errors the rows call unreliable; says how many of each.
@@ -51,13 +55,23 @@ std::vector<std::string> drop_unreliable(RunTable& table);
 
 /// Reads .h5 or .csv with the study's columns, in any column order. CSV rows with NaN or an empty cell among the
 /// inputs, or in every output, are left out; one that lacks some of the outputs (NaN in the row) is kept. Both are
-/// named in `left_out`. Throws InputError: 66 missing file; 65 truncated, missing column, text for a number
+/// named in `left_out`. Rows that say themselves that they are none keep their place in the table and are marked
+/// (RunRow::left_out): what [training] leave_out names, a status column with a word of failure, an output of exactly 0
+/// with a standard error of exactly 0 among others that have errors, and copies to the last digit. `findings` says so,
+/// and which columns nobody reads. Throws InputError: 66 missing file; 65 truncated, missing column, text for a number
 /// (file:line).
 struct TableRead {
   RunTable table;
   std::vector<std::string> left_out;
+  std::vector<Finding> findings = {};
 };
 TableRead read_table(const std::string& path, const Study& study);
+
+/// Rows that are learnt from.
+std::size_t used_rows(const RunTable& table);
+
+/// Lines of a written CSV before its first row.
+inline constexpr int run_table_head_lines = 4;
 
 /// Atomic writes (temporary file, fsync, rename). Throw InputError (73).
 void write_table_hdf5(const std::string& path, const RunTable& table, const Study& study);

@@ -5,16 +5,19 @@
 // number of rows in the head ("# rows: 80"), so that one that was cut off is found out.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <set>
 
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
 #include "data/error.hpp"
 #include "data/provenance.hpp"
 #include "data/run_table_files.hpp"
+#include "data/study_parts.hpp"
 
 namespace data {
 namespace {
@@ -50,10 +53,23 @@ void check_whole(const Csv& csv, const std::string& text) {
   }
 }
 
+/// What a row says that its user's own column leaves out.
+constexpr const char* user_column = "its own column ";
+
 struct Columns {
   std::vector<std::size_t> inputs, outputs, errors;
   std::optional<std::size_t> material, seed, settings, isa, origin, cpu_seconds, state, unreliable;
+  std::vector<std::size_t> status;  ///< that say how a run ended
+  std::vector<std::size_t> unread;  ///< that nobody asks for
 };
+
+/// Another code's column `state` says something else.
+bool says_steadiness(const Csv& csv, std::size_t column) {
+  return std::all_of(csv.rows.begin(), csv.rows.end(), [column](const CsvRow& row) {
+    const std::string& state = row.fields[column];
+    return state.empty() || state == "steady" || state == "drifting" || state == "short";
+  });
+}
 
 Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) {
   Columns at;
@@ -69,9 +85,89 @@ Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) 
   at.isa = csv.find("isa");
   at.origin = csv.find("origin");
   at.cpu_seconds = csv.find("cpu_seconds");
-  at.state = csv.find("state");
-  at.unreliable = csv.find("unreliable");
+  if (const auto column = csv.find("state"); column && says_steadiness(csv, *column)) {
+    at.state = column;
+    at.unreliable = csv.find("unreliable");
+  }
+  std::set<std::size_t> read(at.inputs.begin(), at.inputs.end());
+  read.insert(at.outputs.begin(), at.outputs.end());
+  read.insert(at.errors.begin(), at.errors.end());
+  for (std::size_t i = 0; i < csv.columns.size(); ++i) {
+    if (read.contains(i) || reserved_columns().contains(csv.columns[i]) || i == at.state || i == at.unreliable)
+      continue;
+    (is_status_column(csv.columns[i]) ? at.status : at.unread).push_back(i);
+  }
   return at;
+}
+
+/// What an unread column holds: "fill (from 200 to 300)", "note (text)".
+std::string contents(const Csv& csv, std::size_t column) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const CsvRow& row : csv.rows) {
+    const std::string& field = row.fields[column];
+    double value = 0.0;
+    const auto [rest, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    if (field.empty() || error != std::errc{} || rest != field.data() + field.size())
+      return csv.columns[column] + " (text)";
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return low == high ? fmt::format("{} ({:.5g} everywhere)", csv.columns[column], low)
+                     : fmt::format("{} (from {:.5g} to {:.5g})", csv.columns[column], low, high);
+}
+
+/// Names the columns that do not enter, and what those of other codes' names do.
+void tell_columns(const Csv& csv, const Columns& at, TableRead& result) {
+  const std::string place = fmt::format("{}:{}", csv.file, csv.header_line);
+  if (!at.unread.empty()) {
+    std::vector<std::string> names;
+    for (const std::size_t column : at.unread) names.push_back(contents(csv, column));
+    result.findings.push_back(
+        {.kind = "unread columns",
+         .place = place,
+         .severity = Severity::note,
+         .what =
+             fmt::format("nothing reads the {} {}", names.size() == 1 ? "column" : "columns", fmt::join(names, ", ")),
+         .remedy = "an input among them belongs under [parameters] or [controls], an output under [outputs]"});
+  }
+  // Our own tables have settings; a seed beside none is another code's.
+  if (at.seed && !at.settings)
+    result.findings.push_back({.kind = "seed column",
+                               .place = place,
+                               .severity = Severity::note,
+                               .what = "the column seed is kept with the run and is no input; rows of one point are "
+                                       "replicates, whatever it says",
+                               .remedy = ""});
+}
+
+/// Rows whose own columns say that they are not to be learnt from.
+void tell_failures(TableRead& result) {
+  for (const bool asked : {true, false}) {
+    std::vector<std::string> places;
+    std::string example;
+    for (const RunRow& row : result.table.rows) {
+      if (row.left_out.empty() || (row.left_out.rfind(user_column, 0) == 0) != asked) continue;
+      if (places.empty()) example = row.left_out;
+      places.push_back(row.place);
+    }
+    if (places.empty()) continue;
+    result.findings.push_back(
+        {.kind = asked ? "rows left out" : "failed runs",
+         .place = list_places(places),
+         .severity = asked ? Severity::note : Severity::warning,
+         .what = fmt::format("{} {} left out: {}", places.size(), places.size() == 1 ? "row is" : "rows are", example),
+         .remedy = asked ? "" : "remove the rows, or name them in [training] leave_out",
+         .places = places});
+  }
+}
+
+/// "status: failed", if a status column says so.
+std::string failure(const Csv& csv, const CsvRow& row, const Columns& at) {
+  for (const std::size_t column : at.status)
+    if (says_failed(csv.columns[column], row.fields[column]))
+      return fmt::format("{}{} says '{}'", is_user_column(csv.columns[column]) ? user_column : "the column ",
+                         csv.columns[column], row.fields[column]);
+  return "";
 }
 
 std::string read_material(const Csv& csv, const CsvRow& row, const std::optional<std::size_t>& column,
@@ -122,6 +218,7 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
   std::vector<const Unit*> input_units;
   for (const Column& column : table.parameters) input_units.push_back(&column.unit);
   for (const Column& column : table.controls) input_units.push_back(&column.unit);
+  tell_columns(csv, at, result);
   for (const CsvRow& line : csv.rows) {
     const Missing missing = not_finite(csv, line, at);
     const auto shown = [&](std::size_t column) {
@@ -163,8 +260,11 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     if (at.cpu_seconds) row.cpu_seconds = csv.number(line, *at.cpu_seconds);
     if (at.state) row.state = line.fields[*at.state];
     if (at.unreliable) row.unreliable = line.fields[*at.unreliable];
+    row.place = fmt::format("{}:{}", file_name, line.line);
+    row.left_out = failure(csv, line, at);
     table.rows.push_back(std::move(row));
   }
+  tell_failures(result);
   return result;
 }
 

@@ -4,6 +4,8 @@
 //   /runs/            material, seed, settings, isa, origin, cpu_seconds, state, unreliable
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "data/hdf5.hpp"
@@ -172,6 +174,9 @@ TableRead read_table_hdf5(const std::string& path, const Study& study) {
     row.cpu_seconds = seconds[r];
     row.state = states[r];
     row.unreliable = unreliable[r];
+    // The CSV beside it has the same rows, and is what a user can read.
+    row.place = fmt::format("{}.csv:{}", std::filesystem::path(path).stem().string(),
+                            static_cast<std::size_t>(run_table_head_lines) + r + 1);
   }
   return result;
 }

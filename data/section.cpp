@@ -248,6 +248,28 @@ std::vector<std::string> Section::texts(std::string_view key, bool required) con
   return values;
 }
 
+std::vector<std::string> Section::labels(std::string_view key) const {
+  const toml::node* node = node_->ask(key);
+  std::vector<std::string> values;
+  if (node == nullptr) return values;
+  const auto* array = node->as_array();
+  bool all = array != nullptr;
+  if (array != nullptr) {
+    for (const toml::node& element : *array) {
+      if (const auto* text = element.as_string())
+        values.push_back(text->get());
+      else if (const auto* number = element.as_integer())
+        values.push_back(std::to_string(number->get()));
+      else
+        all = false;
+    }
+  }
+  if (!all)
+    node_->problem(key, fmt::format("{} is not a list of lines", show(*node)),
+                   "write it like [31, \"training.csv:44\"]");
+  return values;
+}
+
 std::vector<double> Section::quantities(std::string_view key, std::string_view si_unit, Range range,
                                         const Unit* default_unit) const {
   const toml::node* node = node_->ask(key);

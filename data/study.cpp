@@ -58,6 +58,7 @@ void read_training(const Section& root, Study& study) {
       section.number("standard_error", {.low = 0.0, .high = 1.0, .open_low = true}, training.standard_error);
   if (const std::string table = section.text("table", ""); !table.empty()) training.table = beside(study, table);
   if (const std::string low = section.text("low", ""); !low.empty()) training.low = beside(study, low);
+  training.leave_out = section.labels("leave_out");
   training.engine = section.choice("engine", {"demcal", "none"}, root.has("rig") ? "demcal" : "none");
   if (training.engine == "none" && training.table.empty()) {
     section.problem("table", "is missing, and there is no [rig] to simulate with",

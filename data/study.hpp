@@ -89,11 +89,12 @@ struct Material {
 };
 
 struct Training {
-  int runs = 64;                  ///< per material
-  double standard_error = 0.02;   ///< wanted relative standard error of the first output
-  std::string table;              ///< file of rows that come with the study, absolute path; empty if none
-  std::string low;                ///< rows of a cheaper level of the model under the table's, absolute path; or empty
-  std::string engine = "demcal";  ///< "demcal", or "none" for a study on another code's runs
+  int runs = 64;                 ///< per material
+  double standard_error = 0.02;  ///< wanted relative standard error of the first output
+  std::string table;             ///< file of rows that come with the study, absolute path; empty if none
+  std::string low;               ///< rows of a cheaper level of the model under the table's, absolute path; or empty
+  std::vector<std::string> leave_out;  ///< rows not to learn from: "31" (a line of the table) or "training.csv:31"
+  std::string engine = "demcal";       ///< "demcal", or "none" for a study on another code's runs
   std::string place;
 };
 
@@ -103,6 +104,11 @@ struct Observation {
   std::vector<double> values;           ///< SI, in the order of ObservationSet::outputs
   std::vector<double> standard_errors;  ///< SI
   int line = 0;
+};
+
+/// A row of an observation file that is another one again, to the last digit (data/copies.hpp); it is counted once.
+struct ObservationCopy {
+  int line = 0, of = 0;
 };
 
 /// An error of the measurement that all points of a set share (a calibration, a mounting).
@@ -116,7 +122,8 @@ struct ObservationSet {
   std::string material;
   std::string file;                  ///< absolute path
   std::vector<std::size_t> outputs;  ///< indices into Study::outputs, of the columns that the file has
-  std::vector<Observation> points;
+  std::vector<Observation> points;   ///< without copies
+  std::vector<ObservationCopy> copies = {};
   std::vector<CommonError> common_errors;
   std::vector<SettingError> setting_errors;
   bool of_machine = false;          ///< measured on the whole machine, of which the runs simulate a slice

@@ -54,6 +54,8 @@ class Section {
                      std::optional<std::string> fallback = {}) const;
   bool flag(std::string_view key, bool fallback) const;
   std::vector<std::string> texts(std::string_view key, bool required = false) const;
+  /// A list of texts or whole numbers, as texts: [31, "runs.csv:44"].
+  std::vector<std::string> labels(std::string_view key) const;
   std::vector<double> quantities(std::string_view key, std::string_view si_unit, Range range,
                                  const Unit* default_unit = nullptr) const;
 

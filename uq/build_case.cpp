@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "uq/build_measurement.hpp"
 #include "uq/linked_cases.hpp"
@@ -23,6 +24,19 @@ Acts acts_of(data::NuisanceKind kind) {
   const bool mean = kind == NuisanceKind::offset || kind == NuisanceKind::gain || kind == NuisanceKind::scale ||
                     kind == NuisanceKind::setting;
   return mean ? Acts::on_mean : Acts::on_spread;
+}
+
+/// Whether half of the shorter set's readings stand in the other to the last digit: at the same controls, or, in one
+/// file, at whatever controls the study gives them.
+bool holds_the_same(const data::ObservationSet& a, const data::ObservationSet& b) {
+  const bool one_file = !a.file.empty() && a.file == b.file;
+  std::size_t common = 0;
+  for (const data::Observation& point : b.points)
+    common += std::any_of(a.points.begin(), a.points.end(), [&](const data::Observation& other) {
+      return (one_file || other.controls == point.controls) && other.values == point.values &&
+             other.standard_errors == point.standard_errors;
+    });
+  return common > 0 && 2 * common >= std::min(a.points.size(), b.points.size());
 }
 
 class Builder {
@@ -153,6 +167,12 @@ class Builder {
                 "let only one of the linked cases observe them");
         continue;
       }
+      for (const std::size_t other : used_sets_)
+        if (other != set_index && holds_the_same(study_.observations[other], set))
+          problem(item.place,
+                  fmt::format("the data of '{}' would count twice: '{}' holds the same measurements", set_name,
+                              study_.observations[other].name),
+                  "observe one of the two");
       if (set.points.empty())
         problem(set.place.empty() ? set.file : set.place, fmt::format("the observation set '{}' has no rows", set_name),
                 "measure at least one point");
@@ -207,6 +227,7 @@ class Builder {
       group->slot.col(k).tail(rows).setConstant(value.slot);
     }
     for (const auto& [parameter, constant] : emulator.constants) check_constant(item, set, parameter, constant);
+    for (const auto& [control, range] : emulator.control_range) check_constant_control(emulator, set, control, range);
     for (Eigen::Index i = 0; i < rows; ++i) {
       const data::Observation& point = set.points[static_cast<std::size_t>(i)];
       group->observed[before + i] = point.values[column];
@@ -278,18 +299,68 @@ class Builder {
     return {.slot = -1, .scaled = scaled};
   }
 
-  /// A parameter that the material's runs hold at one value cannot be fixed at another.
+  /// A parameter that the material's runs hold at one value cannot be fixed at another, by the case or the material,
+  /// nor be free where another material's runs vary it.
   void check_constant(const CalibrationCase& item, const data::ObservationSet& set, std::size_t parameter_index,
                       double constant) {
     const data::Parameter& parameter = study_.parameters[parameter_index];
+    const auto value = [&](double si) {
+      return fmt::format("{:g} {}", parameter.unit.from_si(si), parameter.unit.symbol);
+    };
+    const data::Material& material = study_.material(set.material);
+    const auto in_material = material.fixed.find(parameter.name);
     const auto fixed = item.fixed.find(parameter.name);
-    if (fixed == item.fixed.end()) return;
-    if (std::abs(fixed->second - constant) <= 1e-6 * (parameter.high - parameter.low)) return;
-    problem(item.place,
-            fmt::format("case '{}' fixes {} at {:g} {}, but every run of material '{}' has {:g} {}", item.name,
-                        parameter.name, parameter.unit.from_si(fixed->second), parameter.unit.symbol, set.material,
-                        parameter.unit.from_si(constant), parameter.unit.symbol),
-            "fix it at that value, or vary it in training");
+    const bool by_case = fixed != item.fixed.end(), by_material = in_material != material.fixed.end();
+    if (!by_case && !by_material) {
+      if (study_.materials.size() > 1 &&
+          std::find(item.free.begin(), item.free.end(), parameter.name) != item.free.end())
+        problem(
+            item.place,
+            fmt::format("case '{}' frees {}, but every run of material '{}' has {}: its data would not count for it",
+                        item.name, parameter.name, set.material, value(constant)),
+            fmt::format("vary it in training, or write materials.{}.fixed.{} = ...", set.material, parameter.name));
+      return;
+    }
+    const double wanted = by_case ? fixed->second : in_material->second;
+    if (std::abs(wanted - constant) <= 1e-6 * (parameter.high - parameter.low)) return;
+    if (by_case)
+      problem(item.place,
+              fmt::format("case '{}' fixes {} at {}, but every run of material '{}' has {}", item.name, parameter.name,
+                          value(wanted), set.material, value(constant)),
+              "fix it at that value, or vary it in training");
+    else
+      problem(material.place,
+              fmt::format("material '{}' fixes {} at {}, but every run of it has {}", set.material, parameter.name,
+                          value(wanted), value(constant)),
+              "fix it at that value, or make the runs again");
+  }
+
+  /// A control that the material's runs hold at one value must be measured there: the runs know no other.
+  void check_constant_control(const Emulator& emulator, const data::ObservationSet& set, std::size_t index,
+                              const std::pair<double, double>& range) {
+    const bool varied = std::any_of(emulator.inputs.begin(), emulator.inputs.end(), [&](const EmulatorInput& input) {
+      return input.kind == InputKind::control && input.index == index;
+    });
+    if (varied) return;
+    const data::Control& control = study_.controls[index];
+    constexpr double share = 0.02;  // of the value or the range: a speed is never set exactly
+    const double slack = share * std::max(control.high - control.low, std::abs(range.first));
+    std::vector<int> lines;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const data::Observation& point : set.points) {
+      if (std::abs(point.controls[index] - range.first) <= slack) continue;
+      lines.push_back(point.line);
+      low = std::min(low, point.controls[index]);
+      high = std::max(high, point.controls[index]);
+    }
+    if (lines.empty()) return;
+    problem(fmt::format("{}:{}", data::shown_path(set.file), lines.front()),
+            fmt::format(
+                "{} of {} points are measured at {} from {:g} to {:g} {}, but every run of this material has {:g} "
+                "{}: the runs say nothing of another {}",
+                lines.size(), set.points.size(), control.name, control.unit.from_si(low), control.unit.from_si(high),
+                control.unit.symbol, control.unit.from_si(range.first), control.unit.symbol, control.name),
+            "leave the points out, or add runs at other values");
   }
 
   void check_slots_used(const CaseModel& model) {

@@ -3,12 +3,123 @@
 #include <fmt/core.h>
 
 #include <chrono>
+#include <cmath>
+#include <set>
 
 #include "data/error.hpp"
 #include "data/random.hpp"
+#include "uq/data_check.hpp"
 #include "uq/predictive.hpp"
+#include "uq/support.hpp"
 
 namespace uq {
+namespace {
+
+void add_findings(CalibrationReport& report, const std::vector<data::Finding>& findings) {
+  for (const data::Finding& finding : findings) {
+    report.findings.push_back(
+        {finding.kind, finding.place, data::to_text(finding.severity), finding.what, finding.remedy, finding.places});
+    (finding.severity == data::Severity::note ? report.cautions : report.warnings).push_back(data::describe(finding));
+  }
+}
+
+/// What is suspected of units and errors comes before any other remedy.
+void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& findings) {
+  for (const data::Finding& finding : findings)
+    if (finding.severity == data::Severity::warning &&
+        (finding.kind == "unit" || finding.kind == "standard errors" || finding.kind == "no response")) {
+      report.remedy = fmt::format("First settle what is said of the data ({}: {}). Then: {}", finding.kind,
+                                  finding.place, report.remedy);
+      return;
+    }
+}
+
+/// The surrogates again without the runs that the others contradict; none where there are no such runs, or too few
+/// others.
+std::vector<FittedSurrogate> without_outlying(const data::Study& study, const data::RunTable& table,
+                                              SurrogateOptions options, const std::vector<FittedSurrogate>& fitted) {
+  std::set<std::string> places;
+  options.known.clear();
+  for (const FittedSurrogate& one : fitted) {
+    for (const OutlyingRun& run : one.report.outlying) places.insert(run.place);
+    if (one.report.outlying.empty()) options.known.push_back(one);
+  }
+  if (places.empty()) return {};
+  data::RunTable rest = table;
+  for (data::RunRow& row : rest.rows)
+    if (row.left_out.empty() && places.contains(row.place)) row.left_out = "contradicted by the others";
+  if (data::used_rows(rest) == data::used_rows(table)) return {};
+  try {
+    return fit_surrogates(study, rest, options);
+  } catch (const data::InputError&) {
+    return {};
+  }
+}
+
+/// The case with the surrogates of the other runs, where it rests on runs that they contradict; where that changes the
+/// result, nothing is identified until somebody has decided on the runs.
+std::optional<WithoutRuns> without_runs(const data::Study& study, const std::vector<FittedSurrogate>& fitted,
+                                        const std::vector<FittedSurrogate>& others, const SampledCase& sampled,
+                                        std::size_t index, CalibrateOptions& options) {
+  std::vector<std::string> places;
+  for (const RowGroup& group : sampled.model->groups)
+    for (const FittedSurrogate& one : fitted)
+      if (one.rows.material == group.emulator.material && one.rows.output == group.emulator.output)
+        for (const OutlyingRun& run : one.report.outlying) places.push_back(run.place);
+  if (places.empty()) return {};
+  CalibrateOptions plain = options;
+  plain.identify.unsupported.clear();
+  WithoutRuns without = calibrate_without(study, others, index, plain);
+  without.places = places;
+  const std::string which = data::list_places(places);
+  without.sentence = fmt::format("Without {}: {}", which, without.sentence);
+  if (!options.identify.unsupported.empty() || sampled.draws.chains.empty()) return without;
+  const Eigen::MatrixXd draws = sampled.draws.pooled();
+  bool matters = false;
+  for (std::size_t k = 0; k < without.mean.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    const Slot& slot = sampled.model->slots[k];
+    Eigen::VectorXd values = draws.col(column);
+    for (double& value : values) value = slot.prior.parameter().unit.from_si(slot.value(value));
+    const double sd = std::sqrt((values.array() - values.mean()).square().mean());
+    matters = matters || std::abs(values.mean() - without.mean[k]) > 0.5 * without.sd[k] || sd > 1.5 * without.sd[k] ||
+              sd < without.sd[k] / 1.5;
+  }
+  if (matters)
+    options.identify.unsupported.assign(
+        static_cast<std::size_t>(sampled.model->own_count()),
+        fmt::format("the result depends on {}, which all other runs contradict", which));
+  return without;
+}
+
+}  // namespace
+
+WithoutRuns calibrate_without(const data::Study& study, const std::vector<FittedSurrogate>& others,
+                              std::size_t case_index, const CalibrateOptions& options) {
+  WithoutRuns found;
+  const SampledCase sampled = sample_case(study, emulators_of(others), case_index, options);
+  if (sampled.draws.chains.empty()) {
+    found.sentence = "the posterior could not be sampled: " + sampled.draws.reason;
+    return found;
+  }
+  IdentifyOptions judged = options.identify;
+  judged.unsupported = unsupported_parameters(*sampled.model, sampled.support);
+  const Identification identified = identify(*sampled.model, sampled.draws.pooled(), judged);
+  found.fits = identified.fits;
+  for (const ParameterReport& parameter : identified.parameters) {
+    found.parameters.push_back(parameter.name);
+    found.verdicts.push_back(to_text(parameter.verdict));
+    found.mean.push_back(parameter.mean);
+    found.sd.push_back(parameter.sd);
+    const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+    found.sentence += fmt::format("{}{} {} +- {}{} ({})", found.sentence.empty() ? "" : ", ", parameter.name,
+                                  with_error(parameter.mean, parameter.sd), with_error(parameter.sd, parameter.sd),
+                                  unit, to_text(parameter.verdict));
+  }
+  if (!sampled.draws.converged) found.sentence += "; the chains have not converged";
+  found.sentence += ".";
+  return found;
+}
 
 std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& sampled, std::size_t case_index,
                                    const CalibrateOptions& options) {
@@ -63,39 +174,50 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   report.study_file = study.file;
 
   tell("surrogates");
+  data::RunTable rows = table;
+  const std::vector<data::Finding> findings =
+      options.findings ? *options.findings
+                       : check_data(study, rows, options.surrogates.low, options.surrogates.log_outputs);
+  data::refuse(findings);
+  add_findings(report, findings);
   SurrogateOptions surrogates = options.surrogates;
   surrogates.fit.seed = seed_of(study, options);
   surrogates.observed_only = true;
-  result.surrogates = fit_surrogates(study, table, surrogates);
+  result.surrogates = fit_surrogates(study, rows, surrogates);
   const std::vector<Emulator> emulators = emulators_of(result.surrogates);
   for (const auto& fitted : result.surrogates) {
     report.surrogates.push_back(fitted.report);
     for (const std::string& note : extrapolation_notes(study, fitted.rows))
       report.surrogates.back().notes.push_back(note);
-    const std::string name =
-        fitted.report.output + (fitted.report.material.empty() ? "" : " of " + fitted.report.material);
-    if (fitted.report.verdict == "unusable")
-      report.warnings.push_back(fmt::format("the surrogate of {} is unusable: {}", name, fitted.report.finding));
-    if (!fitted.report.converged)
-      report.warnings.push_back(fmt::format("the fit of the surrogate of {} did not converge", name));
   }
+  for (std::string& warning : surrogate_warnings(result.surrogates)) report.warnings.push_back(std::move(warning));
+  for (std::string& caution : surrogate_cautions(result.surrogates)) report.cautions.push_back(std::move(caution));
+  const std::vector<FittedSurrogate> others = without_outlying(study, rows, surrogates, result.surrogates);
 
   for (std::size_t index = 0; index < study.cases.size(); ++index) {
     tell("case " + study.cases[index].name);
     result.cases.push_back(sample_case(study, emulators, index, options));
-    report.cases.push_back(report_case(study, result.cases.back(), options));
-    report.cases.back().comparisons = compare_models(study, emulators, result.cases.back(), index, options);
-    const CaseReport& made = report.cases.back();
+    const SampledCase& sampled = result.cases.back();
+    CalibrateOptions own = options;
+    own.identify.unsupported = unsupported_parameters(*sampled.model, sampled.support);
+    std::optional<WithoutRuns> without;
+    if (!others.empty()) without = without_runs(study, result.surrogates, others, sampled, index, own);
+    report.cases.push_back(report_case(study, sampled, own));
+    CaseReport& made = report.cases.back();
+    made.without = std::move(without);
+    put_suspicions_first(made, findings);
+    if (made.doubt.empty()) made.comparisons = compare_models(study, emulators, sampled, index, own);
     report.warnings.insert(report.warnings.end(), made.warnings.begin(), made.warnings.end());
     if (options.error_scan.empty()) continue;
     tell("error scan of case " + study.cases[index].name);
-    for (auto& scan : scan_errors(study, result.cases.back(), index, options))
-      report.error_scan.push_back(std::move(scan));
+    if (!made.doubt.empty()) continue;  // what another error would give is as doubtful
+    for (auto& scan : scan_errors(study, sampled, index, own)) report.error_scan.push_back(std::move(scan));
   }
   report.warning = !report.warnings.empty();
   report.thresholds = describe(options.identify.thresholds);
+  for (auto& threshold : describe(SupportThresholds{})) report.thresholds.push_back(std::move(threshold));
   report.provenance.emplace_back("seed", std::to_string(seed_of(study, options)));
-  report.provenance.emplace_back("runs in the table", std::to_string(table.rows.size()));
+  report.provenance.emplace_back("runs in the table", std::to_string(data::used_rows(rows)));
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   report.provenance.emplace_back("calibration time", fmt::format("{:.1f} s", elapsed.count()));
   if (options.progress) options.progress("done", 1.0);

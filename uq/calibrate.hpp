@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "data/finding.hpp"
 #include "data/run_table.hpp"
 #include "data/study.hpp"
 #include "uq/cut.hpp"
@@ -31,6 +32,8 @@ struct CalibrateOptions {
   bool quadrature = true;                               ///< check one- and two-dimensional posteriors by integration
   int threads = 0;                                      ///< 0: as many as the machine has
   std::optional<std::uint64_t> seed = {};               ///< instead of the study's
+  /// What uq/data_check.hpp and the readers found, for the report; none: the data are looked at first.
+  std::optional<std::vector<data::Finding>> findings = {};
   std::function<void(const std::string& step, double share)> progress = {};  ///< share of the whole job done, 0 to 1
 };
 
@@ -39,6 +42,7 @@ struct SampledCase {
   std::shared_ptr<const CaseModel> model;
   Draws draws;
   data::Sampler sampler = data::Sampler::mixture;
+  SupportReport support = {};                                        ///< of the draws; unknown where there are none
   std::vector<std::shared_ptr<const SampledCase>> cut_sources = {};  ///< cases whose posteriors were cut
 };
 
@@ -61,6 +65,10 @@ SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& e
                         const CalibrateOptions& options = {});
 
 CaseReport report_case(const data::Study& study, const SampledCase& sampled, const CalibrateOptions& options = {});
+
+/// The case with the surrogates of other runs: those that the others contradict left out.
+WithoutRuns calibrate_without(const data::Study& study, const std::vector<FittedSurrogate>& others,
+                              std::size_t case_index, const CalibrateOptions& options = {});
 
 /// The case beside itself with the parameters of its `compare` held: whether the data ask for them (Bayes factor). None
 /// where the case has no such key, or its sampler gives no evidence.

@@ -21,6 +21,14 @@ struct EmulatorInput {
   std::size_t index = 0;  ///< in Study::parameters or Study::controls
 };
 
+/// The runs that an emulator has learnt from, as far as uq/support.hpp needs them.
+struct RunCloud {
+  Eigen::MatrixXd points;         ///< unit cube, one per row, both levels where there are two
+  Eigen::VectorXd length_scales;  ///< unit cube
+  double prior_variance = 0.0;    ///< of the process without any runs: SI^2, or of the logarithm
+  bool logarithmic = false;       ///< learnt as a logarithm
+};
+
 struct Emulator {
   std::string material;
   std::size_t output = 0;                   ///< in Study::outputs
@@ -33,6 +41,8 @@ struct Emulator {
       predict_with_gradient = {};
   /// Points stacked in groups of `group` rows; empty where there is none.
   std::function<std::vector<surrogate::Prediction>(const Eigen::MatrixXd& points, int group)> predict_batch = {};
+  std::shared_ptr<const RunCloud> runs = {};  ///< none: a function that no runs stand behind
+  std::string doubt = {};                     ///< why no verdict can rest on it; empty: it can
 };
 
 /// A process of the surrogate layer as an emulator; it is shared, not copied.

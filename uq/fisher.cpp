@@ -10,13 +10,17 @@ namespace uq {
 
 namespace {
 
-/// S^-1/2 J for the slots listed, each column times its prior's sd.
+/// S^-1/2 J for the slots listed, each column times its prior's sd. NaN where S has no Cholesky factor: what is made of
+/// it says so.
 Eigen::MatrixXd whiten(const Eigen::MatrixXd& slopes, const std::vector<Eigen::Index>& chosen,
                        const Eigen::MatrixXd& covariance) {
   Eigen::MatrixXd whitened(slopes.rows(), static_cast<Eigen::Index>(chosen.size()));
   for (std::size_t k = 0; k < chosen.size(); ++k) whitened.col(static_cast<Eigen::Index>(k)) = slopes.col(chosen[k]);
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  if (factor.info() == Eigen::Success) factor.matrixL().solveInPlace(whitened);
+  if (factor.info() == Eigen::Success)
+    factor.matrixL().solveInPlace(whitened);
+  else
+    whitened.setConstant(std::numeric_limits<double>::quiet_NaN());
   return whitened;
 }
 

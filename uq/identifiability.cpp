@@ -7,6 +7,7 @@
 
 #include "uq/diagnostics.hpp"
 #include "uq/posterior.hpp"
+#include "uq/structure.hpp"
 #include "uq/traded.hpp"
 
 namespace uq {
@@ -23,6 +24,29 @@ Eigen::VectorXd shown(const Slot& slot, const Eigen::VectorXd& u) {
 double shown(const Slot& slot, double u) {
   const data::Parameter& parameter = slot.prior.parameter();
   return parameter.unit.from_si(from_scaled(parameter, u));
+}
+
+/// The parts of the interval, with the draws nearest to each.
+std::vector<ValueRange> ranges_of(const Slot& slot, const Eigen::VectorXd& u, const Profile& profile) {
+  std::vector<std::vector<double>> members(profile.parts.size());
+  if (!members.empty())
+    for (const double draw : u) members[part_of(profile, draw)].push_back(shown(slot, draw));
+  std::vector<ValueRange> ranges;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const ProfilePart& part = profile.parts[i];
+    ValueRange range{.low = shown(slot, part.low), .high = shown(slot, part.high)};
+    range.low_open = i == 0 && !profile.low;
+    range.high_open = i + 1 == members.size() && !profile.high;
+    range.weight = static_cast<double>(members[i].size()) / static_cast<double>(u.size());
+    range.mean = shown(slot, profile.u[part.best]);
+    if (members[i].size() > 1) {
+      const Eigen::Map<const Eigen::ArrayXd> values(members[i].data(), static_cast<Eigen::Index>(members[i].size()));
+      range.mean = values.mean();
+      range.sd = std::sqrt((values - range.mean).square().mean());
+    }
+    ranges.push_back(range);
+  }
+  return ranges;
 }
 
 ParameterReport describe_draws(const Slot& slot, const Eigen::VectorXd& u, const Profile& profile) {
@@ -45,161 +69,157 @@ ParameterReport describe_draws(const Slot& slot, const Eigen::VectorXd& u, const
   if (profile.high) report.profile_high = shown(slot, *profile.high);
   report.low_is_bound = !profile.low;
   report.high_is_bound = !profile.high;
+  report.intervals = ranges_of(slot, u, profile);
+  for (const ProfileBarrier& barrier : profile.barriers)
+    report.holes.push_back({.low = shown(slot, barrier.low),
+                            .high = shown(slot, barrier.high),
+                            .deviance = barrier.deviance,
+                            .in_doubt = barrier.in_doubt});
   const Eigen::VectorXd x = shown(slot, profile.u);
   report.profile_x.assign(x.begin(), x.end());
   report.profile_deviance.assign(profile.deviance.begin(), profile.deviance.end());
   return report;
 }
 
-/// Sd of the emulators over that of all else that is uncertain of the data.
-double median_surrogate_share(const CaseModel& model, const Eigen::VectorXd& u) {
-  CaseModel emulators = model;
-  for (auto& group : emulators.groups) {
-    group.measurement.discrepancies.clear();
-    for (auto& set : group.measurement.sets) {
-      set.common_absolute = set.common_relative = 0.0;
-      set.settings.clear();
-    }
+/// What decides the word, but for influence.
+WordFacts facts_of(const ParameterReport& report, const Profile& profile, const Slot& slot) {
+  double within = 0.0;
+  for (const ValueRange& part : report.intervals) within += part.weight * part.sd * part.sd;
+  return {.influences = true,
+          .parts = std::max(1, static_cast<int>(profile.parts.size())),
+          .open_low = !profile.low,
+          .open_high = !profile.high,
+          .physical_low = physical_low(slot) && !profile.low_pinned,
+          .contraction = report.contraction,
+          .contraction_within =
+              profile.parts.size() > 1 ? 1.0 - within / (report.prior_sd * report.prior_sd) : report.contraction};
+}
+
+/// Of the posterior.
+Eigen::VectorXd mode_of(const CaseModel& model, const Eigen::MatrixXd& guiding, const Eigen::VectorXd& level,
+                        const Eigen::VectorXd& best) {
+  Eigen::Index top = 0;
+  level.maxCoeff(&top);
+  Eigen::MatrixXd starts(2, model.dimension());
+  starts << guiding.row(top), best.transpose();
+  const Target target = posterior_target(std::make_shared<const CaseModel>(model));
+  return maximise(target.log_density_gradient, {target.lower, target.upper}, starts).x;
+}
+
+/// Why each open or wide interval is as it is; what is traded with a structural one is so, too.
+void add_structure(const CaseModel& model, const Profiles& all, std::vector<ParameterEvidence>& evidence,
+                   const std::vector<TradedPair>& traded, const VerdictThresholds& thresholds) {
+  for (std::size_t k = 0; k < evidence.size(); ++k) {
+    ParameterEvidence& one = evidence[k];
+    one.surrogate_share = surrogate_variance_share(model, all.profiles[k], all.best.x);
+    const Verdict word = word_of(one.facts, thresholds);
+    if (!one.facts.influences || word == Verdict::identified || word == Verdict::several_values) continue;
+    const Structure structure = find_structure(model, all, all.profiles[k], thresholds);
+    one.structural = structure.structural;
+    one.undecided = structure.undecided;
   }
-  const Eigen::ArrayXd own = predict(emulators, u).covariance.diagonal().array().max(0.0);
-  const Eigen::ArrayXd other = predict(model, u).total().diagonal().array() - own;
-  return quantile((own / other).sqrt(), 0.5);
+  for (const TradedPair& set : traded) {
+    const auto member = [&](const ParameterEvidence& one) {
+      return std::find(set.parameters.begin(), set.parameters.end(), one.name) != set.parameters.end();
+    };
+    const bool some = std::any_of(evidence.begin(), evidence.end(),
+                                  [&](const ParameterEvidence& one) { return member(one) && one.structural; });
+    for (ParameterEvidence& one : evidence)
+      if (some && member(one) && one.undecided) one.structural = true;
+  }
 }
 
 }  // namespace
 
 Identification identify(const CaseModel& model, const Eigen::MatrixXd& draws, const IdentifyOptions& options) {
+  const VerdictThresholds& thresholds = options.thresholds;
   Identification found;
   const Eigen::MatrixXd guiding = thinned(draws, 1500);
-  Profiles profiles =
-      profile_likelihood(model, {.draws = guiding, .log_likelihood = log_likelihoods(model, guiding)}, options.profile);
-  found.profiles = std::move(profiles.profiles);
-  found.best_fit = profiles.best;
-  found.fisher = fisher_spectrum(model, found.best_fit.x);
-  found.check = check_fit(model, draws, found.best_fit.x);
-  found.surrogate_share = median_surrogate_share(model, found.best_fit.x);
+  const Eigen::VectorXd likelihood = log_likelihoods(model, guiding);
+  const Profiles all = profile_likelihood(
+      model, {.draws = guiding, .log_likelihood = likelihood},
+      {.even_points = options.even_points, .near_points = options.near_points, .thresholds = thresholds});
+  found.profiles = all.profiles;
+  found.influence = all.influence;
+  found.best_fit = all.best;
+  found.fisher = fisher_spectrum(model, all.best.x);
+  found.check = check_fit(model, draws, all.best.x);
+  found.surrogate_share = median_surrogate_share(model, all.best.x);
   const FitEvidence fit{.predictive_p = found.check.predictive_p, .best_fit_p = found.check.best_fit_p};
-  found.fits = fit.fits(options.thresholds);
+  found.fits = fit.fits(thresholds);
 
   // The mode of the posterior.
-  Eigen::Index top = 0;
-  Eigen::VectorXd level = log_likelihoods(model, guiding);
+  Eigen::VectorXd level = likelihood;
   for (Eigen::Index i = 0; i < guiding.rows(); ++i) level[i] += log_prior(model, guiding.row(i).transpose());
-  level.maxCoeff(&top);
-  Eigen::MatrixXd starts(2, model.dimension());
-  starts << guiding.row(top), found.best_fit.x.transpose();
-  const Target target = posterior_target(std::make_shared<const CaseModel>(model));
-  const Maximum mode = maximise(target.log_density_gradient, {target.lower, target.upper}, starts);
+  const Eigen::VectorXd mode = mode_of(model, guiding, level, all.best.x);
 
-  std::vector<bool> identified;
-  for (std::size_t k = 0; k < found.profiles.size(); ++k) {
-    const Profile& profile = found.profiles[k];
+  std::vector<ParameterEvidence> evidence;
+  std::vector<FoundFacts> facts;
+  std::vector<Verdict> words;
+  for (std::size_t k = 0; k < all.profiles.size(); ++k) {
+    const Profile& profile = all.profiles[k];
     const Slot& slot = model.slots[k];
     ParameterReport report = describe_draws(slot, draws.col(static_cast<Eigen::Index>(k)), profile);
-    report.map = shown(slot, mode.x[static_cast<Eigen::Index>(k)]);
-    ParameterEvidence evidence{.name = report.name,
-                               .unit = report.unit,
-                               .mean = report.mean,
-                               .sd = report.sd,
-                               .q95 = report.q95,
-                               .contraction = report.contraction,
-                               .profile_low = report.profile_low,
-                               .profile_high = report.profile_high,
-                               .range_low = report.prior_low,
-                               .range_high = report.prior_high,
-                               .deviance_at_low = profile.deviance_at_low,
-                               .deviance_at_high = profile.deviance_at_high,
-                               .physical_low = physical_low(slot)};
-    if (profile.low_pinned) evidence.low_pinned_by = model.slots[static_cast<std::size_t>(*profile.low_pinned)].label;
-    if (profile.high_pinned)
-      evidence.high_pinned_by = model.slots[static_cast<std::size_t>(*profile.high_pinned)].label;
-    if (found.fits && !profile.closed() && found.surrogate_share <= options.thresholds.surrogate_share) {
-      const NoiseFree free = noise_free_extent(model, profile, found.best_fit.x, options.thresholds.noise_free_factor,
-                                               options.thresholds.profile_drop);
-      evidence.structural = free.share >= options.thresholds.noise_free_share;
-    }
-    const ParameterVerdict verdict = judge(evidence, fit, options.thresholds);
+    report.map = shown(slot, mode[static_cast<Eigen::Index>(k)]);
+    if (profile.low_pinned) report.low_pinned_by = model.slots[static_cast<std::size_t>(*profile.low_pinned)].label;
+    if (profile.high_pinned) report.high_pinned_by = model.slots[static_cast<std::size_t>(*profile.high_pinned)].label;
+    ParameterEvidence one{.name = report.name,
+                          .unit = report.unit,
+                          .mean = report.mean,
+                          .sd = report.sd,
+                          .q95 = report.q95,
+                          .facts = facts_of(report, profile, slot),
+                          .parts = report.intervals,
+                          .range_low = report.prior_low,
+                          .range_high = report.prior_high,
+                          .low_pinned_by = report.low_pinned_by,
+                          .high_pinned_by = report.high_pinned_by};
+    if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
+    one.facts.influences = all.influence[k].some;
+    one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);
+    words.push_back(word_of(one.facts, thresholds));
+    facts.push_back({one.facts, &found.profiles[k]});
+    evidence.push_back(std::move(one));
+    found.parameters.push_back(std::move(report));
+  }
+  std::vector<std::vector<WordProbability>> repeats(evidence.size());
+  if (found.fits) {
+    found.traded = find_traded_pairs(model, draws, all, words, thresholds);
+    add_structure(model, all, evidence, found.traded, thresholds);
+    repeats = repeat_words(model, facts, draws, all.best.x, thresholds, options.repeats);
+    found.modes = find_modes(all, draws, thresholds);
+    found.unvisited = unvisited(model, all, draws);
+  }
+  for (std::size_t k = 0; k < evidence.size(); ++k) {
+    const ParameterVerdict verdict = judge(evidence[k], fit, repeats[k], thresholds);
+    ParameterReport& report = found.parameters[k];
     report.verdict = verdict.verdict;
     report.reason = verdict.reason;
     report.borderline = verdict.borderline;
     report.sentence = verdict.sentence;
-    identified.push_back(verdict.verdict == Verdict::identified);
-    found.parameters.push_back(std::move(report));
+    report.word_probabilities = repeats[k];
+    report.share_measurement = verdict.shares.measurement;
+    report.share_surrogate = verdict.shares.surrogate;
+    report.share_structure = verdict.shares.structure;
+    report.share_range = verdict.shares.range;
   }
-  if (found.fits) found.traded = find_traded_pairs(model, draws, found.profiles, identified, options.thresholds);
   return found;
 }
 
-Words summarise(const CaseModel& model, const Identification& found, const VerdictThresholds& thresholds) {
-  Words words;
-  if (!found.fits) {
-    words.finding = fmt::format(
-        "No values of the parameters reproduce the data: chi2 {:.1f} for {} degrees of freedom, posterior predictive p "
-        "{:.2g}.",
-        found.check.chi2, found.check.dof, found.check.predictive_p);
-    words.consequence = "The parameters' values and errors mean nothing here; none is called identified.";
-    words.remedy =
-        "Check the data's errors and units and the rig's settings (fill, geometry, speed); then free what was fixed, "
-        "or widen the ranges.";
-    return words;
-  }
-  auto join = [](const std::vector<std::string>& names) {
-    std::string text;
-    for (std::size_t i = 0; i < names.size(); ++i)
-      text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-    return text;
-  };
-  auto are = [](const std::vector<std::string>& names) {
-    return names.size() == 1 ? std::string("is") : std::string("are");
-  };
-  std::vector<std::string> known, weak, unknown;
-  bool structural = false, one_sided = false, bound = false;
-  for (const auto& parameter : found.parameters) {
-    (parameter.verdict == Verdict::identified          ? known
-     : parameter.verdict == Verdict::weakly_identified ? weak
-                                                       : unknown)
-        .push_back(parameter.name);
-    structural = structural || parameter.reason == "structural";
-    one_sided = one_sided || parameter.reason == "one-sided";
-    bound = bound || parameter.reason == "bound";
-  }
-  if (!known.empty()) words.finding += fmt::format("The data determine {}. ", join(known));
-  if (!weak.empty()) words.finding += fmt::format("{} {} only weakly identified. ", join(weak), are(weak));
-  if (!unknown.empty()) words.finding += fmt::format("The data do not determine {}. ", join(unknown));
-  for (const auto& pair : found.traded)
-    words.finding += fmt::format("{} and {} are traded against each other: what is known is {} (correlation {:.2f}). ",
-                                 pair.first, pair.second, pair.combination, pair.correlation);
-  if (found.traded.empty() && found.fisher.collinearity > 10.0 && model.dimension() > 1)
-    words.finding += fmt::format("The parameters' effects on the data are nearly the same (collinearity {:.0f}). ",
-                                 found.fisher.collinearity);
-
-  if (unknown.empty() && weak.empty()) {
-    words.consequence = "The values with their errors can be used.";
-    words.remedy = "None needed.";
-  } else if (!found.traded.empty()) {
-    words.consequence =
-        "Any of the equivalent points predicts the measured data as well; what else they predict differs. Do not carry "
-        "one point of them to another machine or fill.";
-    words.remedy = structural ? "Measure another kind of quantity, or fix one of the pair by an independent "
-                                "experiment: a smaller error of the same measurement will not help."
-                              : "Measure a quantity that responds differently to the two, fix one by an independent "
-                                "experiment, or reduce the measurement error.";
-  } else if (one_sided) {
-    words.consequence = "Only a limit is known; the value given depends on where the range ends.";
-    words.remedy = "Widen the range, with training runs there, or measure where the response has not saturated.";
-  } else if (bound) {
-    words.consequence = "The limit can be used as such; zero is not excluded.";
-    words.remedy = "A smaller measurement error would lower the limit or show a value.";
-  } else {
-    words.consequence = "The values are little better than the prior.";
-    words.remedy = "Reduce the measurement error, or measure at more settings.";
-  }
-  if (found.surrogate_share > thresholds.surrogate_share)
-    words.remedy +=
-        fmt::format(" The surrogate's error is {:.0f} % of the measurement's: more training runs would help, too.",
-                    100.0 * found.surrogate_share);
-  while (!words.finding.empty() && words.finding.back() == ' ') words.finding.pop_back();
-  return words;
+Words summarise(const Identification& found, const std::string& parted_by) {
+  if (!found.fits)
+    return {.finding = fmt::format("No values of the parameters reproduce the data: chi2 {:.1f} for {} degrees of "
+                                   "freedom, posterior predictive p {:.2g}.",
+                                   found.check.chi2, found.check.dof, found.check.predictive_p),
+            .consequence = "The parameters' values and errors mean nothing here; none is called identified.",
+            .remedy =
+                "Check the data's errors and units and the rig's settings (fill, geometry, speed); then free what "
+                "was fixed, or widen the ranges."};
+  return words_of({.parameters = found.parameters,
+                   .traded = found.traded,
+                   .parted_by = parted_by,
+                   .surrogate_share = found.surrogate_share,
+                   .collinearity = found.fisher.collinearity});
 }
 
 }  // namespace uq

@@ -1,6 +1,7 @@
 #include "uq/profile.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -10,18 +11,50 @@
 namespace uq {
 namespace {
 
-/// Values at which unknown k is held: spread over the support, and denser over where the draws lie.
-std::vector<double> held_values(const Box& box, int k, const Eigen::VectorXd& draws, double best,
+/// Where the draws of one unknown lie: apart from each other by two empty bins of 64.
+struct Cluster {
+  double mean = 0.0, sd = 0.0;
+};
+std::vector<Cluster> clusters(const Eigen::VectorXd& draws, double low, double high) {
+  constexpr int bins = 64;
+  constexpr double least_share = 0.005;
+  std::vector<std::vector<double>> filled(bins);
+  for (const double u : draws)
+    filled[static_cast<std::size_t>(std::clamp(static_cast<int>(bins * (u - low) / (high - low)), 0, bins - 1))]
+        .push_back(u);
+  std::vector<Cluster> found;
+  std::vector<double> members;
+  const auto close = [&] {
+    if (static_cast<double>(members.size()) >= std::max(3.0, least_share * static_cast<double>(draws.size()))) {
+      const Eigen::Map<const Eigen::ArrayXd> values(members.data(), static_cast<Eigen::Index>(members.size()));
+      found.push_back({values.mean(), std::sqrt((values - values.mean()).square().mean())});
+    }
+    members.clear();
+  };
+  int empty = 0;
+  for (const auto& bin : filled) {
+    empty = bin.empty() ? empty + 1 : 0;
+    if (empty == 2) close();
+    members.insert(members.end(), bin.begin(), bin.end());
+  }
+  close();
+  return found;
+}
+
+/// Values at which unknown k is held: spread over the support, denser over where the draws lie, and the maxima.
+std::vector<double> held_values(const Box& box, int k, const Eigen::VectorXd& draws, const Profiles& known,
                                 const ProfileOptions& options) {
   const double low = box.lower[k], high = box.upper[k];
-  std::vector<double> values = {best};
+  std::vector<double> values = {known.best.x[k]};
+  for (const Maximum& maximum : known.maxima) values.push_back(maximum.x[k]);
   auto spread = [&](double from, double to, int count) {
     for (int i = 0; i < count; ++i) values.push_back(from + (to - from) * i / (count - 1));
   };
   spread(low, high, options.even_points);
-  const double mean = draws.mean();
-  const double sd = std::sqrt((draws.array() - mean).square().mean());
-  spread(std::max(low, mean - 3.5 * sd), std::min(high, mean + 3.5 * sd), options.near_points);
+  const std::vector<Cluster> where = clusters(draws, low, high);
+  const int each = std::max(7, options.near_points / std::max(1, static_cast<int>(where.size())));
+  for (const Cluster& cluster : where)
+    spread(std::max(low, cluster.mean - 3.5 * cluster.sd), std::min(high, cluster.mean + 3.5 * cluster.sd), each);
   std::sort(values.begin(), values.end());
   const double apart = 1e-6 * (high - low);
   values.erase(std::unique(values.begin(), values.end(), [&](double a, double b) { return b - a < apart; }),
@@ -40,56 +73,67 @@ std::optional<Eigen::VectorXd> draw_near(const Guides& guides, int k, double val
   return Eigen::VectorXd(guides.draws.row(*chosen).transpose());
 }
 
-/// Of the data, and of what calibrated the nuisances.
-Differentiable likelihood_of(const CaseModel& model) {
-  return [&model](const Eigen::VectorXd& u) -> Evaluation {
-    const Evaluation data = log_likelihood_gradient(model, u), certificates = log_certificates(model, u);
-    const Eigen::VectorXd gradient = data.gradient + certificates.gradient;
-    return {.value = data.value + certificates.value, .gradient = gradient};
-  };
-}
-
-/// Where the deviance crosses the drop, and the maximiser there.
-struct Crossing {
-  double at = 0.0;
-  Eigen::VectorXd maximiser;
-};
-
-/// Bisection between an inside and an outside value of unknown k.
-Crossing find_crossing(const CaseModel& model, const Box& box, Held inside, Held outside, const Eigen::VectorXd& start,
-                       double level) {
-  Eigen::VectorXd warm = start;
-  for (int i = 0; i < 14; ++i) {
-    const double middle = 0.5 * (inside.value + outside.value);
-    const Maximum found = maximise(likelihood_of(model), box, warm.transpose(), Held{inside.coordinate, middle});
-    if (found.value >= level) {
-      inside.value = middle;
-      warm = found.x;
-    } else {
-      outside.value = middle;
+/// The most likely draws that are apart from each other, and a few points of a low-discrepancy sequence (Halton 1960)
+/// over the box: where another maximum may be climbed from.
+Eigen::MatrixXd spread_starts(const CaseModel& model, const Box& box, const Guides& guides) {
+  constexpr double apart = 0.08;  // of the support
+  constexpr std::size_t from_draws = 8;
+  constexpr int many_rows = 200;  // each evaluation is dear
+  constexpr std::array<int, 12> primes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
+  const Eigen::VectorXd width = box.upper - box.lower;
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(guides.draws.rows()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return guides.log_likelihood[a] > guides.log_likelihood[b]; });
+  std::vector<Eigen::VectorXd> chosen;
+  for (const Eigen::Index i : order) {
+    if (chosen.size() == from_draws) break;
+    const Eigen::VectorXd u = guides.draws.row(i).transpose();
+    const bool near = std::any_of(chosen.begin(), chosen.end(), [&](const Eigen::VectorXd& other) {
+      return ((u - other).array() / width.array()).abs().maxCoeff() < apart;
+    });
+    if (!near) chosen.push_back(u);
+  }
+  const int from_box = model.row_count() > many_rows ? 0 : 12;
+  for (int i = 1; i <= from_box; ++i) {
+    Eigen::VectorXd u(width.size());
+    for (Eigen::Index k = 0; k < u.size(); ++k) {
+      const int base = primes[static_cast<std::size_t>(k) % primes.size()];
+      double share = 0.0, step = 1.0;
+      for (int n = i; n > 0; n /= base) share += (step /= base) * (n % base);
+      u[k] = box.lower[k] + share * width[k];
     }
+    chosen.push_back(u);
   }
-  return {.at = 0.5 * (inside.value + outside.value), .maximiser = warm};
+  Eigen::MatrixXd starts(static_cast<Eigen::Index>(chosen.size()), width.size());
+  for (std::size_t i = 0; i < chosen.size(); ++i) starts.row(static_cast<Eigen::Index>(i)) = chosen[i].transpose();
+  return starts;
 }
 
-/// Another unknown that sits at the end of its range, if one does and the interval ends for that: were its range twice
-/// as wide, the deviance there would fall by half of the drop, to first order. One without influence ends nothing.
-std::optional<int> pinned(const CaseModel& model, const Box& box, int k, const Eigen::VectorXd& at, double drop) {
-  const Eigen::VectorXd slope = likelihood_of(model)(at).gradient;
-  for (int other = 0; other < model.dimension(); ++other) {
-    if (other == k) continue;
-    const double width = box.upper[other] - box.lower[other];
-    if (2.0 * std::abs(slope[other]) * width < 0.5 * drop) continue;
-    const bool low =
-        at[other] - box.lower[other] < 1e-4 * width && !physical_low(model.slots[static_cast<std::size_t>(other)]);
-    if (low || box.upper[other] - at[other] < 1e-4 * width) return other;
+/// Maxima climbed to from spread starts: the largest, and others within `within` of it in log likelihood.
+void climb(const CaseModel& model, const Box& box, const Guides& guides, double within, Profiles& found) {
+  constexpr double same = 1e-3;  // of the support
+  std::vector<Maximum> all;
+  const Eigen::MatrixXd starts = spread_starts(model, box, guides);
+  for (Eigen::Index i = 0; i < starts.rows(); ++i) {
+    Maximum one = maximise(profiled(model), box, starts.row(i));
+    if (!std::isfinite(one.value)) continue;
+    if (one.value > found.best.value || found.best.x.size() == 0) found.best = one;
+    all.push_back(std::move(one));
   }
-  return {};
+  const Eigen::ArrayXd width = (box.upper - box.lower).array();
+  for (const Maximum& one : all) {
+    if (one.value < found.best.value - within || found.maxima.size() >= 12) continue;
+    const auto near = [&](const Maximum& other) { return ((one.x - other.x).array() / width).abs().maxCoeff() < same; };
+    if (near(found.best) || std::any_of(found.maxima.begin(), found.maxima.end(), near)) continue;
+    found.maxima.push_back(one);
+  }
 }
 
-Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guides, const Maximum& best,
+Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guides, const Profiles& known,
               const ProfileOptions& options) {
-  const std::vector<double> values = held_values(box, k, guides.draws.col(k), best.x[k], options);
+  const Maximum& best = known.best;
+  const std::vector<double> values = held_values(box, k, guides.draws.col(k), known, options);
   const auto count = static_cast<Eigen::Index>(values.size());
   Profile profile{.unknown = k,
                   .u = Eigen::Map<const Eigen::VectorXd>(values.data(), count),
@@ -106,7 +150,12 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
       starts.conservativeResize(2, Eigen::NoChange);
       starts.row(1) = near->transpose();
     }
-    const Maximum found = maximise(likelihood_of(model), box, starts, Held{k, values[static_cast<std::size_t>(i)]});
+    for (const Maximum& other : known.maxima)
+      if (std::abs(other.x[k] - values[static_cast<std::size_t>(i)]) < width) {
+        starts.conservativeResize(starts.rows() + 1, Eigen::NoChange);
+        starts.row(starts.rows() - 1) = other.x.transpose();
+      }
+    const Maximum found = maximise(profiled(model), box, starts, Held{k, values[static_cast<std::size_t>(i)]});
     level[i] = found.value;
     profile.path.row(i) = found.x.transpose();
   };
@@ -122,7 +171,7 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
     moved[k] = values[static_cast<std::size_t>(i)];
     if (log_likelihood(model, moved) + log_certificates(model, moved).value <= level[i]) return;
     const Maximum found =
-        maximise(likelihood_of(model), box, start.transpose(), Held{k, values[static_cast<std::size_t>(i)]});
+        maximise(profiled(model), box, start.transpose(), Held{k, values[static_cast<std::size_t>(i)]});
     if (found.value <= level[i]) return;
     level[i] = found.value;
     profile.path.row(i) = found.x.transpose();
@@ -133,51 +182,28 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
   return profile;
 }
 
-/// From log likelihoods to deviances, and the ends of the interval.
-void finish(const CaseModel& model, const Box& box, Profile& profile, const Maximum& best, double drop) {
-  const Eigen::VectorXd level = profile.deviance;
-  profile.deviance = (2.0 * (best.value - level.array())).max(0.0);
-  const Eigen::Index count = level.size();
-  profile.deviance_at_low = profile.deviance[0];
-  profile.deviance_at_high = profile.deviance[count - 1];
-  Eigen::Index first = 0, last = count - 1;
-  while (first < count && profile.deviance[first] > drop) ++first;
-  while (last >= 0 && profile.deviance[last] > drop) --last;
-  if (first == count) return;  // no point inside: the best fit itself is one, so this does not happen
-  const double wanted = best.value - 0.5 * drop;
-  const int k = profile.unknown;
-  auto end = [&](Eigen::Index inside, Eigen::Index outside, std::optional<double>& at, std::optional<int>& by) {
-    const Eigen::VectorXd start = profile.path.row(inside).transpose();
-    const Crossing found = find_crossing(model, box, {k, profile.u[inside]}, {k, profile.u[outside]}, start, wanted);
-    by = pinned(model, box, k, found.maximiser, drop);
-    if (!by) at = found.at;
-  };
-  if (first > 0) end(first, first - 1, profile.low, profile.low_pinned);
-  if (last < count - 1) end(last, last + 1, profile.high, profile.high_pinned);
-}
-
 }  // namespace
 
+Differentiable profiled(const CaseModel& model) {
+  return [&model](const Eigen::VectorXd& u) -> Evaluation {
+    const Evaluation data = log_likelihood_gradient(model, u), certificates = log_certificates(model, u);
+    const Eigen::VectorXd gradient = data.gradient + certificates.gradient;
+    return {.value = data.value + certificates.value, .gradient = gradient};
+  };
+}
+
 Maximum maximum_likelihood(const CaseModel& model, const Eigen::MatrixXd& starts) {
-  return maximise(likelihood_of(model), {model.lower(), model.upper()}, starts);
+  return maximise(profiled(model), {model.lower(), model.upper()}, starts);
 }
 
 Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const ProfileOptions& options) {
   const Box box{model.lower(), model.upper()};
-  // Starts: the most likely draws.
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(guides.draws.rows()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  const std::size_t top = std::min<std::size_t>(4, order.size());
-  std::partial_sort(
-      order.begin(), order.begin() + static_cast<std::ptrdiff_t>(top), order.end(),
-      [&](Eigen::Index a, Eigen::Index b) { return guides.log_likelihood[a] > guides.log_likelihood[b]; });
-  Eigen::MatrixXd starts(static_cast<Eigen::Index>(top), model.dimension());
-  for (std::size_t i = 0; i < top; ++i) starts.row(static_cast<Eigen::Index>(i)) = guides.draws.row(order[i]);
-
-  Profiles found{.profiles = {}, .best = maximum_likelihood(model, starts)};
+  Profiles found;
+  climb(model, box, guides, 0.5 * options.thresholds.profile_drop, found);
+  found.influence = find_influence(model, found.best.x, guides.draws, options.thresholds);
   for (int k = 0; k < model.dimension(); ++k) {
     if (!model.slots[static_cast<std::size_t>(k)].own) continue;
-    Profile profile = sweep(model, box, k, guides, found.best, options);
+    Profile profile = sweep(model, box, k, guides, found, options);
     Eigen::Index highest = 0;
     if (profile.deviance.maxCoeff(&highest) > found.best.value) {
       found.best.value = profile.deviance[highest];
@@ -185,51 +211,13 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
     }
     found.profiles.push_back(std::move(profile));
   }
-  for (auto& profile : found.profiles) finish(model, box, profile, found.best, options.drop);
+  for (auto& profile : found.profiles) finish_profile(model, found, profile, options.thresholds);
   return found;
 }
 
 bool physical_low(const Slot& slot) {
   const data::Parameter& parameter = slot.prior.parameter();
   return parameter.scale == data::Scale::linear && parameter.low == 0.0 && slot.prior.low() < 1e-12;
-}
-
-NoiseFree noise_free_extent(const CaseModel& model, const Profile& profile, const Eigen::VectorXd& best,
-                            double variance_factor, double drop) {
-  const Box box{model.lower(), model.upper()};
-  const Eigen::VectorXd truth = predict(model, best).mean;
-  // Twice the log likelihood of that truth, up to constants. What only widens the spread explains nothing, and stays.
-  const double known = log_certificates(model, best).value;
-  auto match = [&](const Eigen::VectorXd& u) {
-    Eigen::VectorXd at = u;
-    for (int s = 0; s < model.dimension(); ++s)
-      if (model.slots[static_cast<std::size_t>(s)].nuisance == Acts::on_spread) at[s] = best[s];
-    return -chi_squared(predict(model, at), truth, variance_factor) + 2.0 * (log_certificates(model, at).value - known);
-  };
-  const Differentiable function = with_differences(match, box);
-  Eigen::Index nearest = 0;
-  (profile.u.array() - best[profile.unknown]).abs().minCoeff(&nearest);
-  NoiseFree found{.low = profile.u[nearest], .high = profile.u[nearest]};
-  // Followed along the profile's path towards each bound, so that a curved ridge is not lost, until the means differ.
-  for (const Eigen::Index step : {-1, 1}) {
-    Eigen::VectorXd at = best;
-    for (Eigen::Index i = nearest + step; i >= 0 && i < profile.u.size() && profile.deviance[i] <= drop; i += step) {
-      Eigen::MatrixXd starts(2, at.size());
-      starts << at.transpose(), profile.path.row(i);
-      const Maximum closest = maximise(function, box, starts, Held{profile.unknown, profile.u[i]});
-      if (-closest.value > drop) break;
-      at = closest.x;
-      (step < 0 ? found.low : found.high) = profile.u[i];
-    }
-  }
-  double low = profile.u[nearest], high = low;
-  for (Eigen::Index i = 0; i < profile.u.size(); ++i)
-    if (profile.deviance[i] <= drop) {
-      low = std::min(low, profile.u[i]);
-      high = std::max(high, profile.u[i]);
-    }
-  found.share = high > low ? (found.high - found.low) / (high - low) : 0.0;
-  return found;
 }
 
 }  // namespace uq

@@ -10,6 +10,7 @@
 #include "uq/discrepancy.hpp"
 #include "uq/posterior.hpp"
 #include "uq/quadrature.hpp"
+#include "uq/support.hpp"
 
 namespace uq {
 namespace {
@@ -51,6 +52,27 @@ void add_nuisances(CaseReport& report, const SampledCase& sampled) {
          .rhat = sampled.draws.rhat[k],
          .ess_bulk = sampled.draws.ess_bulk[k],
          .ess_tail = sampled.draws.ess_tail[k]});
+  }
+}
+
+/// Separate regions of the posterior, in the study's units. Where the sampler has missed one, it has not converged.
+void add_modes(CaseReport& report, const CaseModel& model, const Identification& found) {
+  if (found.modes.size() > 1)
+    for (const Mode& mode : found.modes) {
+      ModeReport made{.weight = mode.weight, .mean = {}, .sd = {}};
+      for (int k = 0; k < model.own_count(); ++k) {
+        const Slot& slot = model.slots[static_cast<std::size_t>(k)];
+        const data::Unit& unit = slot.prior.parameter().unit;
+        made.mean[slot.label] = unit.from_si(slot.value(mode.mean[k]));
+        made.sd[slot.label] = mode.sd[k] * std::abs(slot.slope(mode.mean[k])) / unit.factor;
+      }
+      report.modes.push_back(std::move(made));
+    }
+  for (const std::string& place : found.unvisited) {
+    report.converged = false;
+    report.warnings.push_back(
+        fmt::format("case {}: the chains have not converged: {} fits the data as well, and no draw lies there",
+                    report.name, place));
   }
 }
 
@@ -142,8 +164,30 @@ void add_sampler_warnings(CaseReport& report, const Draws& draws) {
         fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
 }
 
+/// Where the runs cannot carry a verdict, that is the finding, and what is printed beside it is no result.
+void doubt(CaseReport& report, Words& words, const data::Study& study) {
+  const bool own_engine = study.training.engine == "demcal";
+  words.finding = fmt::format("No verdict: {}.{}", report.doubt,
+                              report.fits ? "" : " As it stands, the surrogate does not reproduce the data either.");
+  report.traded.clear();
+  if (report.unusable) {
+    words.consequence = "What the surrogate gives for the parameters is not the model's, and is not shown.";
+    words.remedy = "See the surrogate's remedy above; then calibrate again.";
+  } else if (!report.support.supported) {
+    words.consequence = "The values are extrapolated, and no results.";
+    words.remedy =
+        fmt::format("Run {} of the posterior's points ({}), and calibrate again.", report.support.next_runs.size(),
+                    own_engine ? "demcal train STUDY --at-posterior N" : "next-runs.csv beside the report");
+  } else {
+    words.consequence = "The values with and without those runs are both shown; neither is a result yet.";
+    words.remedy = "Correct the runs or leave them out ([training] leave_out), and calibrate again.";
+  }
+}
+
 void add_warnings(CaseReport& report, const SampledCase& sampled) {
-  if (!report.converged)
+  if (!report.doubt.empty() && !report.unusable)
+    report.warnings.push_back(fmt::format("case {}: {}", report.name, report.doubt));
+  if (!sampled.draws.converged)
     report.warnings.push_back(
         fmt::format("case {}: the chains have not converged: {}", report.name, sampled.draws.reason));
   if (!report.fits) report.warnings.push_back(fmt::format("case {}: the model does not fit the data", report.name));
@@ -196,7 +240,13 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.draws = static_cast<int>(sampled.draws.chains.front().x.rows());
 
   const Eigen::MatrixXd draws = sampled.draws.pooled();
-  Identification found = identify(model, draws, options.identify);
+  report.support = sampled.support;
+  IdentifyOptions judged = options.identify;
+  if (judged.unsupported.empty()) judged.unsupported = unsupported_parameters(model, sampled.support);
+  if (!judged.unsupported.empty()) report.doubt = judged.unsupported.front();
+  report.unusable = !doubt_of(model).empty();
+  Identification found = identify(model, draws, judged);
+  report.surrogate_share = found.surrogate_share;
   take_cut_verdicts(found, sampled, options);
   report.chi2 = found.check.chi2;
   report.dof = found.check.dof;
@@ -211,6 +261,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
       for (PredictiveCurve& curve :
            mean_curves(study, model, Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()))))
         pair.curves.push_back(std::move(curve));
+  add_modes(report, model, found);
   add_diagnostics(report, sampled);
   add_nuisances(report, sampled);
   add_draws(report, model, draws);
@@ -220,7 +271,8 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.discrepancies = discrepancy_bands(study, model, draws, seed);
   if (options.quadrature && model.dimension() <= 2 && report.cuts.empty())
     add_quadrature(report, sampled, draws, options);
-  Words words = summarise(model, found, options.identify.thresholds);
+  report.modes_parted_by = parted_by(study, model, found.modes);
+  Words words = summarise(found, report.modes_parted_by);
   if (!found.fits) {
     const Contradiction sets =
         describe_contradiction(fits_alone(study, model, found.best_fit.x), options.identify.thresholds.best_fit_p);
@@ -229,6 +281,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
       words.remedy = sets.remedy + " " + words.remedy;
     }
   }
+  if (!report.doubt.empty()) doubt(report, words, study);
   report.finding = words.finding;
   report.consequence = words.consequence;
   report.remedy = words.remedy;

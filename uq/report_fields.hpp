@@ -10,6 +10,69 @@ namespace uq {
 template <class T, class S>
 concept SameAs = std::is_same_v<std::remove_const_t<T>, S>;
 
+template <class Visit, SameAs<DataFinding> T>
+void visit_fields(Visit&& visit, T& f) {
+  visit("kind", f.kind);
+  visit("place", f.place);
+  visit("severity", f.severity);
+  visit("what", f.what);
+  visit("remedy", f.remedy);
+  visit("places", f.places);
+}
+
+template <class Visit, SameAs<OutlyingRun> T>
+void visit_fields(Visit&& visit, T& o) {
+  visit("place", o.place);
+  visit("observed", o.observed);
+  visit("expected", o.expected);
+  visit("deviations", o.deviations);
+}
+
+template <class Visit, SameAs<InputSupport> T>
+void visit_fields(Visit&& visit, T& i) {
+  visit("name", i.name);
+  visit("unit", i.unit);
+  visit("runs_low", i.runs_low);
+  visit("runs_high", i.runs_high);
+  visit("outside", i.outside);
+  visit("gap", i.gap);
+  visit("gap_low", i.gap_low);
+  visit("gap_high", i.gap_high);
+}
+
+template <class Visit, SameAs<NextRun> T>
+void visit_fields(Visit&& visit, T& n) {
+  visit("material", n.material);
+  visit("point", n.point);
+}
+
+template <class Visit, SameAs<SupportReport> T>
+void visit_fields(Visit&& visit, T& s) {
+  visit("known", s.known);
+  visit("supported", s.supported);
+  visit("unsupported", s.unsupported);
+  visit("outside", s.outside);
+  visit("gap", s.gap);
+  visit("empty", s.empty);
+  visit("uncertain", s.uncertain);
+  visit("distance", s.distance);
+  visit("variance_ratio", s.variance_ratio);
+  visit("inputs", s.inputs);
+  visit("sentence", s.sentence);
+  visit("next_runs", s.next_runs);
+}
+
+template <class Visit, SameAs<WithoutRuns> T>
+void visit_fields(Visit&& visit, T& w) {
+  visit("places", w.places);
+  visit("parameters", w.parameters);
+  visit("verdicts", w.verdicts);
+  visit("mean", w.mean);
+  visit("sd", w.sd);
+  visit("fits", w.fits);
+  visit("sentence", w.sentence);
+}
+
 template <class Visit, SameAs<SurrogateReport> T>
 void visit_fields(Visit&& visit, T& s) {
   visit("output", s.output);
@@ -45,6 +108,32 @@ void visit_fields(Visit&& visit, T& s) {
   visit("low_runs", s.low_runs);
   visit("rho", s.rho);
   visit("rho_sd", s.rho_sd);
+  visit("outlying", s.outlying);
+}
+
+template <class Visit, SameAs<ValueRange> T>
+void visit_fields(Visit&& visit, T& v) {
+  visit("low", v.low);
+  visit("high", v.high);
+  visit("low_open", v.low_open);
+  visit("high_open", v.high_open);
+  visit("weight", v.weight);
+  visit("mean", v.mean);
+  visit("sd", v.sd);
+}
+
+template <class Visit, SameAs<ProfileHole> T>
+void visit_fields(Visit&& visit, T& h) {
+  visit("low", h.low);
+  visit("high", h.high);
+  visit("deviance", h.deviance);
+  visit("in_doubt", h.in_doubt);
+}
+
+template <class Visit, SameAs<WordProbability> T>
+void visit_fields(Visit&& visit, T& w) {
+  visit("verdict", w.verdict);
+  visit("probability", w.probability);
 }
 
 template <class Visit, SameAs<ParameterReport> T>
@@ -76,6 +165,15 @@ void visit_fields(Visit&& visit, T& p) {
   visit("reason", p.reason);
   visit("borderline", p.borderline);
   visit("sentence", p.sentence);
+  visit("intervals", p.intervals);
+  visit("holes", p.holes);
+  visit("low_pinned_by", p.low_pinned_by);
+  visit("high_pinned_by", p.high_pinned_by);
+  visit("word_probabilities", p.word_probabilities);
+  visit("share_measurement", p.share_measurement);
+  visit("share_surrogate", p.share_surrogate);
+  visit("share_structure", p.share_structure);
+  visit("share_range", p.share_range);
 }
 
 template <class Visit, SameAs<NuisanceReport> T>
@@ -112,11 +210,24 @@ template <class Visit, SameAs<TradedPair> T>
 void visit_fields(Visit&& visit, T& t) {
   visit("first", t.first);
   visit("second", t.second);
+  visit("parameters", t.parameters);
   visit("combination", t.combination);
+  visit("form", t.form);
+  visit("value", t.value);
+  visit("error", t.error);
+  visit("unit", t.unit);
+  visit("statement", t.statement);
   visit("correlation", t.correlation);
   visit("equivalent", t.equivalent);
   visit("equivalent_u", t.equivalent_u);
   visit("curves", t.curves);
+}
+
+template <class Visit, SameAs<ModeReport> T>
+void visit_fields(Visit&& visit, T& m) {
+  visit("weight", m.weight);
+  visit("mean", m.mean);
+  visit("sd", m.sd);
 }
 
 template <class Visit, SameAs<ModelComparison> T>
@@ -188,6 +299,13 @@ void visit_fields(Visit&& visit, T& c) {
   visit("cuts", c.cuts);
   visit("sampler", c.sampler);
   visit("energy_fraction", c.energy_fraction);
+  visit("support", c.support);
+  visit("without", c.without);
+  visit("doubt", c.doubt);
+  visit("unusable", c.unusable);
+  visit("surrogate_share", c.surrogate_share);
+  visit("modes", c.modes);
+  visit("modes_parted_by", c.modes_parted_by);
 }
 
 template <class Visit, SameAs<ErrorScan> T>
@@ -214,6 +332,8 @@ void visit_fields(Visit&& visit, T& r) {
   visit("thresholds", r.thresholds);
   visit("provenance", r.provenance);
   visit("notes", r.notes);
+  visit("findings", r.findings);
+  visit("cautions", r.cautions);
 }
 
 }  // namespace uq

@@ -65,9 +65,8 @@ std::vector<std::vector<double>> equivalent_columns(const CaseReport& result, co
                                                     const ParameterReport& b) {
   std::vector<std::vector<double>> columns(3);
   for (const TradedPair& traded : result.traded) {
-    const bool same =
-        (traded.first == a.name && traded.second == b.name) || (traded.first == b.name && traded.second == a.name);
-    if (!same) continue;
+    if (!(a.name == traded.first || a.name == traded.second) || !(b.name == traded.first || b.name == traded.second))
+      continue;
     double number = 0.0;
     for (const auto& point : traded.equivalent) {
       number += 1.0;

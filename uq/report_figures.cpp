@@ -9,15 +9,13 @@
 #include <set>
 
 #include "uq/report_plot.hpp"
+#include "uq/thresholds.hpp"
 
 namespace uq {
 namespace {
 
 using plot::Axis;
 using plot::Extent;
-
-/// delta chi2 of a 95 % profile-likelihood interval of one parameter.
-constexpr double chi2_95 = 3.84;
 
 bool belongs(const PredictivePoint& point, const PredictiveCurve& curve) {
   if (point.output != curve.output) return false;
@@ -197,7 +195,11 @@ Figure profile_figure(const ParameterReport& parameter, const std::string& stem)
   for (const double deviance : parameter.profile_deviance) up.include(deviance);
   const Axis horizontal = plot::axis_for(parameter.name, parameter.unit, across.largest());
   const double top = std::clamp(up.empty ? 0.0 : up.high, 6.0, 12.0);
-  const double low = parameter.profile_low.value_or(across.low), high = parameter.profile_high.value_or(across.high);
+  // Each part of the interval, up to where the curve crosses the line.
+  std::vector<std::pair<double, double>> shaded;
+  for (const ValueRange& part : parameter.intervals) shaded.emplace_back(part.low, part.high);
+  if (shaded.empty())
+    shaded.emplace_back(parameter.profile_low.value_or(across.low), parameter.profile_high.value_or(across.high));
 
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 310};
   figure.data = plot::block("profile", {parameter.profile_x, parameter.profile_deviance});
@@ -205,17 +207,18 @@ Figure profile_figure(const ParameterReport& parameter, const std::string& stem)
   figure.script = plot::look() + plot::label('x', horizontal) +
                   fmt::format("set ylabel '−2 Δ ln L' textcolor rgb '{}'\n", plot::ink) +
                   fmt::format("sx = {:.0e}\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [0:{:.10g}]\n",
-                              horizontal.scale, range.low, range.high, top) +
-                  fmt::format(
-                      "set object 1 rectangle from first {:.10g}*sx, graph 0 to first {:.10g}*sx, graph 1 behind "
-                      "fillcolor rgb '{}' fillstyle solid noborder\n",
-                      low, high, "#EAF4FB") +
-                  fmt::format(
-                      "plot {0} with lines linecolor rgb '{1}' linewidth 1.2 dashtype 2 "
-                      "title '95 % ({0})', \\\n"
-                      "  '{2}.dat' index 'profile' using ($1*sx):2 with lines linecolor rgb '{3}' linewidth 2 "
-                      "title 'profile'",
-                      chi2_95, plot::vermillion, stem, plot::blue);
+                              horizontal.scale, range.low, range.high, top);
+  for (std::size_t i = 0; i < shaded.size(); ++i)
+    figure.script += fmt::format(
+        "set object {} rectangle from first {:.10g}*sx, graph 0 to first {:.10g}*sx, graph 1 behind "
+        "fillcolor rgb '{}' fillstyle solid noborder\n",
+        i + 1, shaded[i].first, shaded[i].second, "#EAF4FB");
+  figure.script += fmt::format(
+      "plot {0:.3g} with lines linecolor rgb '{1}' linewidth 1.2 dashtype 2 "
+      "title '95 % ({0:.3g})', \\\n"
+      "  '{2}.dat' index 'profile' using ($1*sx):2 with lines linecolor rgb '{3}' linewidth 2 "
+      "title 'profile'",
+      deviance_95, plot::vermillion, stem, plot::blue);
   if (std::isfinite(parameter.map)) {
     figure.data += plot::block("map", {{parameter.map}, {0.0}});
     figure.script += fmt::format(

@@ -34,6 +34,24 @@ std::string warnings_box(const CalibrationReport& report) {
   return out + "</ul></div>\n";
 }
 
+std::string cautions_list(const CalibrationReport& report) {
+  if (report.cautions.empty()) return {};
+  std::string out = "<ul class=\"note\">\n";
+  for (const std::string& line : report.cautions) out += "<li>" + text(line) + "</li>\n";
+  return out + "</ul>\n";
+}
+
+std::string findings_section(const CalibrationReport& report) {
+  if (report.findings.empty()) return {};
+  Table table{.caption = {}, .head = {{"Kind"}, {"Where"}, {"What"}, {"What to do"}}, .rows = {}};
+  for (const DataFinding& finding : report.findings)
+    table.rows.push_back(
+        {{text(finding.kind)}, {text(finding.place)}, {text(finding.what), "long"}, {text(finding.remedy), "long"}});
+  return "<section id=\"data\">\n<h2>Runs and observations</h2>\n<p>What is odd in the data, found before anything was "
+         "fitted.</p>\n" +
+         page::html(table) + "</section>\n";
+}
+
 std::string glance(const CalibrationReport& report) {
   if (report.cases.empty()) return "<p>No case was calibrated.</p>\n";
   Table table{.caption = {}, .head = {{"Case"}, {"Parameter"}, {"Posterior mean \u00b1 sd"}, {"Verdict"}}, .rows = {}};
@@ -43,12 +61,19 @@ std::string glance(const CalibrationReport& report) {
     for (const ParameterReport& parameter : result.parameters) {
       const std::string link =
           first ? fmt::format("<a href=\"#{}\">{}</a>", page::case_id(i, result), text(result.name)) : "";
-      table.rows.push_back({{link},
-                            {text(parameter.name)},
-                            {text(format_with_error(parameter.mean, parameter.sd, parameter.unit, pretty)), "nowrap"},
-                            {page::badge(shown_verdict(result, parameter))}});
+      table.rows.push_back(
+          {{link},
+           {text(parameter.name)},
+           {text(shown_value(result, parameter, pretty)), parameter.intervals.size() > 1 ? "" : "nowrap"},
+           {page::badge(shown_verdict(result, parameter))}});
       first = false;
     }
+    for (const TradedPair& traded : result.traded)
+      if (std::isfinite(traded.value))
+        table.rows.push_back({{""},
+                              {text(traded.combination)},
+                              {text(format_with_error(traded.value, traded.error, traded.unit, pretty)), "nowrap"},
+                              {"<span class=\"soft\">known together</span>"}});
   }
   return page::html(table);
 }
@@ -99,9 +124,8 @@ std::string error_scan_section(const CalibrationReport& report) {
     table.rows.push_back(std::move(row));
     previous = key.first;
   }
-  return "<section id=\"error-scan\">\n<h2>If the measurement were better or worse</h2>\n<p>The verdicts for data of "
-         "the same "
-         "kind whose standard error is another share of the measured value.</p>\n" +
+  return "<section id=\"error-scan\">\n<h2>If the measurement were better or worse</h2>\n<p>The verdicts for "
+         "made-up data of the same kind: what the posterior predicts, with noise of another share of the value.</p>\n" +
          page::html(table) + "</section>\n";
 }
 
@@ -202,6 +226,7 @@ void write_report_html(const CalibrationReport& report, const std::string& folde
     body += section;
   };
   add("error-scan", "If the measurement were better or worse", error_scan_section(report));
+  add("data", "Runs and observations", findings_section(report));
   add("surrogates", "Surrogate validation", page::surrogate_section(report.surrogates, context));
   add("sampler", "Sampler diagnostics", sampler_section(report));
   add("thresholds", "Thresholds behind the verdicts",
@@ -221,7 +246,7 @@ void write_report_html(const CalibrationReport& report, const std::string& folde
   head += fmt::format("<header>\n<h1>Calibration report: {}</h1>\n", name);
   if (!report.study_description.empty()) head += "<p class=\"lead\">" + text(report.study_description) + "</p>\n";
   if (!report.study_file.empty()) head += "<p class=\"note\">Study: " + text(report.study_file) + "</p>\n";
-  head += "</header>\n" + glance(report) + contents(sections);
+  head += "</header>\n" + cautions_list(report) + glance(report) + contents(sections);
   data::write_atomically((fs::path(folder) / "report.html").string(),
                          head + "<main>\n" + body + "</main>\n</body>\n</html>\n");
 }

@@ -7,6 +7,7 @@
 #include "uq/report_figures.hpp"
 #include "uq/report_page.hpp"
 #include "uq/report_plot.hpp"
+#include "uq/thresholds.hpp"
 
 namespace uq::page {
 namespace {
@@ -17,10 +18,6 @@ std::string joined(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + text(name);
   return list;
-}
-
-std::string value(const ParameterReport& parameter) {
-  return text(format_with_error(parameter.mean, parameter.sd, parameter.unit, pretty));
 }
 
 std::string verdict_words(const CaseReport& result) {
@@ -35,6 +32,7 @@ std::string verdict_words(const CaseReport& result) {
   entry("Finding", result.finding);
   entry("Consequence", result.consequence);
   entry("Remedy", result.remedy);
+  entry("Without", without_sentence(result));
   for (const std::string& warning : result.warnings) entry("Warning", warning);
   return out + "</dl></div>\n";
 }
@@ -49,25 +47,58 @@ std::string parameter_table(const CaseReport& result) {
                        {"Verdict"}},
               .rows = {}};
   std::string sentences;
+  const bool believed = result.doubt.empty();
+  const std::string nothing = "\u2013";
   for (const ParameterReport& parameter : result.parameters) {
     const Verdict verdict = shown_verdict(result, parameter);
     std::string said = badge(verdict);
     if (verdict == parameter.verdict && parameter.reason) said += " " + text(*parameter.reason);
-    if (parameter.borderline && result.fits) said += " <span class=\"soft\">(borderline)</span>";
+    if (parameter.borderline && result.fits) {
+      const std::string words = format_words(parameter);
+      said += fmt::format(" <span class=\"soft\">(borderline{})</span>", words.empty() ? "" : ": " + text(words));
+    }
     const Rounding rounding = rounding_of(parameter.mean, parameter.sd);
     table.rows.push_back(
         {{text(parameter.name)},
-         {value(parameter), "nowrap"},
-         {text(format_interval(parameter.q05, parameter.q95, rounding, parameter.unit, pretty)), "nowrap"},
-         {text(format_profile_interval(parameter, pretty)),
-          parameter.profile_low && parameter.profile_high ? "nowrap" : ""},
-         number(significant(parameter.contraction, std::abs(parameter.contraction) < 0.1 ? 1 : 2, pretty)),
+         {text(shown_value(result, parameter, pretty)), verdict == Verdict::several_values ? "" : "nowrap"},
+         {!believed ? nothing
+          : verdict == Verdict::several_values
+              ? "in parts"
+              : text(format_interval(parameter.q05, parameter.q95, rounding, parameter.unit, pretty)),
+          "nowrap"},
+         {believed ? text(format_profile_interval(parameter, pretty)) : nothing,
+          parameter.profile_low && parameter.profile_high && parameter.intervals.size() < 2 ? "nowrap" : ""},
+         number(believed ? significant(parameter.contraction, std::abs(parameter.contraction) < 0.1 ? 1 : 2, pretty)
+                         : nothing),
          {said}});
     const std::string sentence = shown_sentence(result, parameter);
     if (!sentence.empty()) sentences += "<li>" + text(sentence) + "</li>\n";
   }
   if (table.rows.empty()) return "<p>This case has no free parameter.</p>\n";
   return html(table) + (sentences.empty() ? "" : "<ul>\n" + sentences + "</ul>\n");
+}
+
+/// The values that belong together, where the posterior is in separate regions.
+std::string mode_table(const CaseReport& result) {
+  if (result.modes.size() < 2) return {};
+  Table table{.caption = "Values that fit together: each row is a separate region of the posterior.",
+              .head = {{"Share of the posterior"}},
+              .rows = {}};
+  for (const ParameterReport& parameter : result.parameters)
+    table.head.push_back({text(name_in_unit(parameter.name, parameter.unit))});
+  for (const ModeReport& mode : result.modes) {
+    std::vector<Cell> row{{fmt::format("{:.0f}\u00a0%", 100.0 * mode.weight)}};
+    for (const ParameterReport& parameter : result.parameters) {
+      const bool known = mode.mean.contains(parameter.name) && mode.sd.contains(parameter.name);
+      row.push_back({known
+                         ? text(format_with_error(mode.mean.at(parameter.name), mode.sd.at(parameter.name), "", pretty))
+                         : std::string(),
+                     "nowrap"});
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return html(table) +
+         (result.modes_parted_by.empty() ? "" : "<p>To tell them apart, " + text(result.modes_parted_by) + ".</p>\n");
 }
 
 std::string nuisance_table(const CaseReport& result) {
@@ -159,6 +190,32 @@ std::string predictive_table(const CaseReport& result, std::size_t rows_shown_op
   return "<details><summary>The numbers behind the figure</summary>\n" + html(table) + "</details>\n";
 }
 
+std::string percent(double share) { return fmt::format("{:.0f}\u00a0%", 100.0 * share); }
+
+std::string support_part(const CaseReport& result) {
+  const SupportReport& support = result.support;
+  if (!support.known) return {};
+  std::string out = fmt::format(
+      "<h3>Support by runs</h3>\n<p>{} of the posterior lies where no run speaks. The nearest run is {} length scales "
+      "away "
+      "(median), and the surrogate's variance there is {} of what it would be without runs.</p>\n",
+      percent(support.unsupported), significant(support.distance, 2, pretty),
+      significant(support.variance_ratio, 2, pretty));
+  Table table{.caption = {},
+              .head = {{"Input"}, {"Covered by runs"}, number("Posterior beyond"), number("Posterior in a gap")},
+              .rows = {}};
+  for (const InputSupport& input : support.inputs)
+    table.rows.push_back({{text(input.name)},
+                          {text(fmt::format("{:.4g} to {:.4g}{}{}", input.runs_low, input.runs_high,
+                                            input.unit.empty() ? "" : " ", input.unit)),
+                           "nowrap"},
+                          number(percent(input.outside)),
+                          number(percent(input.gap) +
+                                 (input.gap > 0.0 ? fmt::format(" ({:.4g} to {:.4g})", input.gap_low, input.gap_high)
+                                                  : std::string()))});
+  return out + html(table);
+}
+
 std::string predictive_part(const CaseReport& result, const std::string& id, const Context& context) {
   const auto curves = curves_to_draw(result);
   if (curves.empty() && result.predictive.empty()) return {};
@@ -201,7 +258,18 @@ std::string comparison_part(const CaseReport& result) {
   return out;
 }
 
-/// The model's mean at each equivalent point, set by set.
+/// What is said of the holes that the surrogate's own error may have made.
+std::string doubts(const ParameterReport& parameter) {
+  std::string words;
+  for (const ProfileHole& hole : parameter.holes)
+    if (hole.in_doubt)
+      words += fmt::format(" The rise to {:.2g} between {} is within the surrogate's own error, and is no finding.",
+                           hole.deviance,
+                           format_interval(hole.low, hole.high, rounding_of(parameter.mean, parameter.sd),
+                                           parameter.unit, Typography::unicode));
+  return words;
+}
+
 std::string profile_part(const CaseReport& result, const std::string& id, const Context& context) {
   std::string figures;
   std::size_t drawn = 0;
@@ -210,16 +278,16 @@ std::string profile_part(const CaseReport& result, const std::string& id, const 
     if (parameter.profile_x.size() < 2 || parameter.profile_deviance.size() != parameter.profile_x.size()) continue;
     ++drawn;
     figures += figure(profile_figure(parameter, fmt::format("{}-profile-{}", id, i + 1)),
-                      fmt::format("{}: 95\u00a0% interval {}.", text(parameter.name),
-                                  text(format_profile_interval(parameter, pretty))),
+                      fmt::format("{}: 95\u00a0% interval {}.{}", text(parameter.name),
+                                  text(format_profile_interval(parameter, pretty)), text(doubts(parameter))),
                       context);
   }
   if (figures.empty()) return {};
   return fmt::format(
       "<h3>Profile likelihood</h3>\n<p>How much worse the best fit becomes when one parameter is held at a "
-      "value. Where the curve stays below 3.84, the observations do not exclude the value.</p>\n"
+      "value. Where the curve stays below {:.3g}, the observations do not exclude the value.</p>\n"
       "<div class=\"pair{}\">\n{}</div>\n",
-      drawn == 1 ? " single" : "", figures);
+      deviance_95, drawn == 1 ? " single" : "", figures);
 }
 
 }  // namespace
@@ -227,9 +295,10 @@ std::string profile_part(const CaseReport& result, const std::string& id, const 
 std::string case_section(const CaseReport& result, std::size_t index, const Context& context) {
   const std::string id = case_id(index, result);
   return fmt::format("<section id=\"{}\">\n<h2>Case {}</h2>\n", id, text(result.name)) + verdict_words(result) +
-         parameter_table(result) + comparison_part(result) + nuisance_table(result) + fit_and_data(result) +
+         parameter_table(result) + (result.doubt.empty() ? mode_table(result) : "") + support_part(result) +
+         comparison_part(result) + nuisance_table(result) + fit_and_data(result) +
          predictive_part(result, id, context) + discrepancy_part(result, id, context) +
-         joint_part(result, id, context) + profile_part(result, id, context) + "</section>\n";
+         (result.unusable ? "" : joint_part(result, id, context) + profile_part(result, id, context)) + "</section>\n";
 }
 
 }  // namespace uq::page

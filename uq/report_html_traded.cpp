@@ -69,13 +69,20 @@ std::string joint_part(const CaseReport& result, const std::string& id, const Co
   if (result.parameters.size() < 2) return {};
   std::string out = "<h3>What is known together</h3>\n";
   for (const TradedPair& traded : result.traded) {
+    std::string names;
+    const std::vector<std::string> members =
+        traded.parameters.empty() ? std::vector{traded.first, traded.second} : traded.parameters;
+    for (std::size_t i = 0; i < members.size(); ++i)
+      names += (i == 0 ? "" : i + 1 == members.size() ? " and " : ", ") + ("<strong>" + text(members[i]) + "</strong>");
+    const std::string value = std::isfinite(traded.value)
+                                  ? " = " + text(format_with_error(traded.value, traded.error, traded.unit, pretty))
+                                  : "";
     out += fmt::format(
-        "<p><strong>{}</strong> and <strong>{}</strong> are traded against each other (correlation {}): the "
-        "observations fix only <strong>{}</strong>.</p>\n",
-        text(traded.first), text(traded.second),
-        format_value(traded.correlation, {.exponent = 0, .decimals = 3}, "", pretty), text(traded.combination));
+        "<p>{} are traded against each other ({}correlation {}): known together is <strong>{}{}</strong>.</p>\n", names,
+        members.size() > 2 ? "largest " : "",
+        format_value(traded.correlation, {.exponent = 0, .decimals = 3}, "", pretty), text(traded.combination), value);
   }
-  if (result.traded.empty()) out += "<p>No pair of parameters is traded against each other.</p>\n";
+  if (result.traded.empty()) out += "<p>No parameters are traded against each other.</p>\n";
   if (!result.draws_for_plot.empty()) {
     const auto pairs = pairs_to_draw(result, context.options.joint_figures);
     std::string small;

@@ -32,6 +32,16 @@ Json pairs(const std::vector<std::pair<std::string, std::string>>& values) {
   return object;
 }
 
+Json outlying_json(const std::vector<OutlyingRun>& runs) {
+  Json array = Json::array();
+  for (const OutlyingRun& run : runs)
+    array.push_back({{"place", run.place},
+                     {"observed", number(run.observed)},
+                     {"expected", number(run.expected)},
+                     {"deviations", number(run.deviations)}});
+  return array;
+}
+
 Json surrogate_json(const SurrogateReport& surrogate) {
   return {{"output", surrogate.output},
           {"material", surrogate.material},
@@ -64,7 +74,77 @@ Json surrogate_json(const SurrogateReport& surrogate) {
           {"converged", surrogate.converged},
           {"low_runs", surrogate.low_runs},
           {"rho", surrogate.low_runs > 0 ? number(surrogate.rho) : Json(nullptr)},
-          {"rho_sd", surrogate.low_runs > 0 ? number(surrogate.rho_sd) : Json(nullptr)}};
+          {"rho_sd", surrogate.low_runs > 0 ? number(surrogate.rho_sd) : Json(nullptr)},
+          {"outlying_runs", outlying_json(surrogate.outlying)}};
+}
+
+Json support_json(const SupportReport& support) {
+  if (!support.known) return nullptr;
+  Json inputs = Json::array(), next = Json::array();
+  for (const InputSupport& input : support.inputs)
+    inputs.push_back({{"name", input.name},
+                      {"unit", input.unit},
+                      {"runs", Json::array({number(input.runs_low), number(input.runs_high)})},
+                      {"outside", number(input.outside)},
+                      {"gap", number(input.gap)},
+                      {"gap_between", input.gap > 0.0 ? Json::array({number(input.gap_low), number(input.gap_high)})
+                                                      : Json(nullptr)}});
+  for (const NextRun& run : support.next_runs)
+    next.push_back({{"material", run.material}, {"point", numbers(run.point)}});
+  return {{"supported", support.supported},       {"unsupported", number(support.unsupported)},
+          {"outside", number(support.outside)},   {"gap", number(support.gap)},
+          {"empty", number(support.empty)},       {"uncertain", number(support.uncertain)},
+          {"distance", number(support.distance)}, {"variance_ratio", number(support.variance_ratio)},
+          {"inputs", std::move(inputs)},          {"sentence", support.sentence},
+          {"next_runs", std::move(next)}};
+}
+
+Json without_json(const std::optional<WithoutRuns>& without) {
+  if (!without) return nullptr;
+  return {{"places", without->places},      {"parameters", without->parameters}, {"verdicts", without->verdicts},
+          {"mean", numbers(without->mean)}, {"sd", numbers(without->sd)},        {"fits", without->fits},
+          {"sentence", without->sentence}};
+}
+
+Json finding_json(const DataFinding& finding) {
+  return {{"kind", finding.kind}, {"place", finding.place},   {"severity", finding.severity},
+          {"what", finding.what}, {"remedy", finding.remedy}, {"places", finding.places}};
+}
+
+Json intervals_json(const ParameterReport& parameter) {
+  Json array = Json::array();
+  for (const ValueRange& part : parameter.intervals)
+    array.push_back({{"low", number(part.low)},
+                     {"high", number(part.high)},
+                     {"low_open", part.low_open},
+                     {"high_open", part.high_open},
+                     {"weight", number(part.weight)},
+                     {"mean", number(part.mean)},
+                     {"sd", number(part.sd)}});
+  return array;
+}
+
+Json holes_json(const ParameterReport& parameter) {
+  Json array = Json::array();
+  for (const ProfileHole& hole : parameter.holes)
+    array.push_back({{"low", number(hole.low)},
+                     {"high", number(hole.high)},
+                     {"deviance", number(hole.deviance)},
+                     {"within_surrogate_error", hole.in_doubt}});
+  return array;
+}
+
+Json words_json(const ParameterReport& parameter) {
+  Json object = Json::object();
+  for (const WordProbability& word : parameter.word_probabilities) object[word.verdict] = number(word.probability);
+  return object;
+}
+
+Json modes_json(const CaseReport& result) {
+  Json array = Json::array();
+  for (const ModeReport& mode : result.modes)
+    array.push_back({{"weight", number(mode.weight)}, {"mean", numbers(mode.mean)}, {"sd", numbers(mode.sd)}});
+  return array;
 }
 
 Json parameter_json(const CaseReport& result, const ParameterReport& parameter) {
@@ -91,7 +171,19 @@ Json parameter_json(const CaseReport& result, const ParameterReport& parameter) 
             {"high", number(parameter.prior_high)},
             {"mean", number(parameter.prior_mean)},
             {"sd", number(parameter.prior_sd)}}},
-          {"sentence", shown_sentence(result, parameter)}};
+          {"sentence", shown_sentence(result, parameter)},
+          {"usable", result.doubt.empty() && result.fits},
+          {"intervals", intervals_json(parameter)},
+          {"holes", holes_json(parameter)},
+          {"open_for_range_of",
+           {{"low", parameter.low_pinned_by.empty() ? Json(nullptr) : Json(parameter.low_pinned_by)},
+            {"high", parameter.high_pinned_by.empty() ? Json(nullptr) : Json(parameter.high_pinned_by)}}},
+          {"word_probabilities", words_json(parameter)},
+          {"width_shares",
+           {{"measurement", number(parameter.share_measurement)},
+            {"surrogate", number(parameter.share_surrogate)},
+            {"structure", number(parameter.share_structure)},
+            {"range", number(parameter.share_range)}}}};
 }
 
 Json nuisance_json(const NuisanceReport& nuisance) {
@@ -134,7 +226,13 @@ Json traded_json(const TradedPair& traded) {
                       {"x", numbers(curve.x)},
                       {"mean", numbers(curve.mean)}});
   return {{"pair", Json::array({traded.first, traded.second})},
+          {"parameters", traded.parameters},
           {"combination", traded.combination},
+          {"form", traded.form},
+          {"value", number(traded.value)},
+          {"error", number(traded.error)},
+          {"unit", traded.unit},
+          {"statement", traded.statement},
           {"equivalent", std::move(points)},
           {"equivalent_curves", std::move(curves)},
           {"correlation", number(traded.correlation)}};
@@ -187,7 +285,13 @@ Json case_json(const CaseReport& result) {
       {"discrepancies", Json::array()},
       {"cuts", result.cuts},
       {"sampler", result.sampler},
-      {"energy_fraction", number(result.energy_fraction)}};
+      {"energy_fraction", number(result.energy_fraction)},
+      {"support", support_json(result.support)},
+      {"without", without_json(result.without)},
+      {"doubt", result.doubt.empty() ? Json(nullptr) : Json(result.doubt)},
+      {"surrogate_share", number(result.surrogate_share)},
+      {"modes", modes_json(result)},
+      {"modes_parted_by", result.modes_parted_by}};
   for (const auto& parameter : result.parameters) json["parameters"].push_back(parameter_json(result, parameter));
   for (const auto& one : result.comparisons) json["comparisons"].push_back(comparison_json(one));
   for (const auto& nuisance : result.nuisances) json["nuisances"].push_back(nuisance_json(nuisance));
@@ -219,7 +323,10 @@ nlohmann::ordered_json report_json(const CalibrationReport& report) {
                {"warnings", first_lines(report)},
                {"error_scan", Json::array()},
                {"thresholds", pairs(report.thresholds)},
-               {"notes", report.notes}};
+               {"notes", report.notes},
+               {"findings", Json::array()},
+               {"cautions", report.cautions}};
+  for (const auto& finding : report.findings) json["findings"].push_back(finding_json(finding));
   for (const auto& surrogate : report.surrogates) json["surrogates"].push_back(surrogate_json(surrogate));
   for (const auto& result : report.cases) json["cases"].push_back(case_json(result));
   for (const auto& scan : report.error_scan) json["error_scan"].push_back(scan_json(scan));

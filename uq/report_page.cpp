@@ -40,6 +40,8 @@ std::string badge(Verdict verdict) {
       return "<span class=\"badge good\">\u2713 identified</span>";
     case Verdict::weakly_identified:
       return "<span class=\"badge fair\">\u223c weakly identified</span>";
+    case Verdict::several_values:
+      return "<span class=\"badge fair\">\u2016 several values</span>";
     case Verdict::not_identified:
       return "<span class=\"badge poor\">\u2717 not identified</span>";
     case Verdict::does_not_fit:

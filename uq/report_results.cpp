@@ -19,8 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int results_format = 1;
-constexpr std::array verdicts = {Verdict::identified, Verdict::weakly_identified, Verdict::not_identified,
-                                 Verdict::does_not_fit};
+constexpr std::array verdicts = {Verdict::identified, Verdict::weakly_identified, Verdict::several_values,
+                                 Verdict::not_identified, Verdict::does_not_fit};
 
 // What a value becomes. The overloads call each other, so all are declared first.
 Json save(double value);

@@ -64,9 +64,9 @@ std::string parameter_lines(const CaseReport& result, int columns) {
     std::string said = to_text(verdict);
     if (parameter.reason && verdict == parameter.verdict) said += " (" + *parameter.reason + ")";
     if (parameter.borderline && result.fits) said += ", borderline";
-    rows.push_back({harmless(parameter.name),
-                    harmless(format_with_error(parameter.mean, parameter.sd, parameter.unit, Typography::ascii)), said,
-                    "95 % profile: " + format_profile_interval(parameter, Typography::ascii)});
+    rows.push_back(
+        {harmless(parameter.name), harmless(shown_value(result, parameter, Typography::ascii)), said,
+         result.doubt.empty() ? "95 % profile: " + format_profile_interval(parameter, Typography::ascii) : ""});
     names = std::max(names, width_of(rows.back().name));
     values = std::max(values, width_of(rows.back().value));
     verdicts = std::max(verdicts, width_of(rows.back().verdict));
@@ -74,7 +74,8 @@ std::string parameter_lines(const CaseReport& result, int columns) {
   std::string text;
   for (const Row& row : rows) {
     const std::string start = "  " + pad(row.name, names) + "  " + pad(row.value, values) + "  ";
-    const std::string whole = start + pad(row.verdict, verdicts) + "  " + row.profile;
+    const std::string whole =
+        row.profile.empty() ? start + row.verdict : start + pad(row.verdict, verdicts) + "  " + row.profile;
     if (width_of(whole) <= static_cast<std::size_t>(columns)) {
       text += whole + "\n";
     } else {
@@ -101,14 +102,23 @@ std::string case_text(const CaseReport& result, int columns) {
                          format_with_error(nuisance.mean, nuisance.sd, nuisance.unit, Typography::ascii),
                          format_with_error(nuisance.prior_mean, nuisance.prior_sd, nuisance.unit, Typography::ascii)),
              columns);
+  for (const ModeReport& mode : result.modes) {
+    std::string values;
+    for (const auto& [name, mean] : mode.mean)
+      values +=
+          fmt::format("{}{} {}", values.empty() ? "" : ", ", name,
+                      format_with_error(mean, mode.sd.contains(name) ? mode.sd.at(name) : 0.0, "", Typography::ascii));
+    text += fold("  together: ", fmt::format("{:.0f} %: {}", 100.0 * mode.weight, values), columns);
+  }
   for (const TradedPair& traded : result.traded) {
-    text += fold("  traded: ",
-                 fmt::format("{} against {}; the data fix only {} (correlation {:.3f})", traded.first, traded.second,
-                             traded.combination, traded.correlation),
-                 columns);
+    const std::string& known = traded.statement.empty() ? traded.combination : traded.statement;
+    // Said once: the finding has it, unless it is another's.
+    if (result.finding.find(known) != std::string::npos) continue;
+    text += fold("  known together: ", fmt::format("{} (correlation {:.3f})", known, traded.correlation), columns);
   }
   for (const ModelComparison& comparison : result.comparisons) text += fold("  ", comparison.sentence, columns);
   text += fold("  ", result.finding, columns);
+  text += fold("  ", without_sentence(result), columns);
   text += fold("  ", result.consequence, columns);
   text += fold("  -> ", result.remedy, columns);
   return text;
@@ -119,6 +129,7 @@ std::string case_text(const CaseReport& result, int columns) {
 std::string terminal_summary(const CalibrationReport& report, const TerminalOptions& options) {
   std::string text;
   for (const std::string& line : first_lines(report)) text += fold("WARNING: ", line, options.columns);
+  for (const std::string& caution : report.cautions) text += fold("note: ", caution, options.columns);
   if (!text.empty()) text += "\n";
   for (const CaseReport& result : report.cases) text += case_text(result, options.columns) + "\n";
   if (report.cases.empty()) text += "No case was calibrated.\n";

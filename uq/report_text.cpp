@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 
 namespace uq {
 namespace {
@@ -97,7 +98,50 @@ std::string format_interval(double low, double high, const Rounding& rounding, s
   return dress(body, rounding, unit, typography, true);
 }
 
+std::string format_estimate(const ParameterReport& parameter, Typography typography) {
+  if (parameter.verdict != Verdict::several_values || parameter.intervals.size() < 2)
+    return format_with_error(parameter.mean, parameter.sd, parameter.unit, typography);
+  std::string text;
+  for (const ValueRange& part : parameter.intervals)
+    text += fmt::format("{}{} ({:.0f}{}%)", text.empty() ? "" : " or ",
+                        format_with_error(part.mean, part.sd, parameter.unit, typography), 100.0 * part.weight,
+                        typography == Typography::unicode ? "\u00a0" : " ");
+  return text;
+}
+
+std::string format_words(const ParameterReport& parameter) {
+  std::string text;
+  for (const WordProbability& word : parameter.word_probabilities)
+    if (word.probability >= 0.005)
+      text += fmt::format("{}{:.0f} % {}", text.empty() ? "" : ", ", 100.0 * word.probability, word.verdict);
+  return text;
+}
+
+namespace {
+
+/// An interval in parts, or one that another parameter's range ends.
+std::string format_parts(const ParameterReport& parameter, Typography typography) {
+  double sd = std::numeric_limits<double>::infinity();
+  for (const ValueRange& part : parameter.intervals)
+    if (part.sd > 0.0) sd = std::min(sd, part.sd);
+  const Rounding rounding = rounding_of(parameter.mean, std::isfinite(sd) ? sd : parameter.sd);
+  std::string text, open;
+  for (const ValueRange& part : parameter.intervals)
+    text += (text.empty() ? "" : " and ") + format_interval(part.low, part.high, rounding, parameter.unit, typography);
+  const auto side = [&](bool is_open, const std::string& by, const char* name) {
+    if (is_open) open += fmt::format("; {}: {} ends first", name, by.empty() ? "its range" : "the range of " + by);
+  };
+  side(parameter.intervals.front().low_open, parameter.low_pinned_by, "open below");
+  side(parameter.intervals.back().high_open, parameter.high_pinned_by, "open above");
+  return text + open;
+}
+
+}  // namespace
+
 std::string format_profile_interval(const ParameterReport& parameter, Typography typography) {
+  const bool pinned = !parameter.low_pinned_by.empty() || !parameter.high_pinned_by.empty();
+  if (parameter.intervals.size() > 1 || (pinned && !parameter.intervals.empty()))
+    return format_parts(parameter, typography);
   const Rounding rounding = rounding_of(parameter.mean, parameter.sd);
   const auto& low = parameter.profile_low;
   const auto& high = parameter.profile_high;
@@ -185,6 +229,14 @@ Verdict shown_verdict(const CaseReport& result, const ParameterReport& parameter
 std::string shown_sentence(const CaseReport& result, const ParameterReport& parameter) {
   return shown_verdict(result, parameter) == parameter.verdict ? parameter.sentence : std::string();
 }
+
+std::string shown_value(const CaseReport& result, const ParameterReport& parameter, Typography typography) {
+  if (result.unusable) return "not shown";
+  const std::string value = format_estimate(parameter, typography);
+  return result.doubt.empty() ? value : "[" + value + "]";
+}
+
+std::string without_sentence(const CaseReport& result) { return result.without ? result.without->sentence : ""; }
 
 std::string program_version(const CalibrationReport& report) {
   for (const char* const key : {"demcal", "version", "demcal version"}) {

@@ -28,7 +28,16 @@ std::string format_with_error(double value, double error, std::string_view unit,
 std::string format_interval(double low, double high, const Rounding& rounding, std::string_view unit,
                             Typography typography);
 
-/// The 95 % profile-likelihood interval in words: "0.35 to 0.45", "below 0.5; open below", "open on both sides".
+/// A parameter's posterior: "0.402 +- 0.021", or, where separate values fit, "0.300 +- 0.012 (45 %) or 0.600 +- 0.020
+/// (55
+/// %)".
+std::string format_estimate(const ParameterReport& parameter, Typography typography);
+
+/// "62 % identified, 38 % weakly identified": what the word would be over repeats of the measurement.
+std::string format_words(const ParameterReport& parameter);
+
+/// The 95 % profile-likelihood interval in words: "0.35 to 0.45", "0.28 to 0.31 and 0.57 to 0.62", "up to 0.5; open
+/// below", "open on both sides". Where another parameter's range ends it, its numbers stand, and that is said.
 std::string format_profile_interval(const ParameterReport& parameter, Typography typography);
 
 /// A number to so many significant digits, with a power of ten where the decimals would be unreadable.
@@ -49,6 +58,13 @@ Verdict shown_verdict(const CaseReport& result, const ParameterReport& parameter
 
 /// A parameter's sentence as shown; one that contradicts shown_verdict is left out.
 std::string shown_sentence(const CaseReport& result, const ParameterReport& parameter);
+
+/// A parameter's value as shown: in brackets where no verdict can rest on it, and not at all where the surrogate is
+/// unusable.
+std::string shown_value(const CaseReport& result, const ParameterReport& parameter, Typography typography);
+
+/// "Without runs.csv:31: friction ..."; empty where no run is contradicted.
+std::string without_sentence(const CaseReport& result);
 
 /// The version of demcal that made the results, from their provenance; "unknown" where it does not say.
 std::string program_version(const CalibrationReport& report);

@@ -8,6 +8,8 @@ const char* to_text(Verdict verdict) {
       return "identified";
     case Verdict::weakly_identified:
       return "weakly identified";
+    case Verdict::several_values:
+      return "several values";
     case Verdict::not_identified:
       return "not identified";
     case Verdict::does_not_fit:

@@ -10,8 +10,24 @@
 
 namespace uq {
 
-enum class Verdict { identified, weakly_identified, not_identified, does_not_fit };
-const char* to_text(Verdict verdict);  ///< "identified", "weakly identified", "not identified", "model does not fit"
+enum class Verdict { identified, weakly_identified, several_values, not_identified, does_not_fit };
+/// "identified", "weakly identified", "several values", "not identified", "model does not fit"
+const char* to_text(Verdict verdict);
+
+/// What is odd in the data (data/finding.hpp), as told.
+struct DataFinding {
+  std::string kind, place;
+  std::string severity;  ///< "note", "warning"
+  std::string what, remedy;
+  std::vector<std::string> places;
+};
+
+/// A run that the others contradict (uq/outlying_runs.hpp).
+struct OutlyingRun {
+  std::string place;                      ///< "runs.csv:31"
+  double observed = 0.0, expected = 0.0;  ///< unit of the output
+  double deviations = 0.0;                ///< difference in robust standard deviations, signed
+};
 
 /// Validation of one surrogate.
 struct SurrogateReport {
@@ -38,6 +54,27 @@ struct SurrogateReport {
   bool converged = true;               ///< the maximisation of the likelihood
   int low_runs = 0;                    ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
   double rho = 0.0, rho_sd = 0.0;      ///< this level's output per the cheaper one's
+  std::vector<OutlyingRun> outlying;   ///< runs that the others contradict
+};
+
+/// One connected part of a parameter's 95 % profile interval, with the posterior inside it.
+struct ValueRange {
+  double low = 0.0, high = 0.0;               ///< the range's end where the part is open
+  bool low_open = false, high_open = false;   ///< the data do not end it: the range does, or another parameter's
+  double weight = 0.0, mean = 0.0, sd = 0.0;  ///< posterior probability of the part; mean and sd within it
+};
+
+/// Values between two parts of a profile interval.
+struct ProfileHole {
+  double low = 0.0, high = 0.0;
+  double deviance = 0.0;  ///< largest in between
+  bool in_doubt = false;  ///< the surrogate cannot tell what it predicts there from what it predicts beside it
+};
+
+/// What a word has for a chance when the measurement is repeated (uq/repeats.hpp).
+struct WordProbability {
+  std::string verdict;  ///< as to_text
+  double probability = 0.0;
 };
 
 struct ParameterReport {
@@ -51,9 +88,16 @@ struct ParameterReport {
   bool low_is_bound = false, high_is_bound = false;  ///< the range ended before the likelihood fell
   std::vector<double> profile_x, profile_deviance;   ///< the profile itself: 2 (log L_max - log L)
   Verdict verdict = Verdict::not_identified;
-  std::optional<std::string> reason;  ///< "structural", "practical", "one-sided", "bound"
+  /// "structural", "practical", "surrogate", "one-sided", "bound", "no influence" (uq/verdict_words.hpp)
+  std::optional<std::string> reason;
   bool borderline = false;
-  std::string sentence;  ///< the verdict in words with its numbers
+  std::string sentence;                       ///< the verdict in words with its numbers
+  std::vector<ValueRange> intervals;          ///< the parts of the profile interval, rising; holes in doubt are filled
+  std::vector<ProfileHole> holes;             ///< between them, and those in doubt
+  std::string low_pinned_by, high_pinned_by;  ///< parameter whose range ends an open side; may be empty
+  std::vector<WordProbability> word_probabilities;        ///< falling; none where they were not asked for
+  double share_measurement = 0.0, share_surrogate = 0.0;  ///< of the interval's width, what brings it about
+  double share_structure = 0.0, share_range = 0.0;
 };
 
 /// An unknown of the measurement that was sampled with the parameters and integrated out.
@@ -85,14 +129,27 @@ struct PredictiveCurve {
   std::vector<double> x, mean, q05, q95;
 };
 
-/// A pair whose values are traded against each other.
+/// Parameters whose values are traded against each other: what the data know is a combination of them.
 struct TradedPair {
-  std::string first, second;
-  std::string combination;  ///< "friction^0.9 * hamaker^1" or a direction, in the reader's symbols
+  std::string first, second;            ///< of `parameters`, those that are traded most
+  std::vector<std::string> parameters;  ///< all of the combination
+  std::string combination;              ///< "friction * hamaker^0.9", "a + b + c", or that the relation is curved
+  std::string form;                     ///< "product", "sum", "curved"
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< of the combination, posterior mean; NaN of a curved one
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< posterior sd
+  std::string unit;                                         ///< of both
+  std::string statement;                                    ///< "a + b + c = 0.300 +- 0.006", or the combination alone
   double correlation = 0.0;
   std::vector<std::map<std::string, double>> equivalent;  ///< points along the ridge, each with every free parameter
   std::vector<std::vector<double>> equivalent_u;          ///< the same with every unknown, scaled (uq/prior.hpp's u)
   std::vector<PredictiveCurve> curves;                    ///< what the model's mean is at them, point by point; no band
+};
+
+/// A separate region of the posterior.
+struct ModeReport {
+  double weight = 0.0;                 ///< posterior probability
+  std::map<std::string, double> mean;  ///< of each free parameter inside it
+  std::map<std::string, double> sd;
 };
 
 /// The case again with some free parameters held, beside the case itself.
@@ -101,6 +158,43 @@ struct ModelComparison {
   double log_bayes_factor = 0.0;  ///< natural log of evidence(free) / evidence(held)
   double error = 0.0;             ///< its standard error
   std::string sentence;           ///< the finding in words
+};
+
+/// How one input's runs lie about the posterior.
+struct InputSupport {
+  std::string name, unit;
+  double runs_low = 0.0, runs_high = 0.0;  ///< that the runs cover
+  double outside = 0.0;                    ///< share of the posterior beyond them
+  double gap = 0.0;                        ///< share of the posterior in a gap of them
+  double gap_low = 0.0, gap_high = 0.0;    ///< that gap; equal: there is none
+};
+
+/// A point to run next.
+struct NextRun {
+  std::string material;
+  std::map<std::string, double> point;  ///< every parameter and control of the study
+};
+
+/// Whether the runs speak where the posterior lies (uq/support.hpp).
+struct SupportReport {
+  bool known = false;                                             ///< the emulators are learnt from runs
+  bool supported = true;                                          ///< the unsupported share is below its threshold
+  double unsupported = 0.0;                                       ///< share of the draws
+  double outside = 0.0, gap = 0.0, empty = 0.0, uncertain = 0.0;  ///< of them: by which test
+  double distance = 0.0;        ///< median over the draws: to the nearest run, in length scales
+  double variance_ratio = 0.0;  ///< median over the draws: surrogate's variance over that without any runs
+  std::vector<InputSupport> inputs;
+  std::string sentence;            ///< what is not supported, and how far; empty where all is
+  std::vector<NextRun> next_runs;  ///< points of the posterior far from the runs, the first the most useful
+};
+
+/// The case again without the runs that the others contradict.
+struct WithoutRuns {
+  std::vector<std::string> places;
+  std::vector<std::string> parameters, verdicts;
+  std::vector<double> mean, sd;
+  bool fits = true;
+  std::string sentence;
 };
 
 struct CaseReport {
@@ -132,8 +226,15 @@ struct CaseReport {
   std::vector<DiscrepancyBand> discrepancies;
   std::vector<std::string> cuts;  ///< "friction from zirconia-800": taken without feedback
   std::string sampler;            ///< "mixture", "nuts", "cut"
+  SupportReport support;
+  std::optional<WithoutRuns> without;  ///< where runs are contradicted by the others
+  std::string doubt;                   ///< why no verdict can rest on the surrogate; empty: it can
+  bool unusable = false;               ///< the doubt is of the surrogate itself: the values are not shown
+  double surrogate_share = 0.0;        ///< surrogate's sd over the measurement's, median of the rows
   double energy_fraction = std::numeric_limits<double>::quiet_NaN();  ///< smallest of the chains (E-BFMI); NaN where
                                                                       ///< the sampler has no energy
+  std::vector<ModeReport> modes;  ///< separate regions of the posterior, by falling weight; none where there is one
+  std::string modes_parted_by;    ///< the measurement that would tell the modes apart
 };
 
 /// How the verdict changes when the measurement error is another one.
@@ -154,8 +255,10 @@ struct CalibrationReport {
   std::vector<ErrorScan> error_scan;
   std::vector<std::pair<std::string, std::string>> thresholds;  ///< "contraction for identified" -> "0.9"
   std::vector<std::pair<std::string, std::string>>
-      provenance;                  ///< version, hashes, instruction set, seeds, table, times
-  std::vector<std::string> notes;  ///< choices the source does not give, shown beside the verdicts
+      provenance;                     ///< version, hashes, instruction set, seeds, table, times
+  std::vector<std::string> notes;     ///< choices the source does not give, shown beside the verdicts
+  std::vector<DataFinding> findings;  ///< of rows and observations
+  std::vector<std::string> cautions;  ///< said on the first screen, without making the status a warning
 };
 
 }  // namespace uq

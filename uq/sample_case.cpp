@@ -7,6 +7,7 @@
 #include "uq/calibrate.hpp"
 #include "uq/posterior.hpp"
 #include "uq/predictive.hpp"
+#include "uq/support.hpp"
 
 namespace uq {
 namespace {
@@ -103,6 +104,7 @@ SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& e
   sampled.model = std::make_shared<const CaseModel>(std::move(model));
   check_priors(study, *sampled.model);
   sampled.draws = sample_model(study, sampled, sampled.model, options);
+  if (!sampled.draws.chains.empty()) sampled.support = find_support(study, *sampled.model, sampled.draws.pooled());
   return sampled;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uq/outlying_runs.hpp"
 #include "uq/prior.hpp"
 #include "uq/sensitivity.hpp"
 
@@ -40,6 +41,39 @@ void add_levels(SurrogateReport& report, const FittedSurrogate& fitted, const da
           two.parameters().discrepancy_sd / output.unit.factor, output.unit.symbol));
   for (const std::string& note : surrogate::fit_notes(two.low().diagnostics()))
     report.notes.push_back("cheaper level: " + note);
+}
+
+/// Runs that the others contradict, and whether the runs' errors say what they scatter.
+void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const surrogate::FitOptions& options,
+                  const data::Output& output) {
+  const TrainingRows& rows = fitted.rows;
+  const OutlyingRuns found = find_outlying(rows.set, *fitted.process, options);
+  for (std::size_t i = 0; i < found.runs.size(); ++i) {
+    const auto run = static_cast<std::size_t>(found.runs[i]);
+    report.outlying.push_back({.place = run < rows.places.size() && !rows.places[run].empty()
+                                            ? rows.places[run]
+                                            : fmt::format("run {}", run + 1),
+                               .observed = output.unit.from_si(rows.set.y[found.runs[i]]),
+                               .expected = output.unit.from_si(found.expected[i]),
+                               .deviations = found.deviations[i]});
+  }
+  if (!report.outlying.empty())
+    report.remedy = fmt::format("Correct {} or leave {} out first: {}. ",
+                                report.outlying.size() == 1 ? "the run that all others contradict"
+                                                            : "the runs that all others contradict",
+                                report.outlying.size() == 1 ? "it" : "them", leave_out_key(report.outlying)) +
+                    report.remedy;
+  std::vector<double> relative;
+  for (Eigen::Index i = 0; i < rows.set.y.size(); ++i)
+    if (rows.set.y[i] != 0.0) relative.push_back(std::sqrt(rows.set.noise_variance[i]) / std::abs(rows.set.y[i]));
+  if (relative.size() < 20) return;
+  std::nth_element(relative.begin(), relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2),
+                   relative.end());
+  const double typical = relative[relative.size() / 2];
+  if (found.scatter < 0.25 && typical > 0.03)
+    report.notes.push_back(
+        fmt::format("{}{:.2g} times what their standard errors say ({:.0f} % of the value): are the errors in percent?",
+                    overstated_errors, found.scatter, 100.0 * typical));
 }
 
 /// "length scale of input 2" by the input's own name.
@@ -124,10 +158,12 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   report.finding = found.finding;
   report.consequence = found.consequence;
   report.remedy = found.remedy;
-  if (found.more_runs > 0 && found.next_points.rows() > 0) {
+  // The surrogate's box is that of the runs; some of them may lie outside the study's.
+  const Eigen::MatrixXd next_points = found.next_points.cwiseMax(0.0).cwiseMin(1.0);
+  if (found.more_runs > 0 && next_points.rows() > 0) {
     report.remedy += " Least is known at";
-    for (Eigen::Index i = 0; i < found.next_points.rows(); ++i)
-      report.remedy += fmt::format("{} {}", i > 0 ? ";" : "", point_text(study, rows, found.next_points.row(i)));
+    for (Eigen::Index i = 0; i < next_points.rows(); ++i)
+      report.remedy += fmt::format("{} {}", i > 0 ? ";" : "", point_text(study, rows, next_points.row(i)));
     report.remedy += ".";
   }
   report.converged =
@@ -147,7 +183,10 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   if (rows.inputs.size() > static_cast<std::size_t>(sensitivity_inputs_max))
     report.notes.push_back(fmt::format("no Sobol indices: they are for {} inputs at most, and this surrogate has {}",
                                        sensitivity_inputs_max, rows.inputs.size()));
-  if (fitted.two_level) add_levels(report, fitted, output);
+  if (fitted.two_level)
+    add_levels(report, fitted, output);
+  else
+    add_outlying(report, fitted, fit_options, output);
   name_inputs(report);
   return report;
 }

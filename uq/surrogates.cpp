@@ -1,6 +1,9 @@
 #include "uq/surrogates.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "uq/surrogate_report.hpp"
 
@@ -31,7 +34,83 @@ FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const Surro
   return fitted;
 }
 
+/// "torque of carrier".
+std::string described(const SurrogateReport& report) {
+  return report.output + (report.material.empty() ? "" : " of " + report.material);
+}
+
+/// The runs as uq/support.hpp looks at them.
+std::shared_ptr<const RunCloud> cloud_of(const FittedSurrogate& fitted) {
+  const surrogate::HyperParameters hyper = fitted.process->hyper_parameters();
+  auto cloud = std::make_shared<RunCloud>();
+  cloud->points = fitted.rows.set.x;
+  cloud->length_scales = hyper.length_scales;
+  cloud->prior_variance = hyper.signal_sd * hyper.signal_sd;
+  cloud->logarithmic = fitted.process->data().scale == surrogate::OutputScale::log;
+  if (fitted.two_level) {
+    const Eigen::MatrixXd& low = fitted.rows.low->x;
+    cloud->points.conservativeResize(fitted.rows.set.x.rows() + low.rows(), Eigen::NoChange);
+    cloud->points.bottomRows(low.rows()) = low;
+    const surrogate::TwoLevelParameters& two = fitted.two_level->parameters();
+    cloud->prior_variance = two.rho * two.rho * cloud->prior_variance + two.discrepancy_sd * two.discrepancy_sd;
+  }
+  return cloud;
+}
+
+/// "runs.csv:31 (83.5 where the others say 8.35 mN m, 640 sd)".
+std::string outlying_text(const OutlyingRun& run, const std::string& unit) {
+  return fmt::format("{} ({:.4g} where the others say {:.4g}{}{}, {:.0f} sd off)", run.place, run.observed,
+                     run.expected, unit.empty() ? "" : " ", unit, std::abs(run.deviations));
+}
+
+std::string outlying_warning(const SurrogateReport& report) {
+  std::string list;
+  constexpr std::size_t most = 6;
+  for (std::size_t i = 0; i < std::min(report.outlying.size(), most); ++i)
+    list += (i > 0 ? ", " : "") + outlying_text(report.outlying[i], report.unit);
+  if (report.outlying.size() > most) list += fmt::format(" and {} more", report.outlying.size() - most);
+  const bool one = report.outlying.size() == 1;
+  return fmt::format("{} of {} {} contradicted by all others: {}. Correct {}, or leave {} out: {}",
+                     one ? "a run" : fmt::format("{} runs", report.outlying.size()), described(report),
+                     one ? "is" : "are", list, one ? "it" : "them", one ? "it" : "them",
+                     leave_out_key(report.outlying));
+}
+
 }  // namespace
+
+std::string leave_out_key(const std::vector<OutlyingRun>& runs) {
+  std::string key;
+  for (const OutlyingRun& run : runs) key += fmt::format("{}\"{}\"", key.empty() ? "" : ", ", run.place);
+  return "[training] leave_out = [" + key + "]";
+}
+
+std::vector<std::string> surrogate_warnings(const std::vector<FittedSurrogate>& fitted) {
+  std::vector<std::string> warnings;
+  for (const FittedSurrogate& one : fitted)
+    if (!one.report.outlying.empty()) warnings.push_back(outlying_warning(one.report));
+  for (const FittedSurrogate& one : fitted) {
+    const SurrogateReport& report = one.report;
+    if (report.verdict == "unusable")
+      warnings.push_back(
+          fmt::format("the surrogate of {} is unusable and cannot stand for the model ({} runs): ignore "
+                      "what rests on it. {}",
+                      described(report), report.runs, report.remedy));
+    for (const std::string& note : report.notes)
+      if (note.rfind(overstated_errors, 0) == 0) warnings.push_back(described(report) + ": " + note);
+    if (!report.converged)
+      warnings.push_back(fmt::format("the fit of the surrogate of {} did not converge", described(report)));
+  }
+  return warnings;
+}
+
+std::vector<std::string> surrogate_cautions(const std::vector<FittedSurrogate>& fitted) {
+  std::vector<std::string> cautions;
+  for (const FittedSurrogate& one : fitted)
+    if (one.report.verdict == "caution")
+      cautions.push_back(fmt::format("the surrogate of {} is to be used with caution: {}", described(one.report),
+                                     one.report.consequence));
+  return cautions;
+}
 
 std::vector<FittedSurrogate> fit_surrogates(const data::Study& study, const data::RunTable& table,
                                             const SurrogateOptions& options) {
@@ -57,6 +136,9 @@ Emulator emulator_of(const FittedSurrogate& fitted) {
                                        : make_emulator(fitted.process, rows.material, rows.output, rows.inputs);
   emulator.constants = rows.constants;
   emulator.control_range = rows.control_range;
+  emulator.runs = cloud_of(fitted);
+  if (fitted.report.verdict == "unusable")
+    emulator.doubt = fmt::format("the surrogate of {} is unusable", described(fitted.report));
   return emulator;
 }
 

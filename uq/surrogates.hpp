@@ -24,6 +24,7 @@ struct TrainingRows {
   std::size_t output = 0;
   surrogate::TrainingSet set;                 ///< SI
   std::optional<surrogate::TrainingSet> low;  ///< SI, runs of the cheaper level
+  std::vector<std::string> places;            ///< of the runs of `set`: "runs.csv:31"
   std::vector<EmulatorInput> inputs;
   std::map<std::size_t, double> constants;  ///< parameters held at one value, SI
   std::map<std::size_t, std::pair<double, double>> control_range;
@@ -55,6 +56,16 @@ std::vector<FittedSurrogate> fit_surrogates(const data::Study& study, const data
 
 /// What the observations ask of the surrogate outside the box of its runs, one sentence each.
 std::vector<std::string> extrapolation_notes(const data::Study& study, const TrainingRows& rows);
+
+/// "[training] leave_out = [...]" for these runs.
+std::string leave_out_key(const std::vector<OutlyingRun>& runs);
+
+/// What must stand in the first lines of whatever rests on the surrogates: unusable, not converged, runs that the
+/// others contradict.
+std::vector<std::string> surrogate_warnings(const std::vector<FittedSurrogate>& fitted);
+
+/// What is said of them without making the status a warning: surrogates to be used with caution.
+std::vector<std::string> surrogate_cautions(const std::vector<FittedSurrogate>& fitted);
 
 /// "carrier torque": by this name a surrogate is saved.
 std::string surrogate_name(const data::Study& study, const TrainingRows& rows);

@@ -1,13 +1,12 @@
 #pragma once
 // Which parameters are traded against each other, and as what combination the data know them.
 //
-// A pair is traded when its posterior correlation, plain or of logarithms, or its correlation ratio, which sees a bent
-// ridge too, is at least a threshold and not both are identified. Along the ridge (points of the profile paths within
-// the deviance drop) two forms are fitted by total least squares:
-//   power law   a * b^q = const:  log a + q log b constant
-//   linear      a + c b = const
-// and the one that keeps nearer to the ridge, in the scaled coordinates, is named; a ridge that bends away from both is
-// only called a curved relation. Values are in the study's units.
+// Of the parameters that have influence and are not known as separate values, subsets are tried from pairs upwards,
+// each with at least one that is not identified. A subset is traded when the posterior knows a combination of it
+// (combination.hpp) much better than any of its terms, or when it fills so little of its room that its values hang
+// together on a curve. A larger subset is only looked at where no smaller one inside it is traded, and a pair only
+// where the pairs found before do not tie it already. The combination's value and error are its mean and sd over the
+// draws.
 #include <Eigen/Dense>
 #include <string>
 #include <vector>
@@ -15,25 +14,22 @@
 #include "uq/case_model.hpp"
 #include "uq/profile.hpp"
 #include "uq/results.hpp"
-#include "uq/verdict.hpp"
+#include "uq/thresholds.hpp"
 
 namespace uq {
 
 /// The combination that the points share.
 struct Combination {
-  std::string text;  ///< "friction * hamaker^0.9" or "friction + 0.03 * cohesion"
-  bool power_law = false;
-  double coefficient = 0.0;  ///< q or c, with the first parameter's taken as one; NaN of a curved relation
-  double misfit = 0.0;       ///< rms distance of the ridge from the form, in scaled coordinates
+  std::string text;  ///< "friction * hamaker^0.9" or "friction + 0.667 x hamaker"
+  bool curved = false;
 };
 
-/// `points`: values of the two parameters along the ridge (study's units); `ranges`: their widths.
+/// `points`: values of two parameters along a ridge without thickness (study's units); `ranges`: their widths.
 Combination find_combination(const std::string& first, const std::string& second, const Eigen::MatrixXd& points,
                              const Eigen::Vector2d& ranges);
 
-/// Traded pairs of the case's own parameters. `draws`: rows in u. `identified`: per own parameter.
-std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::MatrixXd& draws,
-                                          const std::vector<Profile>& profiles, const std::vector<bool>& identified,
-                                          const VerdictThresholds& thresholds);
+/// Traded sets of the case's own parameters, the best known first. `draws`: rows in u. `verdicts`: per own parameter.
+std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::MatrixXd& draws, const Profiles& all,
+                                          const std::vector<Verdict>& verdicts, const VerdictThresholds& thresholds);
 
 }  // namespace uq

@@ -48,6 +48,7 @@ Columns columns_of(const data::Study& study, const data::RunTable& table) {
 struct LevelRows {
   Eigen::MatrixXd parameters, controls;
   Eigen::VectorXd y, noise_variance;
+  std::vector<std::string> places;
 };
 
 LevelRows level_rows(const data::Study& study, const data::RunTable& table, const std::string& material,
@@ -56,18 +57,22 @@ LevelRows level_rows(const data::Study& study, const data::RunTable& table, cons
   const std::size_t column = columns.outputs[output];
   std::vector<const data::RunRow*> rows;
   for (const auto& row : table.rows)
-    if (row.material == material && std::isfinite(row.outputs[column]) && std::isfinite(row.standard_errors[column]))
+    if (row.left_out.empty() && row.material == material && std::isfinite(row.outputs[column]) &&
+        std::isfinite(row.standard_errors[column]))
       rows.push_back(&row);
   const auto count = static_cast<Eigen::Index>(rows.size());
   LevelRows found{Eigen::MatrixXd(count, static_cast<Eigen::Index>(study.parameters.size())),
-                  Eigen::MatrixXd(count, static_cast<Eigen::Index>(study.controls.size())), Eigen::VectorXd(count),
-                  Eigen::VectorXd(count)};
+                  Eigen::MatrixXd(count, static_cast<Eigen::Index>(study.controls.size())),
+                  Eigen::VectorXd(count),
+                  Eigen::VectorXd(count),
+                  {}};
   for (Eigen::Index i = 0; i < count; ++i) {
     const data::RunRow& row = *rows[static_cast<std::size_t>(i)];
     for (std::size_t p = 0; p < study.parameters.size(); ++p)
       found.parameters(i, static_cast<Eigen::Index>(p)) = row.inputs[columns.parameters[p]];
     for (std::size_t c = 0; c < study.controls.size(); ++c)
       found.controls(i, static_cast<Eigen::Index>(c)) = row.inputs[columns.parameters.size() + columns.controls[c]];
+    found.places.push_back(row.place);
     found.y[i] = row.outputs[column];
     found.noise_variance[i] = std::pow(row.standard_errors[column], 2);
   }
@@ -80,6 +85,7 @@ TrainingRows rows_of(const data::Study& study, const LevelRows& high, const Leve
                      .output = 0,
                      .set = {{}, high.y, high.noise_variance},
                      .low = std::nullopt,
+                     .places = high.places,
                      .inputs = {},
                      .constants = {},
                      .control_range = {}};

@@ -84,6 +84,10 @@ data::ExitStatus status_of_loading(const std::string& path, std::string& message
 TEST_CASE("every field of the results is saved (one added to results.hpp belongs into report_fields.hpp)") {
   CHECK(size_of_visited<SurrogateReport>() == sizeof(SurrogateReport));
   CHECK(size_of_visited<ParameterReport>() == sizeof(ParameterReport));
+  CHECK(size_of_visited<ValueRange>() == sizeof(ValueRange));
+  CHECK(size_of_visited<ProfileHole>() == sizeof(ProfileHole));
+  CHECK(size_of_visited<WordProbability>() == sizeof(WordProbability));
+  CHECK(size_of_visited<ModeReport>() == sizeof(ModeReport));
   CHECK(size_of_visited<TradedPair>() == sizeof(TradedPair));
   CHECK(size_of_visited<PredictivePoint>() == sizeof(PredictivePoint));
   CHECK(size_of_visited<PredictiveCurve>() == sizeof(PredictiveCurve));

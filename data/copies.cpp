@@ -1,0 +1,77 @@
+#include "data/copies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace data {
+
+namespace {
+
+/// Probability that a Poisson number of this mean is `count` or more.
+double at_least(double count, double mean) {
+  if (!(mean > 0.0)) return 0.0;
+  if (count > mean + 10.0 * std::sqrt(mean) + 10.0) return 0.0;
+  double below = 0.0;
+  for (double k = 0.0; k < count; k += 1.0) below += std::exp(k * std::log(mean) - mean - std::lgamma(k + 1.0));
+  return 1.0 - below;
+}
+
+}  // namespace
+
+double resolution(const std::vector<double>& numbers) {
+  double step = 1.0;
+  for (int decimals = 0; decimals < 12; ++decimals, step /= 10.0) {
+    const bool whole = std::all_of(numbers.begin(), numbers.end(), [&](double number) {
+      const double steps = number / step;
+      return std::abs(steps - std::round(steps)) <= 1e-6 + 1e-14 * std::abs(steps);
+    });
+    if (whole) return step;
+  }
+  return step;
+}
+
+std::vector<std::optional<std::size_t>> copies_of(const std::vector<RepeatableRow>& rows) {
+  std::vector<std::optional<std::size_t>> found(rows.size());
+  std::map<std::vector<double>, std::vector<std::size_t>> by_place;
+  for (std::size_t i = 0; i < rows.size(); ++i) by_place[rows[i].at].push_back(i);
+  double pairs = 0.0, equal = 0.0, chance = 0.0;
+  std::vector<double> steps;
+  for (std::size_t k = 0; !rows.empty() && k < rows.front().values.size(); ++k) {
+    std::vector<double> column;
+    for (const RepeatableRow& row : rows)
+      if (std::isfinite(row.values[k])) column.push_back(row.values[k]);
+    steps.push_back(resolution(column));
+  }
+  for (const auto& [unused, members] : by_place) {
+    const double count = static_cast<double>(members.size());
+    pairs += 0.5 * count * (count - 1.0);
+    std::map<std::pair<std::vector<double>, std::vector<double>>, std::size_t> first;
+    std::map<std::size_t, double> seen;  // rows equal to that first one, before the next
+    for (const std::size_t i : members) {
+      // NaN is not equal to itself, and would not sort.
+      std::vector<double> values = rows[i].values, errors = rows[i].errors;
+      std::replace_if(
+          values.begin(), values.end(), [](double v) { return std::isnan(v); }, -1e300);
+      std::replace_if(
+          errors.begin(), errors.end(), [](double v) { return std::isnan(v); }, -1e300);
+      const auto [there, is_new] = first.emplace(std::pair{values, errors}, i);
+      if (is_new) continue;
+      found[i] = there->second;
+      equal += ++seen[there->second];
+      double agree = 1.0;  // all outputs at once
+      for (std::size_t k = 0; k < steps.size(); ++k) {
+        const double error = rows[i].errors[k];
+        if (std::isnan(rows[i].values[k])) continue;
+        agree *= error > 0.0 ? std::min(1.0, steps[k] / (2.0 * std::sqrt(std::numbers::pi) * error)) : 0.0;
+      }
+      chance = std::max(chance, agree);
+    }
+  }
+  if (equal == 0.0) return found;
+  if (at_least(equal, pairs * chance) > 0.01) found.assign(rows.size(), std::nullopt);
+  return found;
+}
+
+}  // namespace data

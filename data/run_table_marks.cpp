@@ -1,0 +1,172 @@
+// Rows of a run table that are not learnt from: those that the user names, those that say themselves that the run
+// failed, and copies. They keep their place in the table, so that files and lines stay as they are.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "data/copies.hpp"
+#include "data/run_table_files.hpp"
+
+namespace data {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string plain(text);
+  std::transform(plain.begin(), plain.end(), plain.begin(), [](unsigned char c) { return std::tolower(c); });
+  return plain;
+}
+
+template <std::size_t N>
+bool one_of(const std::string& text, const std::array<const char*, N>& words) {
+  return std::find(words.begin(), words.end(), text) != words.end();
+}
+
+constexpr std::array ended_well{"converged", "ok",        "success",  "successful",
+                                "finished",  "completed", "complete", "valid"};
+constexpr std::array ended_badly{"failed", "failure", "crashed", "error", "aborted", "diverged"};
+constexpr std::array told{"status", "state", "result", "outcome", "exit", "flag", "remark", "comment", "note"};
+constexpr std::array wanted{"use", "include", "keep"};
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+/// A finding about rows, with their places.
+Finding about(const std::string& kind, Severity severity, const std::vector<std::string>& places) {
+  return {.kind = kind, .place = list_places(places), .severity = severity, .what = {}, .remedy = {}, .places = places};
+}
+
+void leave_out_named(TableRead& read, const Study& study) {
+  std::vector<std::string> places;
+  for (RunRow& row : read.table.rows)
+    for (const std::string& label : study.training.leave_out)
+      if (names_row(label, row.place)) {
+        row.left_out = "the study leaves it out";
+        places.push_back(row.place);
+        break;
+      }
+  if (places.empty()) return;
+  Finding finding = about("rows left out", Severity::note, places);
+  finding.what = fmt::format("{} {} left out, as [training] leave_out says", places.size(),
+                             places.size() == 1 ? "row is" : "rows are");
+  read.findings.push_back(std::move(finding));
+}
+
+/// Runs that did not want to be: 0 with a standard error of 0, where most others have one above 0.
+void leave_out_zeros(TableRead& read) {
+  RunTable& table = read.table;
+  for (std::size_t k = 0; k < table.outputs.size(); ++k) {
+    std::size_t others = 0, with_error = 0;
+    std::vector<RunRow*> zeros;
+    std::vector<std::string> places;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (RunRow& row : table.rows) {
+      if (!row.left_out.empty() || !std::isfinite(row.outputs[k])) continue;
+      if (row.outputs[k] == 0.0 && row.standard_errors[k] == 0.0) {
+        zeros.push_back(&row);
+        continue;
+      }
+      ++others;
+      with_error += row.standard_errors[k] > 0.0;
+      low = std::min(low, row.outputs[k]);
+      high = std::max(high, row.outputs[k]);
+    }
+    if (zeros.empty() || 2 * with_error <= others || zeros.size() > others) continue;
+    const bool all_zero = table.outputs.size() == 1;
+    for (RunRow* row : zeros) {
+      places.push_back(row->place);
+      const bool nothing_else =
+          std::all_of(row->outputs.begin(), row->outputs.end(), [](double value) { return !(std::abs(value) > 0.0); });
+      row->outputs[k] = NAN;
+      row->standard_errors[k] = NAN;
+      if (all_zero || nothing_else) row->left_out = "0 with a standard error of 0: a run that failed";
+    }
+    const Column& column = table.outputs[k];
+    Finding finding = about("failed runs", Severity::warning, places);
+    finding.what = fmt::format(
+        "{} {} of {} exactly 0 with a standard error of exactly 0, where the others lie from {:.4g} to {:.4g} {}: runs "
+        "that failed, and left out",
+        zeros.size(), zeros.size() == 1 ? "row gives a value" : "rows give a value", column.name,
+        column.unit.from_si(low), column.unit.from_si(high), column.unit.symbol);
+    finding.remedy = "remove them, write nan, or name them in [training] leave_out";
+    read.findings.push_back(std::move(finding));
+  }
+}
+
+void leave_out_copies(TableRead& read) {
+  RunTable& table = read.table;
+  std::vector<RepeatableRow> rows;
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const RunRow& row = table.rows[i];
+    if (!row.left_out.empty()) continue;
+    RepeatableRow one{.at = row.inputs, .values = {}, .errors = {}};
+    const auto material = std::find_if(table.rows.begin(), table.rows.end(),
+                                       [&](const RunRow& other) { return other.material == row.material; });
+    one.at.push_back(static_cast<double>(material - table.rows.begin()));
+    for (std::size_t k = 0; k < row.outputs.size(); ++k) {
+      one.values.push_back(table.outputs[k].unit.from_si(row.outputs[k]));
+      one.errors.push_back(row.standard_errors[k] / table.outputs[k].unit.factor);
+    }
+    rows.push_back(std::move(one));
+    index.push_back(i);
+  }
+  const auto copies = copies_of(rows);
+  std::vector<std::string> places;
+  std::string example;
+  bool noisy = false;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!copies[i]) continue;
+    RunRow& row = table.rows[index[i]];
+    const RunRow& source = table.rows[index[*copies[i]]];
+    row.left_out = "a copy of " + source.place;
+    noisy =
+        noisy || std::any_of(row.standard_errors.begin(), row.standard_errors.end(), [](double e) { return e > 0.0; });
+    if (places.empty()) example = fmt::format("{} of {}", row.place, source.place);
+    places.push_back(row.place);
+  }
+  if (places.empty()) return;
+  Finding finding = about("copied rows", noisy ? Severity::warning : Severity::note, places);
+  finding.what = fmt::format("{} of {} runs are copies of others to the last digit ({}): each is counted once",
+                             places.size(), rows.size(), example);
+  finding.remedy = "remove the copies; a replicate is a run with another seed, and differs";
+  read.findings.push_back(std::move(finding));
+}
+
+}  // namespace
+
+bool names_row(const std::string& label, const std::string& place) {
+  const std::string name = file_name(place);
+  const bool has_file = label.find(':') != std::string::npos;
+  return has_file ? file_name(label) == name : name.substr(name.rfind(':') + 1) == label;
+}
+
+bool is_status_column(std::string_view name) {
+  const std::string plain = lower(name);
+  return one_of(plain, ended_well) || one_of(plain, ended_badly) || one_of(plain, told) || one_of(plain, wanted);
+}
+
+bool is_user_column(std::string_view name) { return one_of(lower(name), wanted); }
+
+bool says_failed(std::string_view column, std::string_view field) {
+  const std::string name = lower(column), word = lower(field);
+  static constexpr std::array no{"0", "no", "false", "n", "none"};
+  static constexpr std::array yes{"1", "yes", "true", "y", "x"};
+  if (one_of(name, ended_well) || one_of(name, wanted)) return one_of(word, no) || word == "0.0";
+  if (one_of(name, ended_badly) && one_of(word, yes)) return true;
+  static constexpr std::array parts{"fail",          "crash",       "abort",      "diverg",    "unstable",
+                                    "timeout",       "timed out",   "killed",     "explod",    "invalid",
+                                    "not converged", "unconverged", "incomplete", "unfinished"};
+  if (word == "error" || word == "bad" || word == "nan") return true;
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const char* part) { return word.find(part) != std::string::npos; });
+}
+
+void mark_rows(TableRead& read, const std::string&, const Study& study) {
+  leave_out_named(read, study);
+  leave_out_zeros(read);
+  leave_out_copies(read);
+}
+
+}  // namespace data

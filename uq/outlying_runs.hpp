@@ -1,0 +1,46 @@
+#pragma once
+// Runs that the others contradict: a torque written ten times too large, a run that failed and gave half of it.
+//
+// One such run spoils a surrogate for all: it stretches the nugget or shortens the length scales until its own
+// standardised leave-one-out error looks harmless (masking). So the surrogate is fitted again without the suspects:
+//   1  leave-one-out errors e_i / s_i of the process fitted to the runs kept, robustly scaled:
+//        z_i = (e_i / s_i - median) / max(1, 1.4826 median |e / s - median|)
+//   2  the runs with |z| above `screen`, the largest first and at most a few at a time, are put aside; at the very
+//   first
+//      those, too, whose output is equal to the last digit in three runs or more (failed runs, written as one number)
+//   3  fitted again, the runs put aside are predicted; those within `screen` come back
+//   until nothing changes. What is still aside, and further than `outlying` from what the others predict, is outlying.
+// P. J. Rousseeuw & A. M. Leroy, Robust Regression and Outlier Detection (1987), chapter 6, for deletion and masking;
+// the standardised errors are those of surrogate/gaussian_process.hpp (O. Dubrule 1983).
+// A run is only called outlying where the process without it is sharp (its predictive sd, noise included, is at most a
+// part of the spread of all runs), the difference is a part of that spread that could spoil a result, and the suspects
+// together do harm: with them the leave-one-out errors of all other runs are larger than without. A lone run on a peak
+// surprises the others, too, but helps to predict them.
+#include <vector>
+
+#include "surrogate/fit.hpp"
+
+namespace uq {
+
+struct OutlierOptions {
+  double screen = 3.0;     ///< robust standard deviations: put aside
+  double outlying = 8.0;   ///< robust standard deviations from the prediction of the others: named
+  double share_max = 0.2;  ///< of the runs that may be put aside
+  double spread = 0.35;    ///< predictive sd over the sd of the runs kept, at most
+  double least = 0.15;     ///< difference over the sd of the runs kept, at least: less spoils nothing
+  double harm = 1.3;       ///< rms leave-one-out error of the others with the suspects over that without, at least
+  int rounds = 12;
+};
+
+struct OutlyingRuns {
+  std::vector<int> runs;                     ///< indices in the training set, the worst first
+  std::vector<double> expected, deviations;  ///< what the others predict (unit of y), and z
+  double harm = 1.0;                         ///< what OutlierOptions::harm is compared with
+  double scatter = 1.0;                      ///< 1.4826 median |e / s| of the runs kept: below 1, errors are overstated
+};
+
+/// Never throws for odd runs; none are found where the process cannot be fitted without the suspects.
+OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surrogate::GaussianProcess& process,
+                           const surrogate::FitOptions& fit, const OutlierOptions& options = {});
+
+}  // namespace uq

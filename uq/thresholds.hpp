@@ -1,0 +1,33 @@
+#pragma once
+// Every number at which a word of the report changes, in one place. Nothing here knows a parameter's name.
+namespace uq {
+
+/// Chi-squared with one degree of freedom: the deviance at the ends of a 95 % profile interval.
+inline constexpr double deviance_95 = 3.841458820694124;
+
+struct VerdictThresholds {
+  double contraction_identified = 0.9;  ///< at least: 1 - posterior variance / prior variance
+  double contraction_weak = 0.5;        ///< at least
+  double profile_drop = deviance_95;    ///< deviance at the ends of a profile interval
+  double predictive_p = 0.01;           ///< posterior predictive p of the case; a case below does not fit
+  /// Chi-squared tail of the best fit; a case below does not fit. The predictive p is conservative with few data, since
+  /// the same data chose the parameters.
+  double best_fit_p = 0.001;
+  /// Surrogate sds: a change of the prediction below this cannot be told from none.
+  double told_apart_sd = 3.0;
+  /// Deviance that a parameter's whole range brings about: below it the data say nothing of the parameter.
+  double silent_deviance = 0.3;
+  /// Deviance at an interval's end, in profile_drops, with the parameter that stands at the end of its range held in
+  /// the middle of what the data allow it: from here on most of the interval is that parameter's range.
+  double pinned_drops = 2.0;
+  /// Structural: the predictions along the interval stay the same to this share of what the parameter does alone, the
+  /// surrogate's own error counted in.
+  double same_share = 0.06;
+  double structural_span = 0.5;         ///< of the interval along which they stay the same, at least
+  double combination_share = 0.5;       ///< sd of a combination over that of its terms in it, at most
+  double curve_share = 0.3;             ///< of the room that independent values would fill, at most: a curved relation
+  double mode_weight = 0.01;            ///< posterior probability of a separate region, at least
+  double borderline_probability = 0.2;  ///< of another word over repeats of the data, at least
+};
+
+}  // namespace uq
