@@ -125,11 +125,10 @@ std::string fit_and_data(const CaseReport& result) {
                   significant(result.chi2, 3, pretty), result.dof, result.dof == 1 ? "" : "s",
                   significant(result.ppp, 2, pretty), result.fits ? "" : ": the model does not fit");
   if (!result.observed_sets.empty()) out += "<p>Observations: " + joined(result.observed_sets) + ".</p>\n";
-  if (!result.observed_notes.empty()) {
-    out += "<ul class=\"note\">\n";
-    for (const std::string& note : result.observed_notes) out += "<li>" + text(note) + "</li>\n";
-    out += "</ul>\n";
-  }
+  std::string notes;
+  for (const std::string& note : result.observed_notes)
+    if (!note.empty()) notes += "<li>" + text(note) + "</li>\n";
+  if (!notes.empty()) out += "<ul class=\"note\">\n" + notes + "</ul>\n";
   if (!result.linked.empty()) {
     out += fmt::format(
         "<p>Sampled jointly with <strong>{}</strong>: {} observations also inform the parameters shared with this "

@@ -113,7 +113,9 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
     double surrogate = 0.0;
     for (const ParameterReport& parameter : facts.parameters)
       surrogate = std::max(surrogate, parameter.share_surrogate);
-    if (surrogate > 0.25) say(fmt::format("Up to {:.0f} % of their variance is the surrogate's.", 100.0 * surrogate));
+    if (surrogate > 0.25)
+      say(fmt::format("Up to {:.0f} % of {} variance is the surrogate's.", 100.0 * surrogate,
+                      one_or(sorted.known, "its", "their")));
     return text;
   }
   if (!sorted.known.empty())
