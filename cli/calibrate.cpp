@@ -16,7 +16,7 @@ Action add_calibrate(CLI::App& program) {
   return [common, sampler] {
     const Workspace workspace = open_workspace(*common);
     const TrainingRows rows = rows_to_learn_from(*common, workspace);
-    make_out(workspace);
+    const auto held = hold_out(workspace, Writes::results, "calibrate");
     const uq::SurrogateOptions surrogates = surrogate_options(*common, workspace, rows);
     uq::Calibration result;
     {
@@ -28,13 +28,13 @@ Action add_calibrate(CLI::App& program) {
                                   .progress = std::ref(progress)});
     }
     keep_surrogates(workspace, rows, surrogates, result.surrogates);
-    say_surrogates(*common, result.surrogates);
     for (const uq::SampledCase& sampled : result.cases)
       if (!sampled.draws.chains.empty())
         uq::write_posterior(posterior_path(workspace, sampled.model->name), workspace.study, sampled,
                             workspace.study.seed);
     add_provenance(result.report, workspace, rows);
     uq::save_results(result.report, (std::filesystem::path(workspace.out) / "results.json").string());
+    say_surrogates(*common, result.surrogates);  // after everything is saved: saying may fail
     return write_report(*common, workspace, result.report);
   };
 }

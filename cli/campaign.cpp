@@ -8,6 +8,7 @@
 
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
+#include "data/file_name.hpp"
 #include "data/hash.hpp"
 #include "surrogate/design.hpp"
 
@@ -93,8 +94,11 @@ std::vector<Point> read_design(const Workspace& workspace) {
     Point point{choose_material(study, row.fields[material]), {}};
     const auto read = [&](const std::string& name, const data::Unit& unit) {
       const std::size_t column = csv.column(name);
-      static_cast<void>(csv.number(row, column));  // throws where it is none
-      point.inputs.push_back(unit.to_si(row.fields[column]));
+      if (!std::isfinite(csv.number(row, column)))
+        throw data::InputError(data::ExitStatus::bad_data,
+                               {csv.place(row, column), fmt::format("'{}' is not a value", row.fields[column]),
+                                "correct the line, or remove design.csv: it is made again"});
+      point.inputs.push_back(csv.unit(column, unit).to_si(row.fields[column]));
     };
     for (const data::Parameter& p : study.parameters) read(p.name, p.unit);
     for (const data::Control& c : study.controls) read(c.name, c.unit);
@@ -122,7 +126,7 @@ void write_design(const Workspace& workspace, const std::vector<Point>& points) 
 }
 
 std::string run_name(const Workspace& workspace, const Point& point) {
-  return (point.material.empty() ? "run" : point.material) + "-" +
+  return (point.material.empty() ? "run" : data::file_name(point.material)) + "-" +
          data::hash_text(point_key(workspace, point)).substr(0, 12);
 }
 

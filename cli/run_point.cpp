@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "data/atomic_file.hpp"
 #include "dem/isa.hpp"
 #include "dem/run_file.hpp"
 #include "dem/target.hpp"
@@ -25,6 +26,7 @@ std::optional<dem::RunResult> earlier(const std::string& path, const dem::Case& 
 dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options) {
   const dem::Case c = case_at(workspace, point);
   const std::uint64_t seed = run_seed(workspace, point);
+  data::require_replaceable(options.path);
   const std::optional<dem::RunResult> before = earlier(options.path, c, seed);
   // A run that failed fails again: it depends on its point, seed and settings alone.
   if (before && before->status != dem::RunStatus::interrupted) return *before;

@@ -4,6 +4,8 @@
 //   /runs/            material, seed, settings, isa, origin, cpu_seconds
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "data/hdf5.hpp"
@@ -131,6 +133,8 @@ TableRead read_table_hdf5(const std::string& path, const Study& study) {
   if (count < 0) damaged(root.place("@rows"), fmt::format("{} is no number of rows", count));
   const auto rows = static_cast<std::size_t>(count);
 
+  // Before room is made for them: a damaged number may ask for more rows than any memory holds.
+  checked(root.group("runs"), "seed", root.group("runs").read<std::uint64_t>("seed").values, rows);
   TableRead result{.table = empty_table(study)};
   RunTable& table = result.table;
   table.rows.resize(rows);
@@ -163,6 +167,18 @@ TableRead read_table_hdf5(const std::string& path, const Study& study) {
     row.origin = origins[r];
     row.cpu_seconds = seconds[r];
   }
+  std::size_t number = 0;
+  std::erase_if(table.rows, [&](const RunRow& row) {
+    ++number;
+    for (std::size_t i = 0; i < study.parameters.size(); ++i) {
+      if (study.parameters[i].scale != Scale::log || row.inputs[i] > 0.0 || std::isnan(row.inputs[i])) continue;
+      result.left_out.push_back(
+          fmt::format("{}: row {} is {}, which has no logarithm (scale = \"log\"), and is left out",
+                      parameters.place(study.parameters[i].name), number, row.inputs[i]));
+      return true;
+    }
+    return false;
+  });
   return result;
 }
 
