@@ -16,7 +16,7 @@ Action add_calibrate(CLI::App& program) {
   return [common, sampler] {
     const Workspace workspace = open_workspace(*common);
     const TrainingRows rows = rows_to_learn_from(*common, workspace);
-    make_out(workspace);
+    const auto held = hold_out(workspace, Writes::results, "calibrate");
     const uq::SurrogateOptions surrogates = surrogate_options(*common, workspace, rows);
     uq::Calibration result;
     {
@@ -38,9 +38,8 @@ Action add_calibrate(CLI::App& program) {
     write_next_runs(workspace, supports);
     add_provenance(result.report, workspace, rows);
     uq::save_results(result.report, (std::filesystem::path(workspace.out) / "results.json").string());
-    const data::ExitStatus status = write_report(*common, workspace, result.report);  // warnings are its first lines
-    say_surrogates(*common, result.surrogates);
-    return status;
+    say_surrogates(*common, result.surrogates);  // after everything is saved: saying may fail
+    return write_report(*common, workspace, result.report);
   };
 }
 

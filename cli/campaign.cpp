@@ -9,6 +9,7 @@
 #include "cli/run_point.hpp"
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
+#include "data/file_name.hpp"
 #include "data/hash.hpp"
 #include "surrogate/design.hpp"
 
@@ -119,8 +120,11 @@ std::vector<Point> read_points(const Workspace& workspace, const std::string& pa
     Point point{choose_material(study, material ? row.fields[*material] : ""), {}};
     const auto read = [&](const std::string& name, const data::Unit& unit) {
       const std::size_t column = csv.column(name);
-      static_cast<void>(csv.number(row, column));  // throws where it is none
-      point.inputs.push_back(unit.to_si(row.fields[column]));
+      if (!std::isfinite(csv.number(row, column)))
+        throw data::InputError(data::ExitStatus::bad_data,
+                               {csv.place(row, column), fmt::format("'{}' is not a value", row.fields[column]),
+                                "correct the line, or remove design.csv: it is made again"});
+      point.inputs.push_back(csv.unit(column, unit).to_si(row.fields[column]));
     };
     for (const data::Parameter& p : study.parameters) read(p.name, p.unit);
     for (const data::Control& c : study.controls) read(c.name, c.unit);
@@ -171,7 +175,7 @@ void write_points(const Workspace& workspace, const std::string& path, const std
 }
 
 std::string run_name(const Workspace& workspace, const Point& point) {
-  return (point.material.empty() ? "run" : point.material) + "-" +
+  return (point.material.empty() ? "run" : data::file_name(point.material)) + "-" +
          data::hash_text(point_key(workspace, point)).substr(0, 12);
 }
 

@@ -12,6 +12,7 @@
 
 #include "data/error.hpp"
 #include "data/finding.hpp"
+#include "data/folder_lock.hpp"
 #include "data/run_table.hpp"
 #include "data/study.hpp"
 #include "data/study_file.hpp"
@@ -25,6 +26,9 @@ namespace cli {
 
 /// What a parsed command line does.
 using Action = std::function<data::ExitStatus()>;
+
+/// For ->transform or ->check of an option: a finite number from `low` to `high`. (CLI11's own ranges let nan pass.)
+CLI::Validator number_in(double low, double high, const std::string& what);
 
 /// Options of every command on a study.
 struct Common {
@@ -62,8 +66,14 @@ Workspace open_workspace(const Common& common);
 /// Throws InputError (78) when the study has no [rig] to simulate.
 void require_rig(const Workspace& workspace);
 
-/// Makes the results folder. Throws InputError (73), also when it is the study's own folder.
+/// Makes the results folder. Throws InputError (73), also when it is the study's own folder or cannot be written to.
 void make_out(const Workspace& workspace, const std::string& subfolder = "");
+
+/// Which files of the results folder a command writes: two commands at once must not write the same.
+enum class Writes { training, results, run };
+/// Makes the folder and holds it for those files while the result lives. Throws InputError (73), also when another
+/// process holds it; the message says which.
+std::unique_ptr<data::FolderLock> hold_out(const Workspace& workspace, Writes files, const std::string& command);
 
 /// The rows shipped with the study and those in OUT/training.h5, merged; rows of other settings are left out.
 struct TrainingRows {
@@ -71,6 +81,7 @@ struct TrainingRows {
   data::RunTable table;                 ///< to fit: of the steady flow, without outputs whose errors are not known
   std::optional<data::RunTable> low;    ///< rows of the cheaper level, where the study names some
   std::vector<std::string> notes;       ///< rows left out and why
+  std::vector<data::RunRow> kept;       ///< rows of OUT/training.h5 under other settings: left out, and written back
   std::vector<data::Finding> findings;  ///< of who read the tables
 };
 TrainingRows training_rows(const Workspace& workspace);

@@ -22,7 +22,7 @@ Action add_design(CLI::App& program) {
   return [options] {
     const Common& common = options->common;
     const Workspace workspace = open_workspace(common);
-    make_out(workspace);
+    const auto held = hold_out(workspace, Writes::training, "design");
     const TrainingRows rows = training_rows(workspace);
     for (const std::string& note : rows.notes) say(common, "note: " + note);
     const Campaign campaign = plan_campaign(workspace, rows.all, options->runs);

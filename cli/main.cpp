@@ -1,10 +1,17 @@
 // The program: declares the commands, runs one, and turns failures into exit statuses (design: data::ExitStatus).
 #include <fmt/core.h>
 
+#include <cerrno>
 #include <exception>
+#include <filesystem>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
 
 #include "cli/command.hpp"
 #include "data/provenance.hpp"
+#include "data/terminal.hpp"
 
 namespace {
 
@@ -27,23 +34,65 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : status(data::ExitStatus::usage);
+    std::ostringstream out, err;
+    const int found = program.exit(error, out, err);
+    const auto without_end = [](std::string text) {
+      while (text.ends_with('\n')) text.pop_back();
+      return text;
+    };
+    if (!out.str().empty()) data::print_result(without_end(out.str()));
+    if (!err.str().empty()) data::tell(without_end(err.str()));
+    return found == 0 ? 0 : status(data::ExitStatus::usage);
   }
   for (const auto& [command, action] : commands)
     if (command->parsed()) return status(action());
   return status(data::ExitStatus::usage);
 }
 
+int refused(data::ExitStatus exit_status, const std::string& place, const std::string& what,
+            const std::string& remedy) {
+  data::tell(data::describe({{place, what, remedy}}));
+  return status(exit_status);
+}
+
+/// A path that the system would not follow.
+int refused(const std::filesystem::filesystem_error& error) {
+  const std::string path = error.path1().empty() ? "the working folder" : error.path1().string();
+  const int code = error.code().value();
+  const bool place_to_write = code == EROFS || code == ENOSPC || code == EDQUOT || code == EIO;
+  return refused(place_to_write ? data::ExitStatus::cannot_write : data::ExitStatus::missing_input, path,
+                 "cannot be used: " + error.code().message(), "check the path, its links and its rights");
+}
+
+int out_of_memory() {
+  return refused(data::ExitStatus::bad_data, "", "this needs more memory than the system gives",
+                 "use fewer rows, spheres or a smaller box, fewer --jobs, or a larger machine");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  data::guard_streams();
   try {
     return run(argc, argv);
   } catch (const data::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    data::tell(error.what());
     return status(error.status);
+  } catch (const std::bad_alloc&) {
+    return out_of_memory();
+  } catch (const std::length_error&) {  // a vector longer than any memory
+    return out_of_memory();
+  } catch (const std::filesystem::filesystem_error& error) {
+    return refused(error);
+  } catch (const std::system_error& error) {
+    const int code = error.code().value();
+    if (code == EAGAIN || code == EMFILE || code == ENFILE)
+      return refused(data::ExitStatus::bad_data, "", fmt::format("the system allows no more: {}", error.what()),
+                     "use fewer --jobs or --threads, or raise the limits (ulimit -n, ulimit -u)");
+    data::tell(fmt::format("demcal: a defect of the program: {}", error.what()));
+    return status(data::ExitStatus::defect);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "demcal: a defect of the program: {}\n", error.what());
+    data::tell(fmt::format("demcal: a defect of the program: {}", error.what()));
     return status(data::ExitStatus::defect);
   }
 }

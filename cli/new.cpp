@@ -1,10 +1,13 @@
 // demcal new: a commented study for the user's own rig and powder.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/command.hpp"
 #include "data/atomic_file.hpp"
+#include "data/file_name.hpp"
+#include "data/terminal.hpp"
 
 namespace cli {
 namespace fs = std::filesystem;
@@ -110,15 +113,26 @@ Action add_new(CLI::App& program) {
   command->add_option("FOLDER", *folder, "made by this command")->required();
   command->footer("Example: demcal new my-mixer");
   return [folder] {
+    if (folder->find_first_not_of(" \t") == std::string::npos)
+      throw data::InputError(data::ExitStatus::usage, {"FOLDER", "is empty", "give the new folder a name"});
     const fs::path path = fs::absolute(*folder).lexically_normal();
     const fs::path study = path / "study.toml";
-    if (fs::exists(study))
-      throw data::InputError(data::ExitStatus::cannot_write,
-                             {study.string(), "is there already", "choose another folder, or remove it first"});
-    const std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();
+    for (const fs::path& file : {study, path / "bench.csv"}) {
+      std::error_code failure;
+      const fs::file_type there = fs::symlink_status(file, failure).type();
+      if (there != fs::file_type::not_found)
+        throw data::InputError(
+            data::ExitStatus::cannot_write,
+            {file.string(), failure ? "cannot be looked for: " + failure.message() : "is there already",
+             "choose another folder, or move it away first"});
+    }
+    const std::string name = data::file_name((path.has_filename() ? path : path.parent_path()).filename().string());
+    std::string hint = data::shell_word(*folder);
+    std::replace(hint.begin(), hint.end(), '\n', ' ');  // it stands in a comment
     data::write_atomically((path / "bench.csv").string(), std::string_view(observed_template));
-    data::write_atomically(study.string(), std::string_view(fmt::format(fmt::runtime(study_template), *folder, name)));
-    fmt::print(stderr, "{}: edit it, put your torque into bench.csv, then: demcal check {}\n", study.string(), *folder);
+    data::write_atomically(study.string(),
+                           std::string_view(fmt::format(fmt::runtime(study_template), data::printable(hint), name)));
+    data::tell(fmt::format("{}: edit it, put your torque into bench.csv, then: demcal check {}", study.string(), hint));
     return data::ExitStatus::done;
   };
 }

@@ -1,5 +1,5 @@
 // demcal observe: a raw torque log to observations, one row per plateau of constant speed.
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,15 @@
 
 #include "cli/command.hpp"
 #include "cli/observe_figure.hpp"
+#include "cli/observe_files.hpp"
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
+#include "data/file_name.hpp"
 #include "data/hash.hpp"
+#include "data/log_faults.hpp"
+#include "data/origin.hpp"
 #include "data/torque_log.hpp"
+#include "data/unit_text.hpp"
 #include "uq/report_gnuplot.hpp"
 
 namespace cli {
@@ -31,6 +36,7 @@ struct Options {
   data::LogColumns columns;
   data::PlateauOptions plateaus;
   Window window, idle_window;
+  std::optional<double> constant_speed;    ///< in rpm or --rpm-unit
   std::optional<double> idle, idle_error;  ///< in the log's unit of torque
 };
 
@@ -59,8 +65,10 @@ Idle find_idle(const Options& options, const data::TorqueLog& log, const std::ve
     idle.at.assign(plateaus.size(), value);
   } else if (from_log) {
     idle.kind = Idle::Kind::log;
-    const data::TorqueLog empty =
-        options.idle_log.empty() ? log : data::read_torque_log(options.idle_log, options.columns);
+    data::TorqueLog empty = options.idle_log.empty() ? log : data::read_torque_log(options.idle_log, options.columns);
+    if (!options.idle_log.empty())
+      for (const std::string& words : data::remove_no_values(empty))
+        say(options.common, fmt::format("warning: {}: {}", empty.file, words));
     data::PlateauOptions part = options.plateaus;
     part.from = options.idle_window.from();
     part.to = options.idle_window.to();
@@ -94,6 +102,10 @@ data::MeanTorque observed_torque(const data::Plateau& plateau, const Idle& idle,
 
 std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus) {
   std::vector<std::string> warnings;
+  for (const data::Plateau& plateau : plateaus)
+    for (std::string& fault : data::plateau_faults(log, plateau)) warnings.push_back(std::move(fault));
+  if (std::all_of(plateaus.begin(), plateaus.end(), [](const data::Plateau& one) { return one.torque.mean < 0.0; }))
+    warnings.push_back("every torque is negative: is the sign of the sensor right?");
   if (log.missing > 0) warnings.push_back(fmt::format("{} samples without all three values are left out", log.missing));
   if (log.uneven_share > 0.05)
     warnings.push_back(
@@ -110,11 +122,18 @@ std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vect
   return warnings;
 }
 
+/// A name within a line of comment.
+std::string in_comment(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return text;
+}
+
 /// One row per plateau; beside the columns that a study reads, what the mean rests on.
 std::string to_csv(const Options& options, const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
                    const Idle& idle, const data::Unit& unit) {
-  std::string text = fmt::format("# from {} (XXH3 {}), by demcal observe\n", fs::path(options.log).filename().string(),
-                                 data::hash_file(options.log));
+  std::string text = fmt::format("# {}\n# from {} (XXH3 {}), by demcal observe\n", data::blank_mark(),
+                                 in_comment(fs::path(options.log).filename().string()), data::hash_file(options.log));
   text += fmt::format(
       "# units: {} [{}], {} [{}]; seconds: length of the part used; independent: its uncorrelated samples\n",
       options.control, log.speed_unit.symbol, options.output, unit.symbol);
@@ -126,12 +145,14 @@ std::string to_csv(const Options& options, const data::TorqueLog& log, const std
                               idle.at.front().error / unit.factor, unit.symbol)
                 : std::string("\n");
   } else if (idle.kind == Idle::Kind::log) {
-    text += fmt::format("# idle torque of the empty machine taken off at each speed ({}); its error is in {}_se\n",
-                        options.idle_log.empty() ? "same log" : fs::path(options.idle_log).filename().string(),
-                        options.output);
+    text +=
+        fmt::format("# idle torque of the empty machine taken off at each speed ({}); its error is in {}_se\n",
+                    options.idle_log.empty() ? "same log" : in_comment(fs::path(options.idle_log).filename().string()),
+                    options.output);
   }
-  text += fmt::format("{},{},{}_se,idle,from_s,seconds,independent,{}_sd\n", data::csv_field(options.control),
-                      data::csv_field(options.output), options.output, options.control);
+  text += fmt::format("{},{},{},idle,from_s,seconds,independent,{}\n", data::csv_field(options.control),
+                      data::csv_field(options.output), data::csv_field(options.output + "_se"),
+                      data::csv_field(options.control + "_sd"));
   for (std::size_t i = 0; i < plateaus.size(); ++i) {
     const data::Plateau& plateau = plateaus[i];
     const data::MeanTorque found = observed_torque(plateau, idle, i);
@@ -145,16 +166,58 @@ std::string to_csv(const Options& options, const data::TorqueLog& log, const std
   return text;
 }
 
+/// Takes the pieces of slow ramps out of the plateaus; returns their length, s.
+double take_ramps(const data::TorqueLog& log, std::vector<data::Plateau>& plateaus,
+                  std::vector<std::string>& warnings) {
+  double seconds = 0.0;
+  std::erase_if(plateaus, [&](const data::Plateau& plateau) {
+    if (plateau.ramp) seconds += log.time[plateau.first + plateau.count - 1] - log.time[plateau.first];
+    return plateau.ramp;
+  });
+  if (seconds > 0.0)
+    warnings.push_back(
+        fmt::format("{:.4g} s in which the speed changes slowly are no constant speed and are left out", seconds));
+  return seconds;
+}
+
 data::ExitStatus observe(Options options) {
-  const data::TorqueLog log = data::read_torque_log(options.log, options.columns);
+  const fs::path out = options.out.empty() ? fs::path(options.log).stem().string() + "-observed.csv" : options.out;
+  check_observe_targets(out, {options.log, options.idle_log});
+  if (options.constant_speed) {
+    const std::string& symbol = options.columns.speed.unit;
+    const auto unit = data::unit_meant(symbol.empty() ? "rpm" : symbol, "rpm");
+    if (!unit)
+      refuse(data::ExitStatus::usage, "--rpm-unit", fmt::format("'{}' is not a unit of speed", symbol), "like rpm");
+    options.columns.constant_speed = unit->to_si(*options.constant_speed);
+  }
+  data::TorqueLog log = data::read_torque_log(options.log, options.columns);
+  if (!log.took.empty()) say(options.common, fmt::format("{}: read as: {}", log.file, fmt::join(log.took, ", ")));
+  std::vector<std::string> warnings = data::remove_no_values(log);
   options.plateaus.from = options.window.from();
   options.plateaus.to = options.window.to();
-  std::vector<data::Plateau> plateaus = data::find_plateaus(log, options.plateaus);
+  std::vector<data::Plateau> plateaus = data::find_stretches(log, options.plateaus);
+  const double ramps = take_ramps(log, plateaus, warnings);
   if (!options.idle_window.seconds.empty() && options.idle_log.empty())  // the machine was still empty there
     std::erase_if(plateaus, [&](const data::Plateau& plateau) {
       return log.time[plateau.first] <= options.idle_window.to() &&
              log.time[plateau.first + plateau.count - 1] >= options.idle_window.from();
     });
+  if (plateaus.empty() && ramps > 0.0)
+    refuse(data::ExitStatus::bad_data, log.file,
+           fmt::format("the speed changes slowly all the time ({:.4g} s of it): there is no constant speed", ramps),
+           "hold each speed for a while, or cut out with --window what is constant");
+  const std::size_t before = plateaus.size();
+  std::erase_if(plateaus, [&](const data::Plateau& plateau) {
+    if (!data::is_saturated(log, plateau)) return false;
+    warnings.push_back(
+        fmt::format("{:.4g} {} at {:.4g} s: the torque stays at {:.5g} {}: the sensor is saturated or stuck there, "
+                    "and no observation is made of it",
+                    log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, log.time[plateau.first],
+                    log.torque_unit.from_si(plateau.torque.mean), log.torque_unit.symbol));
+    return true;
+  });
+  if (plateaus.empty() && before > 0)
+    refuse(data::ExitStatus::bad_data, log.file, warnings.back(), "check the sensor's range");
   if (plateaus.empty())
     refuse(data::ExitStatus::bad_data, log.file,
            fmt::format("has no stretch of {:g} s in which the speed stays within {:g} %", options.plateaus.shortest,
@@ -163,15 +226,11 @@ data::ExitStatus observe(Options options) {
   const data::Unit unit = options.unit.empty() ? log.torque_unit : data::parse_unit(options.unit);
   const Idle idle = find_idle(options, log, plateaus);
 
-  const fs::path out = options.out.empty() ? fs::path(options.log).stem().string() + "-observed.csv" : options.out;
-  for (const std::string& input : {options.log, options.idle_log})
-    if (!input.empty() && fs::weakly_canonical(out) == fs::weakly_canonical(input))
-      refuse(data::ExitStatus::cannot_write, out.string(), "is the log itself", "choose another --out");
-  data::write_atomically(out.string(), to_csv(options, log, plateaus, idle, unit));
+  data::write_atomically(out.string(), to_csv(options, log, plateaus, idle, unit), data::Changed::refuse);
   std::vector<double> off;
   for (const data::MeanTorque& one : idle.at) off.push_back(one.value);
   const fs::path folder = out.has_parent_path() ? out.parent_path() : fs::path(".");
-  uq::draw(log_figure(log, plateaus, off, unit, out.stem().string()), folder.string(), {});
+  uq::draw(log_figure(log, plateaus, off, unit, data::file_name(out.stem().string())), folder.string(), {});
 
   nlohmann::json json{{"observations", out.string()}, {"rows", nlohmann::json::array()}};
   for (std::size_t i = 0; i < plateaus.size(); ++i) {
@@ -188,17 +247,20 @@ data::ExitStatus observe(Options options) {
                             {options.output + "_se", error},
                             {"unit", unit.symbol}});
   }
-  const std::vector<std::string> warnings = warnings_of(log, plateaus);
+  for (std::string& warning : warnings_of(log, plateaus)) warnings.push_back(std::move(warning));
   for (const std::string& warning : warnings) say(options.common, "warning: " + warning);
   say(options.common, fmt::format("{} observations: {} (picture: {})", plateaus.size(), out.string(),
-                                  (folder / (out.stem().string() + ".svg")).string()));
+                                  observe_pictures(out).front().string()));
   json["warnings"] = warnings;
   print_json(options.common, json);
   return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
 }
 
 void add_window(CLI::App& command, const std::string& name, Window& window, const std::string& help) {
-  command.add_option(name, window.seconds, help)->expected(2)->type_name("FROM TO");
+  command.add_option(name, window.seconds, help)
+      ->expected(2)
+      ->check(number_in(-1e15, 1e15, "a number of seconds"))
+      ->type_name("FROM TO");
 }
 
 }  // namespace
@@ -214,12 +276,28 @@ Action add_observe(CLI::App& program) {
       ->required();
   command->add_option("--out", options->out, "the observations; the picture goes beside (default: ./LOG-observed.csv)");
   const auto column = [&](const std::string& name, data::LogColumn& wanted) {
-    command->add_option("--" + name, wanted.name, fmt::format("column of the {} (default: {})", name, wanted.name));
+    command->add_option_function<std::string>(
+        "--" + name,
+        [&wanted](const std::string& text) {
+          wanted.name = text;
+          wanted.also.clear();
+        },
+        fmt::format("column of the {} (default: {})", name, wanted.name));
     command->add_option("--" + name + "-unit", wanted.unit, "its unit, instead of the header's");
   };
   column("time", options->columns.time);
   column("torque", options->columns.torque);
   column("rpm", options->columns.speed);
+  command
+      ->add_option_function<double>(
+          "--constant-speed", [options](double value) { options->constant_speed = value; },
+          "the speed of a log without a column for it, in rpm or --rpm-unit")
+      ->check(number_in(-1e6, 1e6, "a speed"));
+  command
+      ->add_option_function<double>(
+          "--rate", [options](double value) { options->columns.rate = value; },
+          "samples per second, evenly: the log's stamps are not used")
+      ->check(number_in(1e-6, 1e9, "a number above 0"));
   command->add_option("--unit", options->unit, "unit of the torque written (default: the log's)")
       ->check([](const std::string& unit) {
         try {
@@ -230,10 +308,10 @@ Action add_observe(CLI::App& program) {
       });
   command->add_option("--control", options->control, "name of the speed in the study (default: rpm)");
   command->add_option("--output", options->output, "name of the torque in the study (default: torque)");
-  command->add_option("--idle", options->idle,
-                      "torque of the empty machine at any speed, in the log's unit; taken off");
+  command->add_option("--idle", options->idle, "torque of the empty machine at any speed, in the log's unit; taken off")
+      ->check(number_in(-1e30, 1e30, "a finite number"));
   command->add_option("--idle-error", options->idle_error, "its standard error, common to all rows")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_in(0.0, 1e30, "a number from 0"));
   command->add_option("--idle-log", options->idle_log, "a log of the empty machine at the same speeds, instead");
   add_window(*command, "--idle-window", options->idle_window,
              "the seconds of that log, or without --idle-log of LOG, in which the machine was empty");
@@ -241,14 +319,14 @@ Action add_observe(CLI::App& program) {
   command
       ->add_option("--dead-time", options->plateaus.dead_time,
                    "seconds dropped after each change of speed (default: 0)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_in(0.0, 1e12, "a number of seconds from 0"));
   command->add_option("--shortest", options->plateaus.shortest, "seconds; shorter stretches are ramps (default: 5)")
-      ->check(CLI::PositiveNumber);
+      ->check(number_in(1e-9, 1e12, "a number of seconds above 0"));
   command
       ->add_option_function<double>(
           "--tolerance", [options](double percent) { options->plateaus.tolerance = percent / 100.0; },
           "percent by which a constant speed may vary (default: 2)")
-      ->check(CLI::Range(0.01, 50.0));
+      ->check(number_in(0.01, 50.0, "a number from 0.01 to 50"));
   command->add_flag("--quiet", options->common.quiet, "no summary");
   command->add_flag("--json", options->common.json, "the result as JSON on stdout, and nothing else there");
   return [options] { return observe(*options); };

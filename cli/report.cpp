@@ -16,6 +16,7 @@ Action add_report(CLI::App& program) {
     if (!std::filesystem::exists(results))
       throw data::InputError(data::ExitStatus::missing_input, {results, "is not there: this study has no results yet",
                                                                "run: demcal calibrate " + common->study});
+    const auto held = hold_out(workspace, Writes::results, "report");
     return write_report(*common, workspace, uq::load_results(results));
   };
 }

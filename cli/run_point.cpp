@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "data/atomic_file.hpp"
 #include "dem/isa.hpp"
 #include "dem/run_file.hpp"
 #include "dem/target.hpp"
@@ -56,6 +57,7 @@ bool is_done(const Workspace& workspace, const Point& point, const std::string& 
 dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options) {
   const dem::Case c = case_at(workspace, point);
   const std::uint64_t seed = run_seed(workspace, point);
+  data::require_replaceable(options.path);
   std::optional<dem::SavedRun> before = earlier(options.path, c, seed);
   if (before && ended(*before, c)) return before->result;
 

@@ -73,7 +73,7 @@ Action add_sample(CLI::App& program) {
     const Workspace workspace = open_workspace(*common);
     const data::Study& study = workspace.study;
     const TrainingRows rows = rows_to_learn_from(*common, workspace);
-    make_out(workspace);
+    const auto held = hold_out(workspace, Writes::results, "sample");
     const uq::CalibrateOptions options{
         .surrogates = surrogate_options(*common, workspace, rows), .sampler = *sampler, .seed = study.seed};
     const std::vector<uq::FittedSurrogate> fitted = uq::fit_surrogates(study, rows.table, options.surrogates);

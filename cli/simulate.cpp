@@ -2,13 +2,19 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 
 #include "cli/run_point.hpp"
+#include "data/file_name.hpp"
+#include "data/hash.hpp"
 #include "data/interrupt.hpp"
+#include "data/origin.hpp"
 #include "data/progress.hpp"
 #include "dem/rig.hpp"
+#include "dem/run_file.hpp"
 #include "dem/stl.hpp"
+#include "dem/target.hpp"
 
 namespace cli {
 namespace {
@@ -73,6 +79,22 @@ std::string summary(const Workspace& workspace, const Point& point, const dem::R
   return text;
 }
 
+/// run.h5 may hold another run: it stays, under a name of its own.
+void keep_other_run(const Common& common, const Workspace& workspace, const Point& point, const std::string& path) {
+  if (data::origin_of(path) != data::Origin::ours) return;
+  try {
+    const dem::SavedRun saved = dem::read_run(path);
+    const std::string settings = dem::settings_text(case_at(workspace, point));
+    if (saved.settings == settings && saved.result.seed == run_seed(workspace, point)) return;
+    const std::string name = fmt::format(
+        "run-{}.h5", data::hash_text(fmt::format("{} {}", saved.result.seed, saved.settings)).substr(0, 12));
+    const std::filesystem::path kept = std::filesystem::path(path).parent_path() / name;
+    if (std::rename(path.c_str(), kept.c_str()) == 0)
+      say(common, fmt::format("note: run.h5 was a run at another point or under other settings; it is now {}", name));
+  } catch (const data::InputError&) {  // of another version: made again
+  }
+}
+
 }  // namespace
 
 Action add_simulate(CLI::App& program) {
@@ -96,12 +118,13 @@ Action add_simulate(CLI::App& program) {
     const Workspace workspace = open_workspace(common);
     require_rig(workspace);
     const Point point = parse_point(workspace, choose_material(workspace.study, options->material), options->at);
-    make_out(workspace);
+    const auto held = hold_out(workspace, Writes::run, "simulate");
     const std::filesystem::path out = workspace.out;
     const std::string path = (out / "run.h5").string();
+    keep_other_run(common, workspace, point, path);
     if (options->stl) {
       for (const dem::NamedMesh& mesh : dem::rig_meshes(case_at(workspace, point)))
-        dem::write_stl(mesh.mesh, (out / (mesh.name + ".stl")).string());
+        dem::write_stl(mesh.mesh, (out / (data::file_name(mesh.name) + ".stl")).string());
     }
     say(common,
         fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point)));

@@ -9,6 +9,7 @@
 
 #include "cli/campaign.hpp"
 #include "cli/run_point.hpp"
+#include "cli/training_table.hpp"
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
 
@@ -22,17 +23,12 @@ struct Options {
   int runs = 0, at_posterior = 0;
 };
 
-void write_tables(const Workspace& workspace, const data::RunTable& table) {
-  const fs::path out = workspace.out;
-  data::write_table_hdf5((out / "training.h5").string(), table, workspace.study);
-  data::write_table_csv((out / "training.csv").string(), table, workspace.study);
-}
-
 /// What the workers share; the mutex guards all but the counter.
 struct Ledger {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   data::RunTable table;
+  std::vector<data::RunRow> kept;  ///< rows of other settings, written back
   std::size_t finished = 0, unsteady = 0;
   std::vector<bool> ended;  ///< per point of the campaign: finished or failed
   std::vector<std::string> failures, warnings;
@@ -68,7 +64,7 @@ void work(const Workspace& workspace, const Campaign& campaign, Ledger& ledger, 
       } else {
         put_row(ledger.table, to_row(workspace, point, result));
         if (result.summary.state != dem::Steady::yes) ++ledger.unsteady;
-        write_tables(workspace, ledger.table);
+        write_tables(workspace, ledger.table, ledger.kept);
         ++ledger.finished;
       }
       ledger.ended[i] = true;
@@ -106,6 +102,7 @@ Action add_train(CLI::App& program) {
     const Workspace workspace = open_workspace(common);
     require_rig(workspace);
     make_out(workspace, "runs");
+    const auto held = hold_out(workspace, Writes::training, "train");
     TrainingRows rows = training_rows(workspace);
     for (const std::string& note : rows.notes) say(common, "note: " + note);
     const std::size_t before = rows.all.rows.size();
@@ -121,7 +118,8 @@ Action add_train(CLI::App& program) {
     Ledger ledger;
     ledger.table = std::move(rows.all);
     ledger.ended.assign(campaign.points.size(), false);
-    write_tables(workspace, ledger.table);
+    ledger.kept = std::move(rows.kept);
+    write_tables(workspace, ledger.table, ledger.kept);
     std::stop_source stop;
     const std::stop_callback forward(interrupt.token(), [&] { stop.request_stop(); });
     {

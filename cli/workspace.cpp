@@ -1,12 +1,22 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 
 #include "cli/point.hpp"
+#include "cli/training_table.hpp"
+#include "data/atomic_file.hpp"
+#include "data/csv.hpp"
 #include "data/run_table_files.hpp"
+#include "data/terminal.hpp"
 #include "dem/isa.hpp"
 #include "dem/read_case.hpp"
 #include "dem/target.hpp"
@@ -62,12 +72,36 @@ void tell_unknown_rows(const data::Study& study, TrainingRows& rows) {
 
 }  // namespace
 
+CLI::Validator number_in(double low, double high, const std::string& what) {
+  CLI::Validator validator(
+      [low, high, what](std::string& text) {
+        double value = 0.0;
+        const char* begin = text.data() + (!text.empty() && text.front() == '+' ? 1 : 0);
+        const auto [rest, error] = std::from_chars(begin, text.data() + text.size(), value);
+        const bool number = error == std::errc{} && rest == text.data() + text.size() && std::isfinite(value);
+        return number && value >= low && value <= high ? std::string() : fmt::format("'{}' is not {}", text, what);
+      },
+      "NUMBER", "");
+  return validator;
+}
+
 CLI::App* add_study_command(CLI::App& program, const std::string& name, const std::string& purpose,
                             const std::string& example, Common& common) {
   CLI::App* command = program.add_subcommand(name, purpose);
   command->add_option("STUDY", common.study, "study file, or folder that holds study.toml")->required();
   command->add_option("--out", common.out, "results folder (default: ./STUDY-NAME)");
-  command->add_option("--seed", common.seed, "seed of all random streams, instead of the study's");
+  command
+      ->add_option_function<std::string>(
+          "--seed",
+          [&common](const std::string& text) {
+            std::uint64_t seed = 0;
+            const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+            if (error != std::errc{} || rest != text.data() + text.size())
+              throw CLI::ValidationError("--seed", fmt::format("'{}' is not a whole number from 0 to 2^64 - 1", text));
+            common.seed = seed;
+          },
+          "seed of all random streams, instead of the study's")
+      ->type_name("UINT");
   command->add_flag("--quiet", common.quiet, "no progress, no summary");
   command->add_flag("--json", common.json, "the result as JSON on stdout, and nothing else there");
   command->add_option("--set", common.set, "set a key of the study: contact.restitution=0.8")
@@ -110,6 +144,12 @@ Workspace open_workspace(const Common& common) {
                            ? Unsteady::use
                            : Unsteady::leave_out;
   file.finish();
+  // How tables were read that are not plain CSV; what is wrong with them was said before.
+  for (const data::ObservationSet& set : study.observations)
+    if (const std::string how = data::read_csv(set.file).took_line(); !how.empty()) say(common, how);
+  if (const std::string& table = study.training.table;
+      !table.empty() && fs::path(table).extension() == ".csv" && fs::exists(table))
+    if (const std::string how = data::read_csv(table).took_line(); !how.empty()) say(common, how);
   workspace.out = fs::absolute(common.out.empty() ? study.name : common.out).lexically_normal().string();
   return workspace;
 }
@@ -133,6 +173,25 @@ void make_out(const Workspace& workspace, const std::string& subfolder) {
     throw data::InputError(
         data::ExitStatus::cannot_write,
         {(out / subfolder).string(), "cannot be made: " + failure.message(), "give another folder with --out DIR"});
+  if (::access((out / subfolder).c_str(), W_OK | X_OK) != 0)
+    throw data::InputError(data::ExitStatus::cannot_write,
+                           {(out / subfolder).string(), fmt::format("cannot be written: {}", std::strerror(errno)),
+                            "give another folder with --out DIR"});
+}
+
+std::unique_ptr<data::FolderLock> hold_out(const Workspace& workspace, Writes files, const std::string& command) {
+  make_out(workspace);
+  const char* const name = files == Writes::training ? "training" : files == Writes::results ? "results" : "run";
+  auto lock = std::make_unique<data::FolderLock>(workspace.out, name, "demcal " + command);
+  std::vector<std::string> written;
+  if (files == Writes::training) written = {"training.h5", "training.csv", "design.csv"};
+  if (files == Writes::run) written = {"run.h5"};
+  if (files == Writes::results) {
+    written = {"surrogate.h5", "results.json", "report.json", "report.html"};
+    for (const data::CalibrationCase& one : workspace.study.cases) written.push_back("posterior-" + one.name + ".nc");
+  }
+  for (const std::string& file : written) data::require_replaceable((fs::path(workspace.out) / file).string());
+  return lock;
 }
 
 namespace {
@@ -160,14 +219,16 @@ TrainingRows training_rows(const Workspace& workspace) {
   TrainingRows result{data::empty_table(study), {}, {}, {}};
   std::map<std::string, std::string> settings;
   for (const auto& [material, unused] : workspace.cases) settings[material] = settings_hash(workspace, material);
-  const auto add = [&](const std::string& path) {
-    const data::TableRead read = data::read_table(path, study);
+  const auto add = [&](const std::string& path, const data::TableRead& read) {
     for (const std::string& left_out : read.left_out) result.notes.push_back(left_out);
     result.findings.insert(result.findings.end(), read.findings.begin(), read.findings.end());
     data::RunTable usable = read.table;
+    const bool own = path != study.training.table;
     std::size_t stale = std::erase_if(usable.rows, [&](const data::RunRow& row) {
       const auto known = settings.find(row.material);
-      return known != settings.end() && !row.settings.empty() && row.settings != known->second;
+      const bool other = known != settings.end() && !row.settings.empty() && row.settings != known->second;
+      if (other && own) result.kept.push_back(row);
+      return other;
     });
     if (stale > 0)
       result.notes.push_back(
@@ -176,9 +237,9 @@ TrainingRows training_rows(const Workspace& workspace) {
                       path, stale, read.table.rows.size()));
     result.all = data::merge(result.all, usable);
   };
-  if (!study.training.table.empty()) add(study.training.table);
+  if (!study.training.table.empty()) add(study.training.table, data::read_table(study.training.table, study));
   const std::string own = (fs::path(workspace.out) / "training.h5").string();
-  if (fs::exists(own)) add(own);
+  if (fs::exists(own)) add(own, read_own_table(workspace, result.notes));
   result.table = result.all;
   leave_out_unsteady(workspace, result);
   if (!study.training.low.empty()) {
@@ -196,11 +257,22 @@ std::string with_unit(double si, const data::Unit& unit) {
 }
 
 void say(const Common& common, const std::string& text) {
-  if (!common.quiet) fmt::print(stderr, "{}\n", text);
+  if (!common.quiet) data::tell(text);
 }
 
 void print_json(const Common& common, const nlohmann::json& result) {
-  if (common.json) fmt::print("{}\n", result.dump(1));
+  if (!common.json) return;
+  // Controls of C1 are valid in JSON as they are, but a terminal may obey them.
+  std::string text;
+  for (const char c : result.dump(1, ' ', false, nlohmann::json::error_handler_t::replace)) {
+    const bool control = !text.empty() && text.back() == '\xc2' && static_cast<unsigned char>(c) < 0xa0 &&
+                         static_cast<unsigned char>(c) >= 0x80;
+    if (control)
+      text.replace(text.size() - 1, 1, fmt::format("\\u{:04x}", static_cast<unsigned char>(c)));
+    else
+      text += c == '\x7f' ? std::string("\\u007f") : std::string(1, c);
+  }
+  data::print_result(text);
 }
 
 }  // namespace cli

@@ -1,35 +1,54 @@
 #pragma once
-// Tables of comma-separated values (RFC 4180), as spreadsheets and scripts write them: a header line, quoted fields,
-// CRLF or LF, an optional byte-order mark. Lines that begin with '#' are comments, empty lines are skipped.
+// Text tables as spreadsheets, loggers, instruments and scripts write them: one reader for observations, run tables,
+// torque logs and positions. It finds out how a table is written and says so in `took`; what could be read in two ways
+// is refused, never guessed.
+//
+//   text       UTF-8, UTF-16, Latin-1, Shift-JIS; any line ends; zeros behind the end, as of a logger that lost power
+//   columns    parted by commas, semicolons, tabs, bars or blanks; "sep=;"; quotes; separators behind the last column
+//   numbers    decimal point or comma, thousands, exponents of Fortran: in `fields` as plain decimals
+//   missing    empty, nan, N/A, -, #N/A, NULL, 1.#QNAN, ****
+//   heading    behind any preamble, or in a comment; a unit in it, in a row below it, or in a line "# units: a [m]"
+//   comments   lines that begin with '#', '%' or "//"
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "data/unit.hpp"
+
 namespace data {
 
 struct CsvRow {
-  std::vector<std::string> fields;  ///< as many as there are columns, without surrounding blanks
+  std::vector<std::string> fields;  ///< as many as there are columns, without surrounding blanks; plain decimals
   int line = 0;                     ///< in the file, from 1
 };
 
 struct Csv {
   std::string file;                   ///< as named in messages
-  std::vector<std::string> comments;  ///< at the head of the file, without '#' and the blank after it
-  std::vector<std::string> columns;
+  std::vector<std::string> comments;  ///< above the first row, without '#' and the blank after it
+  std::vector<std::string> columns;   ///< without their units
+  std::vector<std::string> headings;  ///< as they stand there
+  std::vector<std::string> units;     ///< "" where none is given
   int header_line = 0;
   std::vector<CsvRow> rows;
+  std::vector<std::string> took;  ///< how the table was read, where it is not plain CSV: "separated by semicolons"
 
+  /// By name, with or without its unit.
   std::optional<std::size_t> find(std::string_view column) const;
   /// Throws InputError (65) naming the columns that are there.
   std::size_t column(std::string_view name) const;
-  /// Of a row's field. Throws InputError (65) with line and column name; `nan` and an empty field give NaN.
+  /// Of a row's field. Throws InputError (65) with line and column name; NaN where there is no value.
   double number(const CsvRow& row, std::size_t column) const;
   std::string place(const CsvRow& row, std::size_t column) const;  ///< "bench.csv:3: speed"
+  /// The unit of a column's numbers: the table's own where it gives one, else `wanted`. Throws InputError (65) where
+  /// the two measure different things.
+  Unit unit(std::size_t column, const Unit& wanted) const;
+  /// `took` as one line: "bench.csv: read as UTF-16, separated by tabs"; empty for plain CSV.
+  std::string took_line() const;
 };
 
 /// Reads a file. Throws InputError: 66 missing; 65 no header, a column named twice, a row with too few or too many
-/// fields, a quote that does not end.
+/// fields, a quote that does not end, two ways to read it.
 Csv read_csv(const std::string& path);
 Csv parse_csv(const std::string& text, const std::string& file);
 

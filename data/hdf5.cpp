@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 
+#include <algorithm>
 #include <cassert>
-#include <filesystem>
 #include <functional>
 #include <numeric>
 
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
+#include "data/origin.hpp"
 
 #ifndef H5_HAVE_THREADSAFE
 #error "this HDF5 is not thread-safe, and runs write files at the same time: take the serial one of libhdf5-dev"
@@ -34,6 +35,10 @@ class Id {
   hid_t id_;
   herr_t (*close_)(hid_t);
 };
+
+/// When a file cannot be closed, say because the disk is full, the library's clean-up at the program's end crashes. All
+/// files are closed here, so there is nothing left to clean up. It must be told before its first use.
+[[maybe_unused]] const bool no_clean_up = H5dont_atexit() >= 0;
 
 /// The library prints its error stack per thread unless told not to.
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
@@ -71,12 +76,22 @@ struct Types<std::uint8_t> {
   static hid_t file() { return H5T_STD_U8LE; }
 };
 
-Id text_type() {
+/// UTF-8 of `length` bytes, filled up with zeros.
+Id text_type(std::size_t length) {
   const hid_t type = H5Tcopy(H5T_C_S1);
-  H5Tset_size(type, H5T_VARIABLE);
+  H5Tset_size(type, std::max<std::size_t>(1, length));
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
   H5Tset_cset(type, H5T_CSET_UTF8);
   return Id(type, H5Tclose);
 }
+
+/// Reads as many bytes as the stored text has; anything else than text of fixed length has none.
+std::size_t text_length(hid_t stored) {
+  if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) != 0) return 0;
+  return H5Tget_size(stored);
+}
+
+std::string without_padding(std::string_view text) { return std::string(text.substr(0, text.find('\0'))); }
 
 Id space_of(const std::vector<std::size_t>& shape) {
   if (shape.empty()) return Id(H5Screate(H5S_SCALAR), H5Sclose);
@@ -113,6 +128,17 @@ struct Hdf5Group::Handle {
   [[noreturn]] void cannot_write(const std::string& name) const {
     throw InputError(ExitStatus::cannot_write,
                      Problem{place(name), "cannot be written", "check the room and rights there"});
+  }
+  /// How many values a dataset has. Damaged extents ask for more than the file holds of them.
+  std::size_t elements(const std::string& name, hid_t dataset, const std::vector<std::size_t>& shape) const {
+    const Id type(H5Dget_type(dataset), H5Tclose);
+    const auto stored = static_cast<std::size_t>(H5Dget_storage_size(dataset));
+    std::size_t bytes = H5Tget_size(type.get());
+    for (const std::size_t extent : shape)
+      if (__builtin_mul_overflow(bytes, extent, &bytes)) bad_data(name, "the dataset's extents are damaged");
+    // What was never written reads as zeros, as other programs may leave it; more of it than this is no data.
+    if (bytes > stored + (std::size_t{1} << 30)) bad_data(name, "the dataset has larger extents than the file holds");
+    return product(shape);
   }
   /// The object that carries an attribute: this group or a dataset of it.
   Id carrier(const std::string& dataset) const {
@@ -156,14 +182,13 @@ std::shared_ptr<Hdf5Group::Handle> open_root(hid_t file, const std::string& path
 
 Hdf5Group open_file(const std::string& path, unsigned mode) {
   silence();
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw InputError(ExitStatus::missing_input, Problem{shown_path(path), "there is no such file", "check the name"});
-  }
+  require_file(path);
   if (H5Fis_hdf5(path.c_str()) <= 0) {
     throw InputError(ExitStatus::bad_data,
                      Problem{shown_path(path), "is not an HDF5 file, or its beginning is damaged", "make it again"});
   }
+  if (mode != H5F_ACC_RDONLY) remove_mark(path);
+  require_unchanged(path, "make it again");
   const hid_t file = H5Fopen(path.c_str(), mode, H5P_DEFAULT);
   if (file < 0) {
     throw InputError(ExitStatus::bad_data,
@@ -236,9 +261,8 @@ std::vector<std::string> Hdf5Group::names() const {
 }
 
 void Hdf5Group::set(const std::string& attribute, const std::string& text, const std::string& dataset) const {
-  const Id type = text_type();
-  const char* pointer = text.c_str();
-  handle_->set({attribute, dataset}, type.get(), space_of({}), {type.get(), &pointer});
+  const Id type = text_type(text.size());
+  handle_->set({attribute, dataset}, type.get(), space_of({}), {type.get(), text.c_str()});
 }
 
 void Hdf5Group::set(const std::string& attribute, const char* text, const std::string& dataset) const {
@@ -276,18 +300,14 @@ std::string Hdf5Group::text(const std::string& attribute, const std::string& dat
   silence();
   const Id object = handle_->carrier(dataset);
   const Id found(H5Aopen(object.get(), attribute.c_str(), H5P_DEFAULT), H5Aclose);
+  if (!found.ok()) handle_->bad_data(dataset + "@" + attribute, "the attribute is missing");
   const Id stored(H5Aget_type(found.get()), H5Tclose);
-  if (stored.ok() && H5Tget_class(stored.get()) == H5T_STRING && H5Tis_variable_str(stored.get()) == 0) {
-    std::string text(H5Tget_size(stored.get()), '\0');
-    handle_->get({attribute, dataset}, H5T_STRING, {stored.get(), text.data()});
-    return text.c_str();  // without padding
-  }
-  const Id type = text_type();
-  char* pointer = nullptr;
-  handle_->get({attribute, dataset}, H5T_STRING, {type.get(), static_cast<void*>(&pointer)});
-  const std::string text = pointer != nullptr ? pointer : "";
-  H5free_memory(pointer);
-  return text;
+  const std::size_t length = text_length(stored.get());
+  if (length == 0 || length > H5Aget_storage_size(found.get()))
+    handle_->bad_data(dataset + "@" + attribute, "the attribute is not text of fixed length");
+  std::string text(length, '\0');
+  handle_->get({attribute, dataset}, H5T_STRING, {stored.get(), text.data()});
+  return without_padding(text);
 }
 
 double Hdf5Group::number(const std::string& attribute, const std::string& dataset) const {
@@ -330,7 +350,7 @@ Array<T> Hdf5Group::read(const std::string& name) const {
   Array<T> array;
   array.shape = shape_of(space.get());
   if (kind != H5T_FLOAT && kind != H5T_INTEGER) handle_->bad_data(name, "the dataset does not hold numbers");
-  array.values.resize(product(array.shape));
+  array.values.resize(handle_->elements(name, found.get(), array.shape));
   if (!array.values.empty() &&
       H5Dread(found.get(), Types<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) < 0) {
     handle_->bad_data(name, "the dataset cannot be read");
@@ -351,17 +371,19 @@ DEMCAL_INSTANTIATE(std::uint8_t)
 
 void Hdf5Group::write_texts(const std::string& name, const std::vector<std::string>& values) const {
   silence();
-  const Id type = text_type();
+  std::size_t length = 1;
+  for (const std::string& value : values) length = std::max(length, value.size());
+  std::string bytes(values.size() * length, '\0');
+  for (std::size_t i = 0; i < values.size(); ++i) values[i].copy(bytes.data() + i * length, length);
+  const Id type = text_type(length);
   const Id space = space_of({values.size()});
   const Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_attr_creation_order(creation.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   const Id made(
       H5Dcreate2(handle_->id.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
       H5Dclose);
-  std::vector<const char*> pointers;
-  for (const std::string& value : values) pointers.push_back(value.c_str());
   if (!made.ok() ||
-      (!values.empty() && H5Dwrite(made.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) < 0)) {
+      (!values.empty() && H5Dwrite(made.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0)) {
     handle_->cannot_write(name);
   }
 }
@@ -371,18 +393,17 @@ std::vector<std::string> Hdf5Group::read_texts(const std::string& name) const {
   const Id found(H5Dopen2(handle_->id.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!found.ok()) handle_->bad_data(name, "the dataset is missing");
   const Id stored(H5Dget_type(found.get()), H5Tclose);
-  if (H5Tget_class(stored.get()) != H5T_STRING || H5Tis_variable_str(stored.get()) <= 0) {
-    handle_->bad_data(name, "the dataset does not hold texts");
-  }
-  const Id type = text_type();
+  const std::size_t length = text_length(stored.get());
+  if (length == 0) handle_->bad_data(name, "the dataset does not hold texts of fixed length");
   const Id space(H5Dget_space(found.get()), H5Sclose);
-  std::vector<char*> pointers(product(shape_of(space.get())), nullptr);
-  if (!pointers.empty() && H5Dread(found.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) < 0) {
+  const std::size_t count = handle_->elements(name, found.get(), shape_of(space.get()));
+  std::string bytes(count * length, '\0');
+  if (count > 0 && H5Dread(found.get(), stored.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0) {
     handle_->bad_data(name, "the dataset cannot be read");
   }
   std::vector<std::string> values;
-  for (const char* pointer : pointers) values.emplace_back(pointer != nullptr ? pointer : "");
-  if (!pointers.empty()) H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, pointers.data());
+  for (std::size_t i = 0; i < count; ++i)
+    values.push_back(without_padding(std::string_view(bytes).substr(i * length, length)));
   return values;
 }
 

@@ -2,8 +2,10 @@
 // A small layer over the HDF5 C library: files, groups, attributes and datasets that close themselves. Numbers are
 // stored as little-endian IEEE, creation order is tracked everywhere (netCDF-4 needs it), the library's own error
 // output is silent, and every failure is an InputError that names the file and the object: 65 when reading, 73 when
-// writing. Debian's serial library is built thread-safe, and any other is refused when compiling; two threads must
-// still not share one of these objects.
+// writing. Texts have a fixed length in the file: HDF5 1.10 crashes on damaged ones of variable length, so those are
+// neither written nor read. A file that demcal wrote is read only as it was written (data/origin.hpp). Debian's serial
+// library is built thread-safe, and any other is refused when compiling; two threads must still not share one of these
+// objects.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -52,7 +54,7 @@ class Hdf5Group {
   }
   template <class T>
   Array<T> read(const std::string& name) const;
-  void write_texts(const std::string& name, const std::vector<std::string>& values) const;  ///< UTF-8, variable length
+  void write_texts(const std::string& name, const std::vector<std::string>& values) const;  ///< UTF-8
   std::vector<std::string> read_texts(const std::string& name) const;
 
   /// Hands what was written so far to the system and reports what fails; call it before the last group goes.
@@ -68,10 +70,10 @@ class Hdf5Group {
 /// Makes a file (combine with write_atomically). It closes with the last of its groups. Throws InputError (73).
 Hdf5Group create_hdf5(const std::string& path);
 
-/// Opens a file to read. Throws InputError: 66 missing; 65 not HDF5, or truncated.
+/// Opens a file to read. Throws InputError: 66 missing; 65 not HDF5, truncated, or not as demcal wrote it.
 Hdf5Group open_hdf5(const std::string& path);
 
-/// Opens an existing file to add to it. Throws as open_hdf5.
+/// Opens an existing file to add to it, and takes its mark of origin off. Throws as open_hdf5.
 Hdf5Group open_hdf5_to_write(const std::string& path);
 
 }  // namespace data

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <cerrno>
@@ -17,12 +18,15 @@
 namespace data {
 namespace {
 
+constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
 std::atomic<int> pipe_end{-1};
 std::atomic<int> signals_seen{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 
-void on_signal(int) {
+void on_signal(int signal) {
   const int saved = errno;
+  // A closing terminal may say so more than once, the kernel and then the shell.
+  if (signal == SIGHUP && signals_seen.load() > 0) return;
   if (signals_seen.fetch_add(1) > 0) _exit(static_cast<int>(ExitStatus::interrupted));
   const char byte = 's';
   [[maybe_unused]] const auto written = ::write(pipe_end.load(), &byte, 1);
@@ -33,8 +37,7 @@ void on_signal(int) {
 
 struct InterruptGuard::Listener {
   int ends[2] = {-1, -1};
-  struct sigaction old_int {
-  }, old_term{};
+  std::array<struct sigaction, 3> old{};
   std::thread thread;
 };
 
@@ -53,13 +56,14 @@ InterruptGuard::InterruptGuard() : listener_(new Listener) {
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
   action.sa_flags = SA_RESTART;
-  sigaction(SIGINT, &action, &listener_->old_int);
-  sigaction(SIGTERM, &action, &listener_->old_term);
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    sigaction(signals[k], nullptr, &listener_->old[k]);
+    if (signals[k] != SIGHUP || listener_->old[k].sa_handler != SIG_IGN) sigaction(signals[k], &action, nullptr);
+  }
 }
 
 InterruptGuard::~InterruptGuard() {
-  sigaction(SIGINT, &listener_->old_int, nullptr);
-  sigaction(SIGTERM, &listener_->old_term, nullptr);
+  for (std::size_t k = 0; k < signals.size(); ++k) sigaction(signals[k], &listener_->old[k], nullptr);
   pipe_end = -1;
   const char byte = 'q';
   [[maybe_unused]] const auto written = ::write(listener_->ends[1], &byte, 1);

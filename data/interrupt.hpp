@@ -1,10 +1,12 @@
 #pragma once
-// Ctrl-C and SIGTERM: the first asks the job to stop where it can be resumed, the second ends the program at once.
+// Ctrl-C, SIGTERM and a terminal that closes (SIGHUP): the first asks the job to stop where it can be resumed, the
+// second ends the program at once.
 #include <stop_token>
 
 namespace data {
 
-/// Listens to SIGINT and SIGTERM while it lives; one at a time. Hand `token()` to the job.
+/// Listens to SIGINT, SIGTERM and SIGHUP (unless it is ignored, as under nohup) while it lives; one at a time. Hand
+/// `token()` to the job.
 class InterruptGuard {
  public:
   InterruptGuard();

@@ -75,24 +75,32 @@ ObservationSet read_observations(const std::string& path, const Study& study,
     throw InputError(ExitStatus::bad_data, Problem{csv.file, "has a header but no rows", "add the measured points"});
   }
 
+  std::vector<Unit> control_units, value_units, error_units;
+  for (std::size_t i = 0; i < control_columns.size(); ++i)
+    control_units.push_back(control_columns[i] ? csv.unit(*control_columns[i], study.controls[i].unit)
+                                               : study.controls[i].unit);
+  for (std::size_t i = 0; i < value_columns.size(); ++i) {
+    value_units.push_back(csv.unit(value_columns[i], study.outputs[set.outputs[i]].unit));
+    error_units.push_back(csv.unit(error_columns[i], value_units.back()));
+  }
+
   for (const CsvRow& row : csv.rows) {
     Observation point;
     point.line = row.line;
     for (std::size_t i = 0; i < control_columns.size(); ++i) {
       const Control& control = study.controls[i];
-      point.controls.push_back(control_columns[i] ? control.unit.to_si(measured(csv, row, *control_columns[i]))
+      point.controls.push_back(control_columns[i] ? control_units[i].to_si(measured(csv, row, *control_columns[i]))
                                                   : settings.at(control.name));
     }
     for (std::size_t i = 0; i < value_columns.size(); ++i) {
-      const Unit& unit = study.outputs[set.outputs[i]].unit;
-      point.values.push_back(unit.to_si(measured(csv, row, value_columns[i])));
+      point.values.push_back(value_units[i].to_si(measured(csv, row, value_columns[i])));
       const double error = measured(csv, row, error_columns[i]);
       if (error <= 0.0) {
         throw InputError(ExitStatus::bad_data,
                          Problem{csv.place(row, error_columns[i]), fmt::format("{} is not above 0", error),
                                  "give the standard error of the measured mean"});
       }
-      point.standard_errors.push_back(unit.factor * error);  // a difference: no offset
+      point.standard_errors.push_back(error_units[i].factor * error);  // a difference: no offset
     }
     set.points.push_back(std::move(point));
   }

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "data/terminal.hpp"
+
 namespace data {
 namespace {
 
@@ -75,7 +77,7 @@ void Progress::note(const std::string& line) {
   const std::lock_guard lock(mutex_);
   if (options_.style == ProgressStyle::quiet) return;
   clear_bar();
-  options_.write(line + "\n");
+  options_.write(printable(line) + "\n");
   drawn_at_ = -1e300;
 }
 

@@ -215,9 +215,14 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
   const Columns at = find_columns(csv, table, study);
   const std::string file_name = std::filesystem::path(path).filename().string();
 
-  std::vector<const Unit*> input_units;
-  for (const Column& column : table.parameters) input_units.push_back(&column.unit);
-  for (const Column& column : table.controls) input_units.push_back(&column.unit);
+  std::vector<Unit> input_units, output_units, error_units;
+  for (const std::vector<Column>* columns : {&table.parameters, &table.controls})
+    for (const Column& column : *columns) input_units.push_back(csv.unit(at.inputs[input_units.size()], column.unit));
+  for (std::size_t i = 0; i < table.outputs.size(); ++i) {
+    output_units.push_back(csv.unit(at.outputs[i], table.outputs[i].unit));
+    error_units.push_back(csv.unit(at.errors[i], output_units.back()));
+    error_units.back().offset = 0.0;
+  }
   tell_columns(csv, at, result);
   for (const CsvRow& line : csv.rows) {
     const Missing missing = not_finite(csv, line, at);
@@ -225,6 +230,14 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
       const std::string& field = line.fields[column];
       return fmt::format("{}: {}", csv.place(line, column), field.empty() ? "is empty" : fmt::format("is {}", field));
     };
+    std::size_t no_logarithm = study.parameters.size();
+    for (std::size_t i = study.parameters.size(); i-- > 0;)
+      if (study.parameters[i].scale == Scale::log && csv.number(line, at.inputs[i]) <= 0.0) no_logarithm = i;
+    if (no_logarithm < study.parameters.size()) {
+      result.left_out.push_back(shown(at.inputs[no_logarithm]) +
+                                ", which has no logarithm (scale = \"log\"), the row is left out");
+      continue;
+    }
     if (missing.input || missing.outputs.size() == at.outputs.size()) {
       result.left_out.push_back(shown(missing.input ? *missing.input : missing.outputs.front()) +
                                 ", the row is left out");
@@ -235,18 +248,15 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     RunRow row;
     row.material = read_material(csv, line, at.material, study);
     for (std::size_t i = 0; i < at.inputs.size(); ++i)
-      row.inputs.push_back(input_units[i]->to_si(line.fields[at.inputs[i]]));
+      row.inputs.push_back(input_units[i].to_si(line.fields[at.inputs[i]]));
     for (std::size_t i = 0; i < at.outputs.size(); ++i) {
-      const Unit& unit = table.outputs[i].unit;
-      Unit difference = unit;
-      difference.offset = 0.0;
       if (!std::isfinite(csv.number(line, at.outputs[i])) || !std::isfinite(csv.number(line, at.errors[i]))) {
         row.outputs.push_back(std::numeric_limits<double>::quiet_NaN());
         row.standard_errors.push_back(std::numeric_limits<double>::quiet_NaN());
         continue;
       }
-      row.outputs.push_back(unit.to_si(line.fields[at.outputs[i]]));
-      row.standard_errors.push_back(difference.to_si(line.fields[at.errors[i]]));
+      row.outputs.push_back(output_units[i].to_si(line.fields[at.outputs[i]]));
+      row.standard_errors.push_back(error_units[i].to_si(line.fields[at.errors[i]]));
       if (row.standard_errors.back() < 0.0) {
         throw InputError(ExitStatus::bad_data,
                          Problem{csv.place(line, at.errors[i]), fmt::format("{} is below 0", line.fields[at.errors[i]]),

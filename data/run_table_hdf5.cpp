@@ -4,6 +4,7 @@
 //   /runs/            material, seed, settings, isa, origin, cpu_seconds, state, unreliable
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "data/atomic_file.hpp"
@@ -137,6 +138,8 @@ TableRead read_table_hdf5(const std::string& path, const Study& study) {
   if (count < 0) damaged(root.place("@rows"), fmt::format("{} is no number of rows", count));
   const auto rows = static_cast<std::size_t>(count);
 
+  // Before room is made for them: a damaged number may ask for more rows than any memory holds.
+  checked(root.group("runs"), "seed", root.group("runs").read<std::uint64_t>("seed").values, rows);
   TableRead result{.table = empty_table(study)};
   RunTable& table = result.table;
   table.rows.resize(rows);
@@ -178,6 +181,18 @@ TableRead read_table_hdf5(const std::string& path, const Study& study) {
     row.place = fmt::format("{}.csv:{}", std::filesystem::path(path).stem().string(),
                             static_cast<std::size_t>(run_table_head_lines) + r + 1);
   }
+  std::size_t number = 0;
+  std::erase_if(table.rows, [&](const RunRow& row) {
+    ++number;
+    for (std::size_t i = 0; i < study.parameters.size(); ++i) {
+      if (study.parameters[i].scale != Scale::log || row.inputs[i] > 0.0 || std::isnan(row.inputs[i])) continue;
+      result.left_out.push_back(
+          fmt::format("{}: row {} is {}, which has no logarithm (scale = \"log\"), and is left out",
+                      parameters.place(study.parameters[i].name), number, row.inputs[i]));
+      return true;
+    }
+    return false;
+  });
   return result;
 }
 

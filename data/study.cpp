@@ -7,6 +7,7 @@
 #include <set>
 
 #include "data/atomic_file.hpp"
+#include "data/file_name.hpp"
 #include "data/observations.hpp"
 #include "data/study_parts.hpp"
 
@@ -17,12 +18,10 @@ namespace fs = std::filesystem;
 
 /// Names that become parts of file names.
 void check_file_name(const Section& section, const std::string& name) {
-  const bool plain =
-      name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.") == std::string::npos;
   if (!section.has("name")) return;  // reported as missing where it is required
-  if (name.empty() || !plain || name.front() == '.' || name.front() == '-') {
+  if (!is_file_name(name)) {
     section.problem("name", fmt::format("'{}' cannot be part of a file's name", name),
-                    "use letters, digits, '-', '_' and '.', beginning with a letter");
+                    "use at most 100 letters, digits, '-', '_' and '.', beginning with a letter");
   }
 }
 
@@ -105,7 +104,10 @@ FileProblems read_observation_sets(const Section& root, Study& study) {
     const std::string file = section.text("file");
     ObservationSet set{.file = beside(study, file)};
     const std::map<std::string, double> settings = read_settings(section.child("settings"), study);
-    if (!file.empty() && !fs::is_regular_file(set.file)) {
+    if (file.empty() && section.has("file"))
+      section.problem("file", "is empty", "name the CSV with the measured points");
+    std::error_code unseen;
+    if (!file.empty() && !fs::is_regular_file(set.file, unseen)) {
       add(ExitStatus::missing_input,
           {{section.place("file"), fmt::format("there is no file '{}'", shown_path(set.file)),
             "paths start at the study's folder"}});

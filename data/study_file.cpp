@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
+#include "data/atomic_file.hpp"
 #include "data/edit_distance.hpp"
 #include "data/study_node.hpp"
 
@@ -120,27 +120,25 @@ StudyFile StudyFile::open(const std::string& path, const std::vector<std::string
   const bool folder = fs::is_directory(file, ignored);
   if (folder) file /= "study.toml";
   state->shown = file.lexically_normal().string();
-  std::ifstream stream(file, std::ios::binary);
-  if (fs::is_directory(file, ignored) || !stream) {
-    const bool there = fs::exists(file, ignored);
+  std::string text;
+  try {
+    text = read_file(file.string());
+  } catch (const InputError& error) {
     throw InputError(ExitStatus::missing_input,
-                     Problem{state->shown, there ? "cannot be read" : "there is no such file",
+                     Problem{state->shown, error.problems.front().what,
                              folder ? "the folder must hold a study.toml; `demcal new FOLDER` writes one"
                                     : "give a study file, or a folder that holds study.toml"});
   }
-  std::ostringstream content;
-  content << stream.rdbuf();
   state->absolute = fs::absolute(file).lexically_normal().string();
   state->folder = fs::path(state->absolute).parent_path().string();
   try {
-    const std::string text = content.str();
     state->root = toml::parse(std::string_view(text), std::string_view(state->shown));
   } catch (const toml::parse_error& error) {
     const auto at = error.source().begin;
     throw InputError(ExitStatus::bad_study, Problem{fmt::format("{}:{}:{}", state->shown, at.line, at.column),
                                                     std::string(error.description()), "correct the TOML syntax there"});
   }
-  for (const std::string& text : overrides) apply(*state, text);
+  for (const std::string& assignment : overrides) apply(*state, assignment);
   state->opened.insert(&state->root);
   StudyFile study;
   study.state_ = std::move(state);

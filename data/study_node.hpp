@@ -27,11 +27,10 @@ struct StudyFile::State {
   std::map<const toml::table*, std::set<std::string>> known, used;
   std::set<const toml::table*> opened;
   std::vector<Located> problems;
+  std::set<std::pair<std::string, std::string>> told;
 
   void add(std::size_t line, Problem problem) {
-    for (const Located& old : problems) {  // two readers may ask for one key
-      if (old.problem.place == problem.place && old.problem.what == problem.what) return;
-    }
+    if (!told.emplace(problem.place, problem.what).second) return;  // two readers may ask for one key
     problems.push_back({line, std::move(problem)});
   }
 };

@@ -3,15 +3,8 @@
 // autocorrelation needs; more in a row end the plateau, as does a gap in time of over `lone` intervals.
 #include "data/torque_log.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <stdexcept>
-
-#include "data/csv.hpp"
-#include "data/error.hpp"
 
 namespace data {
 namespace {
@@ -19,73 +12,56 @@ namespace {
 constexpr std::size_t lone = 4;
 constexpr double standstill = 0.01;  // of the largest speed
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
-struct Heading {
-  std::string name, unit;
+/// The straight line through a stretch's speeds.
+struct Trend {
+  double slope = 0.0;    ///< rad/s2
+  double change = 0.0;   ///< rad/s, over the stretch
+  double scatter = 0.0;  ///< rad/s, of the samples around it
 };
 
-/// "Torque [N m]", "torque (N m)" and "torque / N m" are all the name and its unit.
-Heading read_heading(const std::string& column) {
-  for (const char* marks : {"[]", "()"}) {
-    const auto open = column.rfind(marks[0]);
-    if (open != std::string::npos && open > 0 && column.back() == marks[1])
-      return {trimmed(column.substr(0, open)), trimmed(column.substr(open + 1, column.size() - open - 2))};
-  }
-  if (const auto slash = column.find(" / "); slash != std::string::npos)
-    return {trimmed(column.substr(0, slash)), trimmed(column.substr(slash + 3))};
-  return {column, ""};
-}
-
-struct Found {
-  std::size_t column;
-  Unit unit;
-};
-
-Found find_column(const Csv& csv, const LogColumn& wanted, const std::string& dimension, const std::string& option) {
-  const auto fail = [&](const std::string& what, const std::string& remedy) -> InputError {
-    return {ExitStatus::bad_data, Problem{fmt::format("{}:{}", csv.file, csv.header_line), what, remedy}};
+Trend trend_of(const TorqueLog& log, const Plateau& plateau, double tolerance) {
+  double count = 0.0, time = 0.0, speed = 0.0;
+  const auto each = [&](auto visit) {
+    for (std::size_t i = plateau.first; i < plateau.first + plateau.count; ++i)
+      if (std::abs(log.speed[i] - plateau.speed) <= 3.0 * tolerance * std::abs(plateau.speed))
+        visit(log.time[i], log.speed[i]);
   };
-  std::string there;
-  for (std::size_t i = 0; i < csv.columns.size(); ++i) {
-    const Heading heading = read_heading(csv.columns[i]);
-    there += (i ? ", " : "") + csv.columns[i];
-    if (lower(heading.name) != lower(wanted.name) && lower(csv.columns[i]) != lower(wanted.name)) continue;
-    std::string symbol = wanted.unit.empty() ? heading.unit : wanted.unit;
-    if (symbol.empty()) symbol = wanted.usual;
-    if (symbol.empty())
-      throw fail(fmt::format("the column '{}' has no unit", csv.columns[i]),
-                 fmt::format("write it in the header, '{} [N m]', or give --{}-unit", wanted.name, option));
-    try {
-      const Unit unit = parse_unit(symbol);
-      if (convertible(symbol, dimension)) return {i, unit};
-    } catch (const std::invalid_argument&) {
-    }
-    throw fail(fmt::format("'{}' is not a unit of {}", symbol, option),
-               fmt::format("a unit like '{}'; --{}-unit overrides the header", dimension, option));
-  }
-  throw fail(fmt::format("the column '{}' is missing (the columns are {})", wanted.name, there),
-             fmt::format("name it with --{}", option));
+  each([&](double t, double w) {
+    count += 1.0;
+    time += t;
+    speed += w;
+  });
+  if (count < 3.0) return {};
+  time /= count;
+  speed /= count;
+  double tt = 0.0, tw = 0.0, ww = 0.0;
+  each([&](double t, double w) {
+    tt += (t - time) * (t - time);
+    tw += (t - time) * (w - speed);
+    ww += (w - speed) * (w - speed);
+  });
+  const double duration = log.time[plateau.first + plateau.count - 1] - log.time[plateau.first];
+  return {tw / tt, std::abs(tw / tt) * duration, std::sqrt(std::max(0.0, ww - tw * tw / tt) / count)};
 }
 
-void check_spacing(TorqueLog& log) {
-  std::vector<double> gaps;
-  for (std::size_t i = 1; i < log.time.size(); ++i) gaps.push_back(log.time[i] - log.time[i - 1]);
-  if (gaps.empty()) return;
-  std::vector<double> sorted = gaps;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  log.interval = sorted[sorted.size() / 2];
-  const auto uneven = std::count_if(gaps.begin(), gaps.end(),
-                                    [&](double gap) { return std::abs(gap - log.interval) > 0.2 * log.interval; });
-  log.uneven_share = static_cast<double>(uneven) / static_cast<double>(gaps.size());
+/// Marks the pieces of slow ramps: the speed changes steadily, by over half the width that the tolerance allows and
+/// well beyond the scatter. What adjoins such a piece and goes on at its rate is the ramp's end.
+void mark_ramps(const TorqueLog& log, std::vector<Plateau>& plateaus, double tolerance) {
+  std::vector<Trend> trends;
+  for (Plateau& plateau : plateaus) {
+    trends.push_back(trend_of(log, plateau, tolerance));
+    plateau.ramp = trends.back().change > tolerance * std::abs(plateau.speed) &&
+                   trends.back().change > 4.0 * trends.back().scatter;
+  }
+  const auto goes_on = [&](std::size_t from, std::size_t to) {
+    const double ratio = trends[to].slope / trends[from].slope;
+    const Plateau &first = plateaus[std::min(from, to)], &second = plateaus[std::max(from, to)];
+    const bool adjoins = second.first - (first.first + first.count) <= lone;
+    if (plateaus[from].ramp && adjoins && ratio > 0.5 && ratio < 2.0 && trends[to].change > 2.0 * trends[to].scatter)
+      plateaus[to].ramp = true;
+  };
+  for (std::size_t k = 1; k < plateaus.size(); ++k) goes_on(k - 1, k);
+  for (std::size_t k = plateaus.size(); k-- > 1;) goes_on(k, k - 1);
 }
 
 /// Mean and error of a stretch of constant `speed`.
@@ -112,40 +88,13 @@ Plateau reduce(const TorqueLog& log, std::size_t first, std::size_t count, doubl
 
 }  // namespace
 
-TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
-  const Csv csv = read_csv(path);
-  TorqueLog log{.file = csv.file};
-  const Found time = find_column(csv, columns.time, "s", "time");
-  const Found torque = find_column(csv, columns.torque, "N m", "torque");
-  const Found speed = find_column(csv, columns.speed, "rpm", "rpm");
-  log.torque_unit = torque.unit;
-  log.speed_unit = speed.unit;
-  for (const CsvRow& row : csv.rows) {
-    const double t = time.unit.to_si(csv.number(row, time.column));
-    const double m = torque.unit.to_si(csv.number(row, torque.column));
-    const double w = speed.unit.to_si(csv.number(row, speed.column));
-    if (!std::isfinite(t) || !std::isfinite(m) || !std::isfinite(w)) {
-      ++log.missing;
-      continue;
-    }
-    if (!log.time.empty() && !(t > log.time.back()))
-      throw InputError(
-          ExitStatus::bad_data,
-          Problem{csv.place(row, time.column),
-                  fmt::format("{:g} s does not come after {:g} s of the sample before", t, log.time.back()),
-                  "sort the log by time, remove repeated lines, or split a log that was restarted"});
-    log.time.push_back(t);
-    log.torque.push_back(m);
-    log.speed.push_back(w);
-  }
-  if (log.time.size() < 2)
-    throw InputError(ExitStatus::bad_data, Problem{csv.file, fmt::format("has {} complete samples", log.time.size()),
-                                                   "a log has time, torque and speed of many samples"});
-  check_spacing(log);
-  return log;
+std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& options) {
+  std::vector<Plateau> found = find_stretches(log, options);
+  std::erase_if(found, [](const Plateau& plateau) { return plateau.ramp; });
+  return found;
 }
 
-std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& options) {
+std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& options) {
   double fastest = 0.0;
   for (const double speed : log.speed) fastest = std::max(fastest, std::abs(speed));
   const auto inside = [&](std::size_t i) { return log.time[i] >= options.from && log.time[i] <= options.to; };
@@ -175,8 +124,9 @@ std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& o
       Plateau plateau = reduce(log, first, last - first + 1, mean, options);
       if (plateau.used_from <= last) plateaus.push_back(std::move(plateau));
     }
-    first = turning && long_enough ? last + 1 : first + 1;
+    first = !turning || long_enough ? last + 1 : first + 1;
   }
+  mark_ramps(log, plateaus, options.tolerance);
   return plateaus;
 }
 

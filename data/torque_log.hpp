@@ -19,27 +19,38 @@ struct LogColumn {
   std::string name;  ///< without the unit; upper and lower case are the same
   std::string unit;  ///< "" : the header's, or, where that has none, `usual`
   std::string usual;
+  std::vector<std::string> also;  ///< other names, looked for where there is no `name`
 };
 
 struct LogColumns {
-  LogColumn time{.name = "time", .unit = "", .usual = "s"};
-  LogColumn torque{.name = "torque", .unit = "", .usual = ""};  ///< no usual unit: it must be said somewhere
-  LogColumn speed{.name = "rpm", .unit = "", .usual = "rpm"};
+  LogColumn time{
+      .name = "time",
+      .unit = "",
+      .usual = "s",
+      .also = {"timestamp", "time stamp", "datetime", "date time", "elapsed time", "zeit", "zeitstempel", "t"}};
+  /// No usual unit: it must be said somewhere.
+  LogColumn torque{.name = "torque", .unit = "", .usual = "", .also = {"drehmoment", "moment", "m"}};
+  LogColumn speed{.name = "rpm", .unit = "", .usual = "rpm", .also = {"speed", "rotational speed", "drehzahl", "n"}};
+  std::optional<double> constant_speed;  ///< rad/s, of a log that has no column for it
+  std::optional<double> rate;            ///< 1/s: the samples follow each other so, whatever their stamps say
 };
 
 /// Samples in SI, in the order of time.
 struct TorqueLog {
   std::string file;
-  Unit torque_unit, speed_unit;  ///< the log's own
-  std::vector<double> time;      ///< s
-  std::vector<double> torque;    ///< N m
-  std::vector<double> speed;     ///< rad/s
-  std::size_t missing = 0;       ///< samples left out because a field was empty or NaN
-  double interval = 0.0;         ///< s, median between samples
-  double uneven_share = 0.0;     ///< share of the intervals that differ from the median by more than a fifth
+  Unit torque_unit, speed_unit;   ///< the log's own
+  std::vector<double> time;       ///< s
+  std::vector<double> torque;     ///< N m
+  std::vector<double> speed;      ///< rad/s
+  std::size_t missing = 0;        ///< samples left out because a field was empty or NaN
+  std::vector<std::string> took;  ///< how the file was read, where it is not plain CSV in seconds
+  double interval = 0.0;          ///< s, median between samples
+  double uneven_share = 0.0;      ///< share of the intervals that differ from the median by more than a fifth
 };
 
-/// Reads a log. Throws InputError: 66 missing; 65 missing column, unknown unit, a time that runs backwards, no samples.
+/// Reads a log. Times are numbers with a unit, times of day or dates with times; those that start again at midnight go
+/// on, and samples that share a stamp are spread evenly (data/log_times.hpp). Throws InputError: 66 missing; 65 missing
+/// column, unknown unit, a time that runs backwards, no samples.
 TorqueLog read_torque_log(const std::string& path, const LogColumns& columns = {});
 
 struct PlateauOptions {
@@ -53,12 +64,16 @@ struct PlateauOptions {
 struct Plateau {
   std::size_t first = 0, count = 0;    ///< samples of constant speed
   std::size_t used_from = 0;           ///< the first sample after dead time and start-up
+  bool ramp = false;                   ///< the speed changes all the time, slowly: no plateau
   double speed = 0.0, speed_sd = 0.0;  ///< rad/s, of the samples used
   SeriesMean torque;                   ///< N m
 };
 
 /// The plateaus in the order of time; standstill (below a hundredth of the log's largest speed) is none.
 std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& options = {});
+
+/// The plateaus, and among them the pieces of slow ramps.
+std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& options = {});
 
 /// A mean with its standard error, SI.
 struct MeanTorque {

@@ -47,7 +47,12 @@ void read_fill(const Section& s, Case& c) {
   const data::Unit count{.symbol = "spheres", .factor = -1.0, .offset = 0.0};
   const double fill =
       s.quantity("fill", "kg", {.low = -target("fill").high, .high = target("fill_mass").high}, 0.0, &count);
-  if (fill < 0.0) {
+  const bool text = s.kind("fill") == data::ValueKind::text;
+  const std::string written = text ? s.text("fill") : "";
+  const bool negative = text ? written.find('-') == written.find_first_not_of(" \t") && !written.empty() : fill > 0.0;
+  if (negative) {
+    s.problem("fill", "is negative", "give a number of spheres, or a mass with its unit, above 0");
+  } else if (fill < 0.0) {
     c.rig.fill = -fill;
     c.rig.fill_mass.reset();
   } else if (fill > 0.0) {

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <charconv>
 #include <cstring>
+#include <type_traits>
 
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "data/hdf5.hpp"
+#include "data/origin.hpp"
 #include "data/provenance.hpp"
 #include "dem/target.hpp"
 
@@ -103,7 +106,11 @@ void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
   const auto write = [&](const char* name, const auto& rows) {
     const std::size_t row = sizeof(rows[0]);
     std::vector<std::uint8_t> bytes(rows.size() * row);
-    if (!bytes.empty()) std::memcpy(bytes.data(), rows.data(), bytes.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      auto one = rows[i];
+      if constexpr (std::is_class_v<decltype(one)>) __builtin_clear_padding(&one);  // equal runs give equal files
+      std::memcpy(bytes.data() + i * row, &one, row);
+    }
     group.write(name, bytes, {rows.size(), row});
   };
   each_vector(now.state, write);
@@ -252,6 +259,8 @@ void write_run(const std::string& path, const Case& c, const RunResult& result) 
 }
 
 SavedRun read_run(const std::string& path) {
+  data::require_file(path);
+  data::require_unchanged(path, "remove it, and the run is made again", data::Strict::yes);
   const data::Hdf5Group file = data::open_hdf5(path);
   if (!file.has_attribute("format") || file.integer("format") != format) {
     throw data::InputError(data::ExitStatus::bad_data,
@@ -261,7 +270,11 @@ SavedRun read_run(const std::string& path) {
   RunResult& r = saved.result;
   saved.settings = file.text("settings");
   if (file.has_attribute("rule")) saved.rule = static_cast<int>(file.integer("rule"));
-  r.seed = std::stoull(file.text("seed"));
+  const std::string seed = file.text("seed");
+  if (const auto [rest, error] = std::from_chars(seed.data(), seed.data() + seed.size(), r.seed);
+      error != std::errc{} || rest != seed.data() + seed.size() || seed.empty())
+    throw data::InputError(data::ExitStatus::bad_data, {path + ": @seed", fmt::format("'{}' is not a seed", seed),
+                                                        "remove it, and the run is made again"});
   r.status = static_cast<RunStatus>(file.integer("status"));
   r.reason = file.text("reason");
   r.warnings = file.read_texts("warnings");
@@ -275,6 +288,12 @@ SavedRun read_run(const std::string& path) {
   const std::vector<double> mean = column("mean"), error = column("standard_error"), sd = column("sd"),
                             time = column("integrated_time"), samples = column("effective_samples"),
                             dropped = column("dropped"), reliable = column("reliable");
+  for (const std::vector<double>* other : {&error, &sd, &time, &samples, &dropped, &reliable})
+    if (other->size() != mean.size())
+      throw data::InputError(
+          data::ExitStatus::bad_data,
+          {path + ": /summary", fmt::format("has columns of {} and {} values", mean.size(), other->size()),
+           "remove it, and the run is made again"});
   for (std::size_t k = 0; k < mean.size(); ++k) {
     r.summary.mean.push_back(
         {mean[k], error[k], sd[k], time[k], samples[k], static_cast<std::size_t>(dropped[k]), reliable[k] != 0.0});

@@ -11,6 +11,7 @@
 
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
+#include "data/origin.hpp"
 
 namespace dem {
 namespace {
@@ -62,12 +63,35 @@ class Words {
 
   /// The next word; empty at the end.
   std::string_view next() {
-    while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n';
+    while (at_ < text_.size() && is_blank(text_[at_])) {
+      const bool end = text_[at_] == '\n' || (text_[at_] == '\r' && text_.substr(at_ + 1, 1) != "\n");
+      ++at_;
+      line_ += end ? 1 : 0;
+    }
     const std::size_t first = at_;
     while (at_ < text_.size() && !is_blank(text_[at_])) ++at_;
     return text_.substr(first, at_ - first);
   }
-  void skip_line() { at_ = std::min(text_.find('\n', at_), text_.size()); }
+  /// Behind "solid" or "endsolid": passes the name, up to the line's end or, in a file of one line, up to `keyword` and
+  /// the word that always follows it.
+  void skip_name(std::string_view keyword, std::string_view follows) {
+    const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
+    Words ahead = *this;
+    while (ahead.at_ < end) {
+      const Words here = ahead;
+      if (!same(ahead.next(), keyword)) continue;
+      Words behind = ahead;
+      if (!follows.empty() && !same(behind.next(), follows)) continue;
+      *this = here;
+      return;
+    }
+    at_ = end;
+  }
+  /// Whether nothing is left but blanks and what some programs pad with.
+  bool only_padding() const {
+    return std::all_of(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(),
+                       [](char c) { return is_blank(c) || c == '\0' || c == '\x1a'; });
+  }
   std::string place() const { return fmt::format("{}:{}", name_, line_); }
 
   void expect(std::string_view keyword) {
@@ -105,7 +129,7 @@ class Words {
  private:
   static bool is_blank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
   std::string_view text_;
-  const std::string& name_;
+  std::string name_;
   std::size_t at_ = 0;
   int line_ = 1;
 };
@@ -114,9 +138,10 @@ TriangleMesh parse_ascii(std::string_view bytes, const std::string& name, double
   TriangleMesh mesh;
   Words words(bytes, name);
   // Several solids may follow each other; their names, which may hold anything, end with the line.
-  for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+  while (!words.only_padding()) {
+    std::string_view word = words.next();
     if (!Words::same(word, "solid")) words.stop(word, "where 'solid' belongs");
-    words.skip_line();
+    words.skip_name("facet", "normal");
     for (word = words.next(); Words::same(word, "facet"); word = words.next()) {
       words.expect("normal");
       for (int k = 0; k < 3; ++k) words.next();  // not used, and some programs write nan
@@ -130,20 +155,58 @@ TriangleMesh parse_ascii(std::string_view bytes, const std::string& name, double
       words.expect("endloop");
       words.expect("endfacet");
       add_triangle(mesh, corner);
+      if (words.only_padding()) return mesh;  // without "endsolid"
     }
     if (!Words::same(word, "endsolid")) words.stop(word, "where 'facet' or 'endsolid' belongs");
-    words.skip_line();
+    words.skip_name("solid", "");
   }
   return mesh;
+}
+
+/// Whether the triangles of a binary file with bytes behind them are what they seem: their normals have length 1 or 0.
+bool normals_are_sound(std::string_view bytes) {
+  const std::size_t count = binary_count(bytes);
+  std::size_t sound = 0;
+  for (std::size_t t = 0; t < count; ++t) {
+    std::array<float, 3> normal{};
+    std::memcpy(normal.data(), bytes.data() + head_size + t * row_size, sizeof normal);
+    const double length = std::hypot(normal[0], normal[1], normal[2]);
+    sound += length == 0.0 || std::abs(length - 1.0) < 0.01 ? 1 : 0;
+  }
+  return count > 0 && 10 * sound >= 9 * count;
+}
+
+/// Single precision has 24 bits: far from the origin they are used up by the distance.
+void check_distance(const TriangleMesh& mesh, const std::string& name, double unit) {
+  Vec3 low = mesh.vertices.front(), high = low;
+  double far = 0.0;
+  for (const Vec3& v : mesh.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+    far = std::max({far, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  }
+  const double size = std::max({high.x - low.x, high.y - low.y, high.z - low.z}), step = std::ldexp(far, -23);
+  if (step > 1e-3 * size)
+    fail(name,
+         fmt::format("lies {:.4g} from its origin and is {:.4g} large: single precision there has steps of {:.2g}",
+                     far / unit, size / unit, step / unit),
+         "move the part to the origin and export it again");
 }
 
 }  // namespace
 
 TriangleMesh parse_stl(std::string_view bytes, const std::string& name, double unit) {
   const std::size_t binary_size = head_size + row_size * static_cast<std::size_t>(binary_count(bytes));
-  const bool binary = bytes.size() >= head_size && bytes.size() == binary_size;
+  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
+    fail(name, "is UTF-16, and STL is ASCII or binary", "export the mesh as STL again");
   std::string_view start = bytes.substr(0, 512);
-  const bool text = std::none_of(start.begin(), start.end(), [](unsigned char c) { return c == 0 || c >= 0xf8; });
+  const bool text = start.find('\0') == std::string_view::npos;
+  const bool binary = bytes.size() >= head_size && (bytes.size() == binary_size ||
+                                                    (bytes.size() > binary_size && !text && normals_are_sound(bytes)));
+  if (text && start.starts_with("\xef\xbb\xbf")) {
+    start.remove_prefix(3);
+    bytes.remove_prefix(3);
+  }
   start.remove_prefix(std::min(start.find_first_not_of(" \t\r\n"), start.size()));
   if (bytes.empty()) fail(name, "is empty", "export the mesh again");
   if (!binary && !(text && Words::same(start.substr(0, 5), "solid"))) {
@@ -158,6 +221,7 @@ TriangleMesh parse_stl(std::string_view bytes, const std::string& name, double u
   }
   TriangleMesh mesh = binary ? parse_binary(bytes, name, unit) : parse_ascii(bytes, name, unit);
   if (mesh.triangles.empty()) fail(name, "holds no triangle", "export the mesh again");
+  if (binary) check_distance(mesh, name, unit);
   return mesh;
 }
 
@@ -167,7 +231,8 @@ TriangleMesh read_stl(const std::string& path, double unit) {
 
 void write_stl(const TriangleMesh& mesh, const std::string& path) {
   std::string bytes(head_size, '\0');
-  constexpr std::string_view title = "demcal, metres";
+  const std::string title = "demcal, metres; " + data::blank_mark();
+  static_assert(head_size - sizeof(std::uint32_t) >= 75);
   std::copy(title.begin(), title.end(), bytes.begin());
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
   std::memcpy(bytes.data() + head_size - sizeof count, &count, sizeof count);

@@ -7,6 +7,7 @@
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "data/hdf5.hpp"
+#include "data/origin.hpp"
 
 namespace surrogate {
 namespace {
@@ -245,6 +246,8 @@ void save_processes(const std::string& path, const ProcessSet& processes, const 
 
 LoadedProcesses load_processes(const std::string& path, const SurrogateKey& key) {
   if (!std::filesystem::exists(path)) return {std::nullopt, "there is no saved surrogate"};
+  data::require_file(path);
+  data::require_unchanged(path, "it is made again", data::Strict::yes);
   const data::Hdf5Group root = data::open_hdf5(path);
   require(root.has_attribute("kind") && root.text("kind") == "demcal surrogate", root, "is not a saved surrogate");
   if (root.integer("format") != format) return {std::nullopt, "the saved surrogate is of another format"};

@@ -20,8 +20,9 @@ namespace {
 
 void check(int status, const std::string& what) {
   if (status == NC_NOERR) return;
-  throw data::InputError(data::ExitStatus::cannot_write, {what, fmt::format("netCDF says: {}", nc_strerror(status)),
-                                                          "check the folder and the space left"});
+  throw data::InputError(
+      data::ExitStatus::cannot_write,
+      {what, fmt::format("cannot be written: {}", nc_strerror(status)), "check the folder and the space left"});
 }
 
 /// An open file that closes itself.

@@ -4,13 +4,12 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
+#include "data/origin.hpp"
 #include "uq/report_fields.hpp"
 
 namespace uq {
@@ -171,13 +170,13 @@ void save_results(const CalibrationReport& report, const std::string& path) {
 
 CalibrationReport load_results(const std::string& path) {
   const char* const remedy = "run demcal calibrate again";
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(path)) {
+  if (data::origin_of(path) == data::Origin::absent)
     throw data::InputError(data::ExitStatus::missing_input,
                            {path, "there are no saved results", "run demcal calibrate first"});
-  }
+  const std::string text = data::read_file(path);
+  data::require_unchanged(path, remedy);
   try {
-    const Json json = Json::parse(stream);
+    const Json json = Json::parse(text);
     if (!json.is_object() || !json.contains("format") || !json.contains("results"))
       throw Misfit{"", "is not a results file"};
     if (json.at("format") != results_format) {

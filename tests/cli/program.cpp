@@ -43,12 +43,20 @@ void Folder::replace(const std::string& file, const std::string& old_text, const
 }
 
 Outcome Folder::demcal(const std::vector<std::string>& arguments, const std::string& stop_when) const {
+  std::vector<std::string> words{DEMCAL_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return start(std::move(words), stop_when);
+}
+
+Outcome Folder::shell(const std::string& command) const {
+  return start({"/bin/sh", "-c", "demcal='" DEMCAL_PROGRAM "'; " + command}, "");
+}
+
+Outcome Folder::start(std::vector<std::string> words, const std::string& stop_when) const {
   const fs::path out = path / ".stdout", err = path / ".stderr";
   const pid_t child = fork();
   REQUIRE(child >= 0);
   if (child == 0) {
-    std::vector<std::string> words{DEMCAL_PROGRAM};
-    words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);

@@ -30,6 +30,11 @@ class Folder {
 
   /// The program, started in this folder. `stop_when` (a file) ends it by SIGINT as soon as the file exists.
   Outcome demcal(const std::vector<std::string>& arguments, const std::string& stop_when = "") const;
+  /// A shell's command line, started in this folder, with the program as "$demcal".
+  Outcome shell(const std::string& command) const;
+
+ private:
+  Outcome start(std::vector<std::string> words, const std::string& stop_when) const;
 };
 
 }  // namespace test

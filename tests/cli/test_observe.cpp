@@ -60,7 +60,7 @@ TEST_CASE("an idle torque given as one value is an error common to all rows, and
   const data::Csv csv = data::read_csv((folder.path / "log-observed.csv").string());
   CHECK(csv.number(csv.rows[0], csv.column("torque")) == Approx(1.5).epsilon(0.01));
   CHECK(csv.number(csv.rows[0], csv.column("torque_se")) < 0.01);
-  CHECK_THAT(csv.comments.at(2), Contains("common_error = \"0.1 mN m\""));
+  CHECK_THAT(csv.comments.at(3), Contains("common_error = \"0.1 mN m\""));
 }
 
 TEST_CASE("a log that cannot be used is refused with what to do, and is never overwritten") {

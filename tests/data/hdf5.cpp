@@ -77,6 +77,7 @@ TEST_CASE("what is missing or of another kind in an HDF5 file is named with file
           root.group("runs").read<double>("names");
         }).find("65: a.h5: /runs/names: the dataset does not hold numbers") == 0);
   CHECK(failure([&] { root.text("unit"); }).find("65: a.h5: /@unit: the attribute is missing") == 0);
+  CHECK(root.group("runs").read_texts("names") == std::vector<std::string>{"a"});
   CHECK(failure([&] { root.number("title"); }).find("65: a.h5: /@title: the attribute is not of the expected type") ==
         0);
 }

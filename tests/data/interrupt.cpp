@@ -16,7 +16,7 @@ bool stops_within_a_second(const std::stop_token& token) {
 }  // namespace
 
 TEST_CASE("the first signal requests a stop, and a guard that goes leaves no trace") {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const data::InterruptGuard guard;
     CHECK_FALSE(guard.interrupted());
     std::raise(signal);

@@ -179,7 +179,7 @@ TEST_CASE("an HDF5 table that is unfinished, short of values or of another study
   CHECK(failure().find("65: t.h5: /: is not marked complete") == 0);
   data::open_hdf5_to_write(path).set("complete", std::int64_t{1});
   data::open_hdf5_to_write(path).set("rows", std::int64_t{6});
-  CHECK(failure().find("65: t.h5: /parameters/friction: holds 5 values where the table has 6 rows") == 0);
+  CHECK(failure().find("65: t.h5: /runs/seed: holds 5 values where the table has 6 rows") == 0);
   data::open_hdf5_to_write(path).set("rows", std::int64_t{5});
   data::open_hdf5_to_write(path).group("parameters").set("SI unit", "m", "friction");
   CHECK(failure().find("65: t.h5: /parameters/friction: is in 'm' where the study measures '1'") == 0);

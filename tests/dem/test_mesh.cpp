@@ -100,13 +100,51 @@ TEST_CASE("ASCII and binary give the same mesh, also when a binary file begins w
   }
 }
 
+TEST_CASE("STL as CAD programs write it: names in any encoding, any line ends, one line, bytes behind, no endsolid") {
+  const auto triangles = [](const std::string& bytes) {
+    return dem::parse_stl(bytes, "part.stl", 1.0).triangles.size();
+  };
+  const std::string text = ascii(cube()), bytes = binary(cube());
+  const auto with = [](std::string changed, const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = changed.find(from, at)) != std::string::npos; at += to.size())
+      changed.replace(at, from.size(), to);
+    return changed;
+  };
+  const std::string facets = text.substr(text.find("facet"), text.find("endsolid") - text.find("facet"));
+  for (const std::string& written :
+       {"solid R\xfchrwerk\n" + facets + "endsolid R\xfchrwerk\n",                    // Latin-1
+        "solid \xbd\xc1\xb0\xe8\xc6\xf7\n" + facets + "endsolid \xbd\xc1\xb0\xe8\n",  // GBK
+        "\xef\xbb\xbf" + text, with(text, "\n", "\r"), with(text, "\n", "\r\n"), with(text, "\n", " "),
+        "solid\n" + facets, "solid a facet of the solid\n" + text.substr(text.find('\n') + 1),
+        text + std::string(20, '\0'), text + "\x1a", text + "\n\n",
+        bytes + "exported by a program that adds its name"}) {
+    INFO(written.substr(0, 60));
+    CHECK(triangles(written) == 12);
+  }
+  CHECK(triangles(text + text) == 24);
+  CHECK(triangles(with(text + text, "\n", " ")) == 24);
+  CHECK_THAT(refusal("\xff\xfes\0"), Catch::Contains("is UTF-16"));
+  for (const std::string name : {"e10-latin1-name.stl", "e14-cr.stl"})
+    CHECK(dem::read_stl(std::string(DEMCAL_SOURCE_DIR) + "/tests/data/files/" + name, 1e-3).triangles.size() == 12);
+}
+
+TEST_CASE("a binary mesh too far from its origin for single precision is refused, one at a usual distance is not") {
+  dem::TriangleMesh far = cube();
+  for (dem::Vec3& v : far.vertices) v.x += 1e5;
+  CHECK_THAT(refusal(binary(far)),
+             Catch::Contains("lies 1e+05 from its origin") && Catch::Contains("move the part to the origin"));
+  for (dem::Vec3& v : far.vertices) v.x -= 99900.0;
+  CHECK(dem::parse_stl(binary(far), "part.stl", 1.0).triangles.size() == 12);
+}
+
 TEST_CASE("a file that is cut, not finite, empty or not STL is refused by file and line or triangle") {
   using Catch::Contains;
   const std::string text = ascii(cube()), bytes = binary(cube());
   CHECK_THAT(refusal(text.substr(0, text.find("endloop"))), Contains("part.stl:7") && Contains("truncated"));
-  CHECK_THAT(refusal(text.substr(0, text.find("endsolid"))), Contains("truncated"));
   CHECK_THAT(refusal(bytes.substr(0, 400)), Contains("400 bytes") && Contains("684"));
-  CHECK_THAT(refusal(bytes + "more"), Contains("688 bytes"));
+  std::string unsound = bytes + "more";
+  for (std::size_t t = 0; t < 12; ++t) unsound.replace(84 + 50 * t, 4, "abcd");  // no normals, so no triangles
+  CHECK_THAT(refusal(unsound), Contains("688 bytes"));
   CHECK_THAT(refusal(""), Contains("is empty"));
   CHECK_THAT(refusal("solid nothing\nendsolid nothing\n"), Contains("no triangle"));
   CHECK_THAT(refusal(std::string(84, '\0')), Contains("no triangle"));

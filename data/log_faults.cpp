@@ -1,0 +1,219 @@
+// Robust scales: the median and the median absolute deviation, times 1.4826 for a normal distribution's sd.
+#include "data/log_faults.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace data {
+namespace {
+
+constexpr std::array codes{999.0,   999.9,   999.99,  9999.0, 9999.9, 9999.99, 99999.0, 99999.9, 999999.0, 9999999.0,
+                           32767.0, 32768.0, 65535.0, 1e10,   1e30,   9.9e37,  1e37,    1e38,    3.4e38};
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return NAN;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Spread {
+  double median = 0.0, sd = 0.0;
+};
+Spread spread_of(const std::vector<double>& values) {
+  Spread spread{median_of(values), 0.0};
+  std::vector<double> away;
+  for (const double value : values) away.push_back(std::abs(value - spread.median));
+  spread.sd = 1.4826 * median_of(std::move(away));
+  return spread;
+}
+
+bool is_code(double value) {
+  return std::any_of(codes.begin(), codes.end(),
+                     [&](double code) { return std::abs(std::abs(value) - code) <= 1e-6 * code; });
+}
+
+/// Marks the codes among values (in the log's own unit); returns which there are, and how often.
+std::map<double, std::size_t> mark_codes(const std::vector<double>& values, std::vector<bool>& out) {
+  std::map<double, std::size_t> found;
+  const Spread spread = spread_of(values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!is_code(values[i])) continue;
+    if (std::abs(values[i] - spread.median) <= 10.0 * std::max(spread.sd, 0.1 * std::abs(spread.median))) continue;
+    out[i] = true;
+    ++found[values[i]];
+  }
+  return found;
+}
+
+/// Zeros between samples that lie far above what one sample differs from the next.
+std::size_t mark_drop_outs(const TorqueLog& log, std::vector<bool>& out) {
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < log.speed.size(); ++i)
+    if (!out[i]) fastest = std::max(fastest, std::abs(log.speed[i]));
+  std::vector<double> steps;
+  double last = NAN;
+  for (std::size_t i = 0; i < log.torque.size(); ++i) {
+    if (out[i] || log.torque[i] == 0.0) continue;
+    if (std::isfinite(last)) steps.push_back(std::abs(log.torque[i] - last));
+    last = log.torque[i];
+  }
+  if (steps.empty()) return 0;
+  const double step = median_of(std::move(steps));
+  constexpr std::size_t reach = 5;
+  std::size_t found = 0;
+  std::vector<bool> zeros(out.size(), false);
+  for (std::size_t i = 0; i < log.torque.size(); ++i) {
+    if (out[i] || log.torque[i] != 0.0 || std::abs(log.speed[i]) <= 0.01 * fastest) continue;
+    double before = 0.0, after = 0.0;
+    for (std::size_t k = 1; k <= reach && k <= i && before == 0.0; ++k) before = out[i - k] ? 0.0 : log.torque[i - k];
+    for (std::size_t k = 1; k <= reach && i + k < log.torque.size() && after == 0.0; ++k)
+      after = out[i + k] ? 0.0 : log.torque[i + k];
+    if (before * after <= 0.0 || std::min(std::abs(before), std::abs(after)) <= 8.0 * step) continue;
+    zeros[i] = true;
+    ++found;
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = out[i] || zeros[i];
+  return found;
+}
+
+std::vector<double> used_torques(const TorqueLog& log, const Plateau& plateau) {
+  const double* const torque = log.torque.data();
+  return {torque + plateau.used_from, torque + plateau.first + plateau.count};
+}
+
+struct Level {
+  double value = 0.0;
+  std::size_t count = 0, next = 0;  ///< of the extreme value, and of the one beside it
+};
+Level extreme(const std::map<double, std::size_t>& levels, bool largest) {
+  const auto beside = [](auto at) { return std::next(at)->second; };
+  if (largest)
+    return {levels.rbegin()->first, levels.rbegin()->second, levels.size() > 1 ? beside(levels.rbegin()) : 0};
+  return {levels.begin()->first, levels.begin()->second, levels.size() > 1 ? beside(levels.begin()) : 0};
+}
+
+std::map<double, std::size_t> levels_of(const std::vector<double>& values) {
+  std::map<double, std::size_t> levels;
+  for (const double value : values) ++levels[value];
+  return levels;
+}
+
+/// Change along the straight line through the values where it is beyond chance, else 0. The line's slope over n samples
+/// has the error sqrt(12) / n times that of the mean of what remains around it.
+double drift(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  double mean = 0.0, slope = 0.0;
+  for (const double value : values) mean += value / n;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    slope += (static_cast<double>(i) - 0.5 * (n - 1.0)) * (values[i] - mean) * 12.0 / (n * n * n - n);
+  std::vector<double> rest;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    rest.push_back(values[i] - slope * (static_cast<double>(i) - 0.5 * (n - 1.0)));
+  const double error = std::sqrt(12.0) * mean_with_error(rest, {.start_up_fraction_max = 0.0}).standard_error;
+  const double change = slope * n;
+  return std::abs(change) > 5.0 * error ? change : 0.0;
+}
+
+}  // namespace
+
+std::vector<std::string> remove_no_values(TorqueLog& log) {
+  std::vector<bool> out(log.time.size(), false);
+  std::vector<std::string> words;
+  const auto codes_in = [&](const std::vector<double>& si, const Unit& unit, const char* what) {
+    std::vector<double> values;
+    for (const double value : si) values.push_back(unit.from_si(value));
+    for (const auto& [code, count] : mark_codes(values, out))
+      words.push_back(
+          fmt::format("{} samples with a {} of {:g} {}, which looks like a code for 'no value', are left out", count,
+                      what, code, unit.symbol));
+  };
+  codes_in(log.torque, log.torque_unit, "torque");
+  codes_in(log.speed, log.speed_unit, "speed");
+  if (const std::size_t zeros = mark_drop_outs(log, out); zeros > 0)
+    words.push_back(fmt::format(
+        "{} samples with a torque of exactly 0 amid others of a turning machine are left out as drop-outs", zeros));
+  if (words.empty()) return words;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out[i]) continue;
+    log.time[kept] = log.time[i];
+    log.torque[kept] = log.torque[i];
+    log.speed[kept++] = log.speed[i];
+  }
+  log.time.resize(kept);
+  log.torque.resize(kept);
+  log.speed.resize(kept);
+  return words;
+}
+
+bool is_saturated(const TorqueLog& log, const Plateau& plateau, double most) {
+  const std::vector<double> values = used_torques(log, plateau);
+  if (values.size() < 10) return false;
+  const std::map<double, std::size_t> levels = levels_of(values);
+  if (levels.size() == 1) return levels.begin()->first != 0.0;
+  for (const bool largest : {false, true}) {
+    const Level level = extreme(levels, largest);
+    // Values that are merely coarse become rarer towards the ends.
+    if (static_cast<double>(level.count) > most * static_cast<double>(values.size()) && level.count > 3 * level.next)
+      return true;
+  }
+  return false;
+}
+
+std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau) {
+  std::vector<std::string> words;
+  const Unit& unit = log.torque_unit;
+  const std::string at = fmt::format("{:.4g} {} at {:.4g} s", log.speed_unit.from_si(plateau.speed),
+                                     log.speed_unit.symbol, log.time[plateau.first]);
+  const std::vector<double> values = used_torques(log, plateau);
+  if (values.size() < 20) return words;
+  const std::map<double, std::size_t> levels = levels_of(values);
+  const auto count = static_cast<double>(values.size());
+  const Spread spread = spread_of(values);
+  if (levels.size() > 1) {
+    for (const bool largest : {false, true}) {
+      const Level level = extreme(levels, largest);
+      if (static_cast<double>(level.count) > 0.02 * count && level.count >= 5 && level.count > 3 * level.next)
+        words.push_back(fmt::format(
+            "{}: {:.0f} % of the samples are exactly {:.5g} {}, and none lies {}: clipped there, so its mean is too {}",
+            at, 100.0 * static_cast<double>(level.count) / count, unit.from_si(level.value), unit.symbol,
+            largest ? "above" : "below", largest ? "small" : "large"));
+    }
+    std::vector<double> steps;
+    for (auto one = levels.begin(); std::next(one) != levels.end(); ++one)
+      steps.push_back(std::next(one)->first - one->first);
+    const double step = median_of(std::move(steps));
+    if (values.size() >= 50 && levels.size() <= std::max<std::size_t>(8, values.size() / 50) &&
+        step > 0.5 * plateau.torque.sd)
+      words.push_back(fmt::format(
+          "{}: the torque takes {} values only, {:.3g} {} apart, the logger's resolution: the mean may be off by "
+          "{:.2g} {} beyond its error",
+          at, levels.size(), step / unit.factor, unit.symbol, 0.5 * step / unit.factor, unit.symbol));
+  }
+  std::size_t spikes = 0;
+  double sum = 0.0, farthest = spread.median;
+  for (const double value : values) {
+    const bool spike = spread.sd > 0.0 && std::abs(value - spread.median) > 8.0 * spread.sd;
+    if (spike) ++spikes;
+    if (spike && std::abs(value - spread.median) > std::abs(farthest - spread.median)) farthest = value;
+    if (!spike) sum += value;
+  }
+  if (spikes > 0 && static_cast<double>(spikes) < 0.2 * count)
+    words.push_back(
+        fmt::format("{}: {} spikes, the largest {:.4g} {}, count in the mean {:.4g}, which is {:.4g} without them", at,
+                    spikes, unit.from_si(farthest), unit.symbol, unit.from_si(plateau.torque.mean),
+                    unit.from_si(sum / (count - static_cast<double>(spikes)))));
+  if (const double change = drift(values); spikes == 0 && std::abs(change) > 2.0 * plateau.torque.standard_error)
+    words.push_back(
+        fmt::format("{}: the torque drifts by {:.3g} {} from the beginning of what is used to its end: the error does "
+                    "not cover that",
+                    at, change / unit.factor, unit.symbol));
+  return words;
+}
+
+}  // namespace data

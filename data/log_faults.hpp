@@ -1,0 +1,23 @@
+#pragma once
+// What loggers and sensors do to a torque log, found before and after its reduction.
+#include <string>
+#include <vector>
+
+#include "data/torque_log.hpp"
+
+namespace data {
+
+/// Takes out samples that are no measurement: codes for "no value" (9999, -999, 32767 and their like) far from all
+/// others, in torque or speed, and single torques of exactly zero amid others of a turning machine. Returns what it
+/// took out, in words.
+std::vector<std::string> remove_no_values(TorqueLog& log);
+
+/// Whether the sensor was at its limit or stuck: every torque of the plateau is the same, or more than `most` of them
+/// are the same largest or smallest one.
+bool is_saturated(const TorqueLog& log, const Plateau& plateau, double most = 0.5);
+
+/// What is doubtful in a plateau's torque, in words: clipped at a limit, coarse steps of the resolution, spikes, a
+/// drift.
+std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau);
+
+}  // namespace data

@@ -1,0 +1,32 @@
+#pragma once
+// Numbers as instruments, spreadsheets and other languages write them.
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace data {
+
+enum class DecimalMark { point, comma };
+
+/// The number as a plain decimal ("-1234.5e-3", what std::from_chars reads), or nothing where the text is none. Taken
+/// besides plain numbers: a leading plus, a Unicode minus, Fortran's exponents (1.0D+00, 1.0-100), thousands parted by
+/// an apostrophe or a hard blank, and, where the number has both marks, by the mark that is not the decimal one.
+std::optional<std::string> plain_number(std::string_view text, DecimalMark mark);
+
+/// Whether the text says that there is no value: empty, nan, N/A, -, #N/A, NULL, 1.#QNAN, ****.
+bool is_missing(std::string_view text);
+
+/// What a number with a comma or a point in it says of the decimal mark.
+enum class Evidence {
+  none,  ///< neither mark, or no number
+  point,
+  comma,        ///< that one is the decimal mark
+  maybe_point,  ///< 1.234
+  maybe_comma,  ///< 1,234: thousands or decimals
+};
+Evidence decimal_evidence(std::string_view text);
+
+/// Without blanks, hard ones too, at both ends.
+std::string_view trimmed(std::string_view text);
+
+}  // namespace data

@@ -1,0 +1,24 @@
+#pragma once
+// What goes to the terminal. Texts of files, names and keys among them, are data: a control character in one is shown
+// as its code and does nothing. A terminal that is closed, a full disk behind a redirection or a reader that left
+// cannot stop the job.
+#include <string>
+#include <string_view>
+
+namespace data {
+
+/// `text` with every control character but the line end and the tab, every byte that is not UTF-8, and every character
+/// that turns the direction of writing shown as its code: "\x1b", "\u202e".
+std::string printable(std::string_view text);
+
+/// A line for the user on standard error, made printable. What cannot be written is lost without a word.
+void tell(std::string_view line);
+
+/// The result on standard output, a line. Throws InputError (73) when it cannot be written.
+void print_result(std::string_view text);
+
+/// At the program's start: standard streams that are closed are held by something harmless, so that no file takes
+/// their place; a reader that leaves (SIGPIPE) or a limit on a file's size (SIGXFSZ) is an error, not the end.
+void guard_streams();
+
+}  // namespace data

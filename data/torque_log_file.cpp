@@ -1,0 +1,200 @@
+// Reading a log: which columns, which units, which times.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include "data/csv.hpp"
+#include "data/error.hpp"
+#include "data/log_times.hpp"
+#include "data/number_text.hpp"
+#include "data/time_text.hpp"
+#include "data/torque_log.hpp"
+#include "data/unit_text.hpp"
+
+namespace data {
+namespace {
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+[[noreturn]] void fail(const std::string& place, const std::string& what, const std::string& remedy) {
+  throw InputError(ExitStatus::bad_data, Problem{place, what, remedy});
+}
+
+std::string heading_place(const Csv& csv) { return fmt::format("{}:{}", csv.file, csv.header_line); }
+
+/// The column of a quantity, by its name or, where there is none, by one of the other names.
+std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::string& option) {
+  const auto named = [&](std::size_t i, const std::string& name) {
+    return lower(csv.columns[i]) == lower(name) || lower(csv.headings[i]) == lower(name);
+  };
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < csv.columns.size(); ++i)
+    if (named(i, wanted.name)) return i;
+  for (std::size_t i = 0; i < csv.columns.size(); ++i)
+    if (std::any_of(wanted.also.begin(), wanted.also.end(), [&](const std::string& name) { return named(i, name); }))
+      found.push_back(i);
+  if (found.size() == 1) return found.front();
+  if (found.size() > 1)
+    fail(heading_place(csv),
+         fmt::format("both '{}' and '{}' may be the column '{}'", csv.headings[found[0]], csv.headings[found[1]],
+                     wanted.name),
+         fmt::format("say which with --{}", option));
+  std::string remedy = fmt::format("name it with --{}", option);
+  if (csv.columns.size() == 1)
+    remedy = "its columns are not parted by commas, semicolons, tabs or blanks, or it has one column only";
+  fail(heading_place(csv),
+       fmt::format("the column '{}' is missing (the columns are {})", wanted.name, fmt::join(csv.headings, ", ")),
+       remedy);
+}
+
+Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
+               const std::pair<std::string, std::string>& of) {
+  const auto& [dimension, option] = of;
+  std::string symbol = wanted.unit.empty() ? csv.units[column] : wanted.unit;
+  if (symbol.empty()) symbol = wanted.usual;
+  if (symbol.empty())
+    fail(heading_place(csv), fmt::format("the column '{}' has no unit", csv.headings[column]),
+         fmt::format("write it in the header, '{} [N m]', or give --{}-unit", wanted.name, option));
+  if (auto unit = unit_meant(symbol, dimension)) return unit->symbol == "60 rpm" ? parse_unit("rpm") : *unit;
+  fail(heading_place(csv), fmt::format("'{}' is not a unit of {}", symbol, option),
+       fmt::format("a unit like '{}'; --{}-unit overrides the header", dimension, option));
+}
+
+/// What one in a column amounts to in the unit that find_unit gave: Hz are shown in rpm.
+double per_shown_unit(const Csv& csv, std::size_t column, const LogColumn& wanted) {
+  const std::string& symbol = wanted.unit.empty() ? csv.units[column] : wanted.unit;
+  const auto unit = unit_meant(symbol, "rpm");
+  return unit && unit->symbol == "60 rpm" ? 60.0 : 1.0;
+}
+
+/// The stamps of all rows, s; NaN where there is none.
+struct Stamps {
+  std::vector<double> seconds;
+  bool of_day = false;
+  std::vector<std::string> took;
+};
+
+Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) {
+  Stamps stamps;
+  const auto first = std::find_if(csv.rows.begin(), csv.rows.end(),
+                                  [&](const CsvRow& row) { return !is_missing(row.fields[column]); });
+  const bool clock = first != csv.rows.end() && read_time(first->fields[column]).has_value();
+  const Unit unit = clock ? parse_unit("s") : find_unit(csv, column, wanted, {"s", "time"});
+  bool dated = false, either = false;
+  for (const CsvRow& row : csv.rows) {
+    const std::string& field = row.fields[column];
+    if (is_missing(field)) {
+      stamps.seconds.push_back(std::numeric_limits<double>::quiet_NaN());
+    } else if (!clock) {
+      stamps.seconds.push_back(unit.to_si(csv.number(row, column)));
+    } else {
+      const auto time = read_time(field);
+      if (!time)
+        fail(csv.place(row, column), fmt::format("'{}' is no time like those before", field), "write every time alike");
+      if (time->two_parts)
+        fail(csv.place(row, column), fmt::format("'{}' may be hours and minutes, or minutes and seconds", field),
+             "write hours, minutes and seconds, or seconds alone");
+      dated = dated || time->dated;
+      either = either || time->day_or_month;
+      stamps.seconds.push_back(time->seconds);
+    }
+  }
+  if (clock) stamps.took.push_back(dated ? "dates and times" : "times of day");
+  stamps.of_day = clock && !dated;
+  if (dated && either)
+    fail(csv.place(*first, column), "has dates whose day and month cannot be told apart beside others",
+         "write dates like 2024-05-31");
+  // Days since 1900, as spreadsheets count them, in a column without a unit.
+  const bool no_unit = !clock && wanted.unit.empty() && csv.units[column].empty();
+  if (no_unit && csv.rows.size() > 2 && stamps.seconds.front() > 2e4 && stamps.seconds.front() < 8e4 &&
+      stamps.seconds.back() - stamps.seconds.front() < 1.0)
+    fail(csv.place(csv.rows.front(), column),
+         fmt::format("{} looks like a spreadsheet's day, not like seconds", csv.rows.front().fields[column]),
+         "say which with --time-unit d or --time-unit s");
+  return stamps;
+}
+
+/// Median interval, and the share of those that differ from it.
+void check_spacing(TorqueLog& log) {
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < log.time.size(); ++i) gaps.push_back(log.time[i] - log.time[i - 1]);
+  if (gaps.empty()) return;
+  std::vector<double> sorted = gaps;
+  std::sort(sorted.begin(), sorted.end());
+  log.interval = sorted[sorted.size() / 2];
+  const auto uneven = std::count_if(gaps.begin(), gaps.end(),
+                                    [&](double gap) { return std::abs(gap - log.interval) > 0.2 * log.interval; });
+  log.uneven_share = static_cast<double>(uneven) / static_cast<double>(gaps.size());
+}
+
+/// The times of the rows that have one, made good; rows without stay NaN.
+std::vector<double> times_of(const Csv& csv, std::size_t column, const LogColumns& columns, TorqueLog& log) {
+  if (columns.rate) {
+    std::vector<double> times(csv.rows.size());
+    for (std::size_t i = 0; i < times.size(); ++i) times[i] = static_cast<double>(i) / *columns.rate;
+    return times;
+  }
+  Stamps stamps = read_stamps(csv, column, columns.time);
+  log.took.insert(log.took.end(), stamps.took.begin(), stamps.took.end());
+  std::vector<double> there;
+  for (const double one : stamps.seconds)
+    if (std::isfinite(one)) there.push_back(one);
+  if (pass_midnight(there, stamps.of_day) > 0) log.took.push_back("times that go on past midnight");
+  if (shares_stamps(there))
+    if (const std::string how = spread_stamps(there); !how.empty()) log.took.push_back(how);
+  const bool from_zero = !log.took.empty() && !there.empty() && !stamps.took.empty();
+  const double start = from_zero ? there.front() : 0.0;
+  std::size_t next = 0;
+  for (double& one : stamps.seconds)
+    if (std::isfinite(one)) one = there[next++] - start;
+  return stamps.seconds;
+}
+
+}  // namespace
+
+TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
+  const Csv csv = read_csv(path);
+  TorqueLog log{.file = csv.file};
+  log.took = csv.took;
+  const std::size_t time = columns.rate ? 0 : find_column(csv, columns.time, "time");
+  const std::size_t torque = find_column(csv, columns.torque, "torque");
+  log.torque_unit = find_unit(csv, torque, columns.torque, {"N m", "torque"});
+  std::optional<std::size_t> speed;
+  double in_unit = 1.0;
+  log.speed_unit = parse_unit(columns.speed.unit.empty() ? "rpm" : columns.speed.unit);
+  if (!columns.constant_speed) {
+    speed = find_column(csv, columns.speed, "rpm");
+    log.speed_unit = find_unit(csv, *speed, columns.speed, {"rpm", "rpm"});
+    in_unit = per_shown_unit(csv, *speed, columns.speed);
+  }
+  const std::vector<double> times = times_of(csv, time, columns, log);
+  for (std::size_t i = 0; i < csv.rows.size(); ++i) {
+    const CsvRow& row = csv.rows[i];
+    const double m = log.torque_unit.to_si(csv.number(row, torque));
+    const double w = speed ? log.speed_unit.to_si(in_unit * csv.number(row, *speed)) : *columns.constant_speed;
+    if (!std::isfinite(times[i]) || !std::isfinite(m) || !std::isfinite(w)) {
+      ++log.missing;
+      continue;
+    }
+    if (!log.time.empty() && !(times[i] > log.time.back()))
+      fail(csv.place(row, time),
+           fmt::format("{:g} s does not come after {:g} s of the sample before", times[i], log.time.back()),
+           "sort the log by time, remove repeated lines, or split a log that was restarted");
+    log.time.push_back(times[i]);
+    log.torque.push_back(m);
+    log.speed.push_back(w);
+  }
+  if (log.time.size() < 2)
+    throw InputError(ExitStatus::bad_data, Problem{csv.file, fmt::format("has {} complete samples", log.time.size()),
+                                                   "a log has time, torque and speed of many samples"});
+  check_spacing(log);
+  return log;
+}
+
+}  // namespace data

@@ -1,0 +1,64 @@
+#include "data/text_encoding.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/temporary.hpp"
+
+namespace {
+
+std::string utf16(const std::u16string& text, bool big) {
+  std::string bytes;
+  for (const char16_t c : text) {
+    const char low = static_cast<char>(c & 0xff), high = static_cast<char>(c >> 8);
+    bytes += big ? std::string{high, low} : std::string{low, high};
+  }
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("the encodings of spreadsheets and instruments give the same text, and say what they were") {
+  const std::u16string wide = u"time,torque [\u00b5N\u00b7m]\n1,2\n\U0001F600\n";
+  const std::string expected = "time,torque [\xc2\xb5N\xc2\xb7m]\n1,2\n\xf0\x9f\x98\x80\n";
+  for (const bool big : {false, true}) {
+    const std::string mark = big ? "\xfe\xff" : "\xff\xfe";
+    for (const std::string& front : {mark, std::string()}) {
+      const data::DecodedText decoded = data::decode_text(front + utf16(wide, big), "x");
+      CHECK(decoded.text == expected);
+      CHECK(decoded.took == (big ? "UTF-16, big endian" : "UTF-16, little endian"));
+    }
+  }
+  CHECK(data::decode_text("\xef\xbb\xbf" + expected, "x").text == expected);
+  CHECK(data::decode_text(expected, "x").took.empty());
+  const data::DecodedText latin = data::decode_text(
+      "R\xfchrwerk, 20 \xb0"
+      "C, \xb5N\xb7m, \x80 5",
+      "x");
+  CHECK(latin.text ==
+        "R\xc3\xbchrwerk, 20 \xc2\xb0"
+        "C, \xc2\xb5N\xc2\xb7m, \xe2\x82\xac 5");
+  CHECK(latin.took == "Latin-1");
+  // "時間,トルク" in Shift-JIS.
+  const data::DecodedText japanese = data::decode_text("\x8e\x9e\x8a\xd4,\x83\x67\x83\x8b\x83\x4e\n1,2\n", "x");
+  CHECK(japanese.took == "Shift-JIS");
+  CHECK(japanese.text == "\xe6\x99\x82\xe9\x96\x93,\xe3\x83\x88\xe3\x83\xab\xe3\x82\xaf\n1,2\n");
+}
+
+TEST_CASE("what is no text in any of them is refused by name") {
+  const TemporaryFolder folder;
+  const auto failure = [&](const std::string& bytes) {
+    return failure_of(folder, [&] { data::decode_text(bytes, "x.csv"); });
+  };
+  CHECK(failure(std::string("\xff\xfe\0\0a\0\0\0", 8)).find("65: x.csv: is UTF-32") == 0);
+  CHECK(failure(std::string("\xff\xfe"
+                            "a\0b",
+                            5))
+            .find("65: x.csv: is UTF-16, but has an odd number of bytes") == 0);
+  CHECK(failure(std::string("\xff\xfe\x00\xdc\x00\x00", 6)).find("is no text") != std::string::npos);
+}
+
+TEST_CASE("overlong forms, surrogates and cut-off characters are not UTF-8") {
+  for (const std::string bad : {"\xc0\x80", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82", "\xff"})
+    CHECK_FALSE(data::is_utf8(bad));
+  for (const std::string good : {"", "a", "\xc2\xa0", "\xed\x9f\xbf", "\xf4\x8f\xbf\xbf"}) CHECK(data::is_utf8(good));
+}

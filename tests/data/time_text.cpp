@@ -1,0 +1,29 @@
+#include "data/time_text.hpp"
+
+#include <catch2/catch.hpp>
+
+TEST_CASE("times of day and dates are read as loggers stamp them") {
+  const auto seconds = [](const std::string& text) {
+    const auto time = data::read_time(text);
+    return time ? time->seconds : -1.0;
+  };
+  constexpr double noon = 1714694400.0;  // 2024-05-03, midnight, by date -u -d 2024-05-03 +%s
+  CHECK(seconds("14:02:00") == 50520.0);
+  CHECK(seconds("14:02:00.5") == 50520.5);
+  CHECK(seconds("14:02:00,25") == 50520.25);
+  CHECK(seconds("2:02:00 PM") == 50520.0);
+  CHECK(seconds("12:00:00 AM") == 0.0);
+  CHECK(seconds("02:35.5") == 155.5);  // minutes and seconds
+  for (const std::string text :
+       {"2024-05-03 14:02:00", "2024-05-03T14:02:00Z", "2024/05/03 14:02:00", "03.05.2024 14:02:00",
+        "2024-05-03T16:02:00+02:00", "2024-05-03T10:02:00-0400", "03.05.24 14:02:00"})
+    CHECK(seconds(text) == noon + 50520.0);
+  CHECK(seconds("05/31/2024 00:00:01") == seconds("2024-05-31 00:00:01"));
+  CHECK(seconds("31/05/2024 00:00:01") == seconds("2024-05-31 00:00:01"));
+  CHECK(data::read_time("03/05/2024 14:02:00")->day_or_month);
+  CHECK(data::read_time("14:02")->two_parts);
+  CHECK_FALSE(data::read_time("2024-05-03 14:02")->two_parts);
+  for (const std::string none :
+       {"", "14", "14:60", "14:02:61", "a:b", "2024-13-03 14:02:00", "1:2:3:4", "14:02:00 x", "1.5"})
+    CHECK_FALSE(data::read_time(none));
+}

@@ -1,0 +1,169 @@
+// Logs as loggers write them, those of shared cases among them (tests/data/files).
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "data/log_faults.hpp"
+#include "data/log_times.hpp"
+#include "data/random.hpp"
+#include "data/torque_log.hpp"
+#include "tests/temporary.hpp"
+
+namespace {
+
+constexpr double rpm = std::numbers::pi / 30.0;
+
+std::string file(const std::string& name) { return std::string(DEMCAL_SOURCE_DIR) + "/tests/data/files/" + name; }
+
+std::vector<data::Plateau> plateaus_of(const std::string& name) {
+  return data::find_plateaus(data::read_torque_log(file(name)));
+}
+
+std::string refusal(const std::string& text, const data::LogColumns& columns = {}) {
+  const TemporaryFolder folder;
+  return failure_of(folder, [&] { data::read_torque_log(folder.write("log.csv", text), columns); });
+}
+
+data::TorqueLog log_of(const std::string& text, const data::LogColumns& columns = {}) {
+  const TemporaryFolder folder;
+  return data::read_torque_log(folder.write("log.csv", text), columns);
+}
+
+/// 60 s at 100 rpm, ten samples a second: 3 mN m with noise; `change` alters a sample.
+template <class Change>
+data::TorqueLog made(Change change) {
+  data::RandomStream random(5, data::Purpose::test);
+  std::string text = "time [s],torque [mN m],rpm\n";
+  for (int i = 0; i < 600; ++i)
+    text += fmt::format("{:.1f},{:.4f},100\n", 0.1 * i, change(i, 3.0 + 0.05 * random.normal()));
+  return log_of(text);
+}
+
+std::vector<std::string> faults_of(const data::TorqueLog& log) {
+  std::vector<std::string> words;
+  for (const data::Plateau& plateau : data::find_plateaus(log))
+    for (const std::string& fault : data::plateau_faults(log, plateau)) words.push_back(fault);
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("ISO times, stamps of whole seconds and a midnight give the means of the log they were made from") {
+  for (const std::string name : {"d04-iso-time.csv", "d06-one-second-stamps.csv", "d07-midnight.csv"}) {
+    INFO(name);
+    const std::vector<data::Plateau> plateaus = plateaus_of(name);
+    REQUIRE(plateaus.size() == 3);
+    const double speeds[] = {50.0, 100.0, 150.0}, torques[] = {2.5, 3.0, 3.5};
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(plateaus[i].speed == Approx(speeds[i] * rpm).epsilon(1e-3));
+      CHECK(std::abs(1e3 * plateaus[i].torque.mean - torques[i]) < 4e3 * plateaus[i].torque.standard_error);
+    }
+  }
+  CHECK(data::read_torque_log(file("d06-one-second-stamps.csv")).interval == Approx(0.1).epsilon(0.01));
+  CHECK(data::read_torque_log(file("d04-iso-time.csv")).interval == Approx(0.1).epsilon(1e-3));
+  data::LogColumns at_rate;
+  at_rate.rate = 10.0;
+  CHECK(data::read_torque_log(file("d06-one-second-stamps.csv"), at_rate).interval == Approx(0.1));
+}
+
+TEST_CASE("a slow ramp is no plateau, saturation and codes are found, drop-outs do not count") {
+  CHECK(plateaus_of("d12-slow-ramp.csv").empty());
+  const data::TorqueLog saturated = data::read_torque_log(file("d08-saturated.csv"));
+  const std::vector<data::Plateau> three = data::find_plateaus(saturated);
+  REQUIRE(three.size() == 3);
+  CHECK_FALSE(data::is_saturated(saturated, three[0]));
+  CHECK(data::is_saturated(saturated, three[2]));
+  data::TorqueLog codes = data::read_torque_log(file("d10-sentinels.csv"));
+  CHECK(data::remove_no_values(codes) ==
+        std::vector<std::string>{
+            "4 samples with a torque of 9999 mN m, which looks like a code for 'no value', are left out"});
+  CHECK(data::find_plateaus(codes)[2].torque.mean == Approx(3.5e-3).epsilon(0.01));
+  data::TorqueLog zeros = data::read_torque_log(file("d11-zero-dropouts.csv"));
+  CHECK(data::remove_no_values(zeros).size() == 1);
+  CHECK(data::find_plateaus(zeros)[1].torque.mean == Approx(3.0e-3).epsilon(0.01));
+}
+
+TEST_CASE("a good log has no faults, and each fault is named") {
+  CHECK(faults_of(made([](int, double torque) { return torque; })).empty());
+  data::TorqueLog good = made([](int, double torque) { return torque; });
+  CHECK(data::remove_no_values(good).empty());
+  const auto named = [](const data::TorqueLog& log, const std::string& what) {
+    const std::vector<std::string> words = faults_of(log);
+    return std::any_of(words.begin(), words.end(),
+                       [&](const std::string& one) { return one.find(what) != std::string::npos; });
+  };
+  CHECK(named(made([](int, double torque) { return std::min(torque, 3.03); }),
+              "clipped there, so its mean is too small"));
+  CHECK(named(made([](int, double torque) { return std::max(torque, 2.97); }),
+              "clipped there, so its mean is too large"));
+  CHECK(named(made([](int, double torque) { return 0.1 * std::round(10.0 * torque); }), "the logger's resolution"));
+  CHECK(named(made([](int i, double torque) { return i % 150 == 75 ? 40.0 : torque; }), "spikes, the largest 40 mN m"));
+  CHECK(named(made([](int i, double torque) { return torque + 0.001 * i; }), "drifts"));
+  data::TorqueLog negative = made([](int i, double torque) { return i % 100 == 3 ? -999.0 : torque; });
+  CHECK(data::remove_no_values(negative).size() == 1);
+  CHECK(negative.time.size() == 594);
+}
+
+TEST_CASE("a torque that is truly 9999 or zero stays") {
+  data::TorqueLog log = log_of("time,torque [uN m],rpm\n0,9990,50\n1,9999,50\n2,10010,50\n3,9995,50\n4,0,0\n5,0,0\n");
+  CHECK(data::remove_no_values(log).empty());
+}
+
+TEST_CASE("columns are found by their usual names, in several languages and units") {
+  const data::TorqueLog log = log_of("Zeit;Drehmoment [mNm];Drehzahl [1/min]\n0,0;2,5;60\n0,5;2,6;60\n");
+  CHECK(log.torque[0] == Approx(2.5e-3));
+  CHECK(log.torque[1] == Approx(2.6e-3));
+  CHECK(log.time == std::vector<double>{0.0, 0.5});
+  CHECK(log.speed[0] == Approx(60.0 * rpm));
+  CHECK(log_of("Time [ms],Torque [Ncm],Speed [Hz]\n0,1,2\n100,1,2\n").speed[0] == Approx(120.0 * rpm));
+  CHECK(log_of("Time [ms],Torque [Ncm],Speed [Hz]\n0,1,2\n100,1,2\n").time[1] == Approx(0.1));
+  CHECK(refusal("time,torque [Nm],speed,drehzahl\n0,1,1,1\n1,1,1,1\n")
+            .find("both 'speed' and 'drehzahl' may be the column 'rpm'") != std::string::npos);
+  data::LogColumns constant;
+  constant.constant_speed = 50.0 * rpm;
+  CHECK(log_of("time,torque [Nm]\n0,1\n1,1\n", constant).speed[1] == Approx(50.0 * rpm));
+}
+
+TEST_CASE("times that can be read in two ways are asked back") {
+  CHECK(refusal("time,torque [Nm],rpm\n14:02,1,1\n14:03,1,1\n")
+            .find("'14:02' may be hours and minutes, or minutes and seconds") != std::string::npos);
+  CHECK(refusal("time,torque [Nm],rpm\n45415.584722,1,1\n45415.584723,1,1\n45415.584724,1,1\n")
+            .find("looks like a spreadsheet's day") != std::string::npos);
+  CHECK(refusal("time,torque [Nm],rpm\n14:02:01,1,1\n7,1,1\n").find("'7' is no time like those before") !=
+        std::string::npos);
+}
+
+TEST_CASE("clocks go on past midnight, and stamps are spread as their order allows") {
+  std::vector<double> times{86398.0, 86399.0, 0.0, 1.0};
+  CHECK(data::pass_midnight(times, true) == 1);
+  CHECK(times == std::vector<double>{86398.0, 86399.0, 86400.0, 86401.0});
+  std::vector<double> back{100.0, 101.0, 50.0};
+  CHECK(data::pass_midnight(back, false) == 0);
+  // True times i * 0.23, cut to whole seconds.
+  std::vector<double> stamps, truth;
+  for (int i = 0; i < 500; ++i) {
+    truth.push_back(0.23 * i);
+    stamps.push_back(std::floor(truth.back()));
+  }
+  CHECK(data::shares_stamps(stamps));
+  CHECK_FALSE(data::shares_stamps(truth));
+  CHECK(data::spread_stamps(stamps).find("spread evenly, 0.23") != std::string::npos);
+  for (std::size_t i = 1; i < stamps.size(); ++i) CHECK(stamps[i] - stamps[i - 1] == Approx(0.23).epsilon(0.01));
+  CHECK(std::abs(stamps[250] - truth[250]) < 0.3);
+}
+
+TEST_CASE("a standstill of 200,000 samples takes no longer than its reading") {
+  data::TorqueLog log{.file = "log.csv"};
+  log.interval = 0.001;
+  for (int i = 0; i < 200000; ++i) {
+    log.time.push_back(0.001 * i);
+    log.torque.push_back(0.0);
+    log.speed.push_back(i < 190000 ? 0.0 : 10.0);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  CHECK(data::find_plateaus(log).size() == 1);
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
+}

@@ -1,0 +1,56 @@
+#include "data/unit_text.hpp"
+
+#include <catch2/catch.hpp>
+#include <numbers>
+
+TEST_CASE("units as they are spelled on instruments mean what they can only mean") {
+  const auto factor = [](const std::string& text, const std::string& dimension) {
+    const auto unit = data::unit_meant(text, dimension);
+    return unit ? unit->factor : 0.0;
+  };
+  for (const std::string text : {"Nm", "N m", "N\xc2\xb7m", "N.m", "N*m", "N\xe2\x8b\x85m"})
+    CHECK(factor(text, "N m") == Approx(1.0));
+  for (const std::string text : {"mNm", "mN m", "mN\xc2\xb7m", "mN.m"}) CHECK(factor(text, "N m") == Approx(1e-3));
+  for (const std::string text : {"uNm", "\xc2\xb5Nm", "\xc2\xb5N\xc2\xb7m", "\xce\xbcN m"})
+    CHECK(factor(text, "N m") == Approx(1e-6));
+  for (const std::string text : {"Ncm", "N cm",
+                                 "N\xc2\xb7"
+                                 "cm"})
+    CHECK(factor(text, "N m") == Approx(1e-2));
+  for (const std::string text : {"kgf cm", "kgfcm",
+                                 "kgf\xc2\xb7"
+                                 "cm",
+                                 "kp cm"})
+    CHECK(factor(text, "N m") == Approx(9.80665e-2));
+  CHECK(factor("gf cm", "N m") == Approx(9.80665e-5));
+  for (const std::string text :
+       {"rpm", "RPM", "1/min", "min-1", "min^-1", "min\xe2\x81\xbb\xc2\xb9", "U/min", "r/min", "rev/min", "Upm"})
+    CHECK(factor(text, "rpm") == Approx(std::numbers::pi / 30.0));
+  for (const std::string text : {"Hz", "1/s", "s-1", "rps", "U/s"})
+    CHECK(factor(text, "rpm") == Approx(2.0 * std::numbers::pi));
+  CHECK(factor("rad/s", "rpm") == Approx(1.0));
+  CHECK(factor("ms", "s") == Approx(1e-3));
+  CHECK(factor("sec", "s") == Approx(1.0));
+  for (const std::string text : {"N", "kg", "furlong pints", "", "%"}) CHECK_FALSE(data::unit_meant(text, "N m"));
+  CHECK_FALSE(data::unit_meant("Hz", "s"));
+  CHECK_FALSE(data::unit_meant("1/min", "N m"));
+}
+
+TEST_CASE("a heading is a name and a unit in brackets, in parentheses, after a slash or a comma") {
+  const auto split = [](const std::string& text) {
+    const data::Heading heading = data::read_heading(text);
+    return heading.name + "|" + heading.unit;
+  };
+  CHECK(split("Torque [mN m]") == "Torque|mN m");
+  CHECK(split("Torque (mNm)") == "Torque|mNm");
+  CHECK(split("torque / mN m") == "torque|mN m");
+  CHECK(split("torque/mNm") == "torque|mNm");
+  CHECK(split("Torque, mNm") == "Torque|mNm");
+  CHECK(split("speed / 1/min") == "speed|1/min");
+  CHECK(split("n in rpm") == "n in rpm|");
+  CHECK(split("torque [banana]") == "torque|banana");  // refused where the unit is needed
+  CHECK(split("torque (mean)") == "torque (mean)|");
+  CHECK(split("run (2)") == "run (2)|");
+  CHECK(split("torque") == "torque|");
+  CHECK(split("") == "|");
+}
