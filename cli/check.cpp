@@ -1,10 +1,11 @@
 // demcal check: reads everything, reports every problem at once, simulates nothing.
 #include <fmt/core.h>
 
-#include "cli/point.hpp"
-#include "dem/derived.hpp"
+#include <algorithm>
+
+#include "cli/campaign.hpp"
+#include "cli/foretell.hpp"
 #include "dem/rig.hpp"
-#include "dem/target.hpp"
 #include "uq/data_check.hpp"
 #include "uq/surrogates.hpp"
 
@@ -48,16 +49,39 @@ Action add_check(CLI::App& program) {
     for (const data::Problem& problem : data::outside_training_range(study))
       warnings.push_back(data::describe({problem}));
     for (std::string& warning : too_few_runs(study, rows)) warnings.push_back(std::move(warning));
+    nlohmann::json materials = nlohmann::json::array();
+    const std::vector<Point> missing =
+        workspace.cases.empty() ? std::vector<Point>{} : plan_campaign(workspace, rows.all, 0).points;
+    double campaign_seconds = 0.0;
     for (const auto& [material, unused] : workspace.cases) {
-      const dem::Case c = case_at(workspace, parse_point(workspace, material, {}));
-      if (auto found = dem::problems(c); !found.empty())
-        throw data::InputError(data::ExitStatus::bad_study, std::move(found));
-      dem::build_rig(c, study.seed);  // whether the spheres fit
+      const Point middle = parse_point(workspace, material, {});
+      const dem::Case c = case_at(workspace, middle);
+      const Foretold told = foretell(workspace, middle);
+      const Cost cost = cost_of(c, told.derived);
+      const auto runs =
+          std::count_if(missing.begin(), missing.end(), [&](const Point& p) { return p.material == material; });
+      campaign_seconds += static_cast<double>(runs) * cost.seconds;
       say(*common, material.empty() ? "simulation, amid its ranges:" : material + ", amid its ranges:");
-      for (const std::string& line : dem::describe(c, dem::derive(c))) say(*common, "  " + line);
+      for (const std::string& line : dem::describe(c, told.derived)) say(*common, "  " + line);
+      for (const std::string& line : dem::describe(told.forecast)) say(*common, "  " + line);
+      say(*common,
+          fmt::format("  a run: at most {:.3g} steps, {} of processor time, {:.2g} MB; {} runs are missing: {} "
+                      "(at {:.2g} million particle-steps/s, measured on this machine just now)",
+                      cost.steps, duration_text(cost.seconds), 1e-6 * cost.bytes, runs,
+                      duration_text(static_cast<double>(runs) * cost.seconds), 1e-6 * cost.effort.rate));
+      const std::string of = material.empty() ? "" : material + ": ";
+      for (const auto& list : {told.forecast.warnings, cost.warnings, problems_at_ends(workspace, middle)})
+        for (const std::string& warning : list) warnings.push_back(of + warning);
+      nlohmann::json one = to_json(told, cost);
+      one["name"] = material;
+      one["missing_runs"] = runs;
+      materials.push_back(std::move(one));
       const std::vector<std::string> broken = dem::rig_warnings(c);
       if (material == workspace.cases.begin()->first) warnings.insert(warnings.end(), broken.begin(), broken.end());
     }
+    if (!workspace.cases.empty())
+      say(*common, fmt::format("the campaign: {} runs are missing, at most {} of processor time", missing.size(),
+                               duration_text(campaign_seconds)));
     if (study.cases.empty())
       warnings.push_back("there is no [[calibrate]] case yet: the study can train, not calibrate");
     for (const std::string& warning : warnings) say(*common, "warning: " + warning);
@@ -76,9 +100,13 @@ Action add_check(CLI::App& program) {
                           {"what", finding.what},
                           {"remedy", finding.remedy},
                           {"places", finding.places}});
-    print_json(
-        *common,
-        {{"study", study.name}, {"rows", data::used_rows(rows.table)}, {"warnings", warnings}, {"findings", findings}});
+    print_json(*common, {{"study", study.name},
+                         {"rows", data::used_rows(rows.table)},
+                         {"missing_runs", missing.size()},
+                         {"cpu_seconds_at_most", campaign_seconds},
+                         {"materials", materials},
+                         {"warnings", warnings},
+                         {"findings", findings}});
     return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
   };
 }

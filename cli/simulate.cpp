@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "cli/foretell.hpp"
 #include "cli/run_point.hpp"
 #include "data/file_name.hpp"
+#include "data/hash.hpp"
 #include "data/hash.hpp"
 #include "data/interrupt.hpp"
 #include "data/origin.hpp"
@@ -79,20 +81,20 @@ std::string summary(const Workspace& workspace, const Point& point, const dem::R
   return text;
 }
 
-/// run.h5 may hold another run: it stays, under a name of its own.
-void keep_other_run(const Common& common, const Workspace& workspace, const Point& point, const std::string& path) {
-  if (data::origin_of(path) != data::Origin::ours) return;
+/// run.h5, or, where that holds another run or is no run of ours, run-HASH.h5: what is there is never replaced.
+std::string file_of(const Workspace& workspace, const Point& point) {
+  namespace fs = std::filesystem;
+  const fs::path usual = fs::path(workspace.out) / "run.h5";
+  if (!fs::exists(usual)) return usual.string();
+  const std::string settings = dem::settings_text(case_at(workspace, point));
+  const std::uint64_t seed = run_seed(workspace, point);
   try {
-    const dem::SavedRun saved = dem::read_run(path);
-    const std::string settings = dem::settings_text(case_at(workspace, point));
-    if (saved.settings == settings && saved.result.seed == run_seed(workspace, point)) return;
-    const std::string name = fmt::format(
-        "run-{}.h5", data::hash_text(fmt::format("{} {}", saved.result.seed, saved.settings)).substr(0, 12));
-    const std::filesystem::path kept = std::filesystem::path(path).parent_path() / name;
-    if (std::rename(path.c_str(), kept.c_str()) == 0)
-      say(common, fmt::format("note: run.h5 was a run at another point or under other settings; it is now {}", name));
-  } catch (const data::InputError&) {  // of another version: made again
+    const dem::SavedRun saved = dem::read_run(usual.string());
+    if (saved.settings == settings && saved.result.seed == seed) return usual.string();
+  } catch (const data::InputError&) {  // not to be read: it stays as it is
   }
+  const std::string name = data::hash_text(fmt::format("{} {}", settings, seed)).substr(0, 12);
+  return (fs::path(workspace.out) / ("run-" + name + ".h5")).string();
 }
 
 }  // namespace
@@ -118,10 +120,15 @@ Action add_simulate(CLI::App& program) {
     const Workspace workspace = open_workspace(common);
     require_rig(workspace);
     const Point point = parse_point(workspace, choose_material(workspace.study, options->material), options->at);
+    std::vector<std::string> notes = outside_ranges(workspace, point);
+    for (const std::string& warning : foretell(workspace, point).forecast.warnings) notes.push_back(warning);
+    for (const std::string& warning : dem::rig_warnings(case_at(workspace, point))) notes.push_back(warning);
     const auto held = hold_out(workspace, Writes::run, "simulate");
     const std::filesystem::path out = workspace.out;
-    const std::string path = (out / "run.h5").string();
-    keep_other_run(common, workspace, point, path);
+    const std::string path = file_of(workspace, point);
+    if (path != out / "run.h5")
+      notes.push_back(fmt::format("run.h5 holds another run and is kept; this one is in {}",
+                                  std::filesystem::path(path).filename().string()));
     if (options->stl) {
       for (const dem::NamedMesh& mesh : dem::rig_meshes(case_at(workspace, point)))
         dem::write_stl(mesh.mesh, (out / (data::file_name(mesh.name) + ".stl")).string());
@@ -129,7 +136,7 @@ Action add_simulate(CLI::App& program) {
     say(common,
         fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point)));
 
-    for (const std::string& warning : dem::rig_warnings(case_at(workspace, point))) say(common, "warning: " + warning);
+    for (const std::string& note : notes) say(common, "note: " + note);
     dem::RunResult result;
     {
       data::Progress progress("simulating (at most)", 1000,
@@ -150,7 +157,10 @@ Action add_simulate(CLI::App& program) {
       throw data::InputError(data::ExitStatus::bad_study,
                              {describe(workspace.study, point), result.reason, "its last good state is in " + path});
     say(common, summary(workspace, point, result) + path);
-    print_json(common, to_json(workspace, point, result));
+    nlohmann::json json = to_json(workspace, point, result);
+    json["notes"] = notes;
+    json["file"] = path;
+    print_json(common, json);
     return result.warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
   };
 }

@@ -2,12 +2,14 @@
 // file in OUT/runs, its row in OUT/training.h5 and training.csv. An interrupted run goes on from its checkpoint.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <mutex>
 #include <thread>
 
 #include "cli/campaign.hpp"
+#include "cli/foretell.hpp"
 #include "cli/run_point.hpp"
 #include "cli/training_table.hpp"
 #include "data/interrupt.hpp"
@@ -108,6 +110,11 @@ Action add_train(CLI::App& program) {
     const std::size_t before = rows.all.rows.size();
     const Campaign campaign = options->at_posterior > 0 ? plan_at_posterior(workspace, rows.all, options->at_posterior)
                                                         : plan_campaign(workspace, rows.all, options->runs);
+    for (const auto& [material, unused] : workspace.cases) {
+      if (std::any_of(campaign.points.begin(), campaign.points.end(),
+                      [&](const Point& p) { return p.material == material; }))
+        foretell(workspace, parse_point(workspace, material, {}));  // before hours go into runs of nothing
+    }
     write_design(workspace, campaign.points);
     if (campaign.points.empty())
       say(common, fmt::format("nothing is missing: the table has {} runs. For more of them: --runs N", before));
@@ -156,7 +163,8 @@ Action add_train(CLI::App& program) {
           fmt::format("warning: {} of the new runs are not of the steady flow and train nothing (training.unsteady "
                       "= \"use\" takes them)",
                       ledger.unsteady));
-    return ledger.failures.empty() && ledger.unsteady == 0 ? data::ExitStatus::done : data::ExitStatus::warning;
+    const bool clean = ledger.failures.empty() && ledger.warnings.empty() && ledger.unsteady == 0;
+    return clean ? data::ExitStatus::done : data::ExitStatus::warning;
   };
 }
 

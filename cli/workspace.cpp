@@ -185,7 +185,6 @@ std::unique_ptr<data::FolderLock> hold_out(const Workspace& workspace, Writes fi
   auto lock = std::make_unique<data::FolderLock>(workspace.out, name, "demcal " + command);
   std::vector<std::string> written;
   if (files == Writes::training) written = {"training.h5", "training.csv", "design.csv"};
-  if (files == Writes::run) written = {"run.h5"};
   if (files == Writes::results) {
     written = {"surrogate.h5", "results.json", "report.json", "report.html"};
     for (const data::CalibrationCase& one : workspace.study.cases) written.push_back("posterior-" + one.name + ".nc");

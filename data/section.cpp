@@ -281,8 +281,9 @@ std::vector<double> Section::quantities(std::string_view key, std::string_view s
     return values;
   }
   for (const toml::node& element : *array) {
-    if (const auto value = read_quantity(*node_, key, element, si_unit, {range, default_unit}))
-      values.push_back(*value);
+    // What is wrong with one value is recorded; one stands in its place, so that nobody says that there are too few.
+    values.push_back(
+        read_quantity(*node_, key, element, si_unit, {range, default_unit}).value_or(missing_value(range, {})));
   }
   return values;
 }

@@ -3,6 +3,11 @@
 // Pairs of one material and walls take the [contact] of the case, and so do unlike materials, but for the elastic
 // moduli, which combine: 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2, 1/G* = 2(2 - nu_1)(1 + nu_1)/E_1 + alike. What
 // case.pairs says of two names then goes before.
+//
+// Grains softer than the real ones attract less by (E / E_true)^(2/5), E_true = contact.true_young_modulus of every
+// grain. E is the modulus of a pair of two alike that is as stiff as this one:
+//   E = (q_1 + q_2) / (q_1 / E_1 + q_2 / E_2), q = 1 - nu^2,
+// the same in either order. A wall that is of no component is taken to be softened as the grain that it meets.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,12 +22,14 @@ constexpr double pi = std::numbers::pi;
 
 struct Elastic {
   double young_modulus, poisson_ratio;
+  double softened;  ///< Pa, stands against contact.true_young_modulus
   double flexible() const { return (1.0 - poisson_ratio * poisson_ratio) / young_modulus; }
   double shearing() const { return 2.0 * (2.0 - poisson_ratio) * (1.0 + poisson_ratio) / young_modulus; }
 };
 
 Elastic elastic(const Case& c, const Material& m) {
-  return {m.young_modulus.value_or(c.contact.young_modulus), m.poisson_ratio.value_or(c.contact.poisson_ratio)};
+  const double modulus = m.young_modulus.value_or(c.contact.young_modulus);
+  return {modulus, m.poisson_ratio.value_or(c.contact.poisson_ratio), modulus};
 }
 
 /// A wall is of the bed's component of that name, or has the walls' modulus, or that of the grain it meets.
@@ -31,7 +38,14 @@ Elastic elastic(const Case& c, const Material& grain, const BodyLabel& body) {
     if (k.material.name == body.material) return elastic(c, k.material);
   }
   const Elastic as_grain = elastic(c, grain);
-  return {c.contact.wall_young_modulus.value_or(as_grain.young_modulus), as_grain.poisson_ratio};
+  return {c.contact.wall_young_modulus.value_or(as_grain.young_modulus), as_grain.poisson_ratio, as_grain.softened};
+}
+
+/// Young's modulus of two alike that are as stiff as these two are together [Pa].
+double pair_modulus(const Elastic& a, const Elastic& b) {
+  if (a.softened == b.softened) return a.softened;
+  const double one = 1.0 - a.poisson_ratio * a.poisson_ratio, other = 1.0 - b.poisson_ratio * b.poisson_ratio;
+  return (one + other) / (one / a.softened + other / b.softened);
 }
 
 bool is(const BodyLabel& body, const std::string& name) {
@@ -91,7 +105,8 @@ PairCoefficients coefficients(const Case& c, const PairContact& its, const Meets
 
   double scaling = 1.0;
   if (!hertzian && k.true_stiffness) scaling = std::sqrt(p.stiffness / *k.true_stiffness);
-  if (hertzian && k.true_young_modulus) scaling = std::pow(m.first.young_modulus / *k.true_young_modulus, 0.4);
+  if (hertzian && k.true_young_modulus)
+    scaling = std::pow(pair_modulus(m.first, m.second) / *k.true_young_modulus, 0.4);
   p.adhesion = scaling * choose(its.work_of_adhesion, k.wall_work_of_adhesion, k.work_of_adhesion);
   if (k.normal == NormalLaw::jkr) {
     // The law knows no contact without adhesion: one that a sphere's weight exceeds a million times stands for it.

@@ -2,6 +2,7 @@
 
 #include <cvode/cvode.h>
 #include <fmt/format.h>
+#include <gsl/gsl_roots.h>
 #include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
@@ -9,6 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
 #include <stdexcept>
 
 namespace dem {
@@ -236,6 +240,37 @@ Impact make_impact(const ForcePass& laws, const Encounter& e) {
   return p;
 }
 
+/// A function for GSL that remembers its values: each is a collision, and Brent's method asks for its best again.
+struct Remembered {
+  std::function<double(double)> of;
+  std::map<double, double> values = {};
+  double operator()(double x) {
+    const auto [at, is_new] = values.try_emplace(x);
+    if (is_new) at->second = of(x);
+    return at->second;
+  }
+};
+
+/// Where f falls through zero between low and high, by Brent's method (R. Brent, Algorithms for Minimization Without
+/// Derivatives, 1973, ch. 4): until |f| < 1e-8, or nothing is left between the two ends. Where f has one sign, the end
+/// at which it is nearest to zero.
+double root_between(double low, double high, Remembered f) {
+  if (f(low) <= 0.0) return low;
+  if (f(high) >= 0.0) return high;
+  gsl_function function{[](double x, void* call) { return (*static_cast<Remembered*>(call))(x); }, &f};
+  const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
+      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+  gsl_root_fsolver_set(solver.get(), &function, low, high);
+  double x = low;
+  for (int k = 0; k < 100; ++k) {
+    gsl_root_fsolver_iterate(solver.get());
+    x = gsl_root_fsolver_root(solver.get());
+    const double left = gsl_root_fsolver_x_upper(solver.get()) - gsl_root_fsolver_x_lower(solver.get());
+    if (std::abs(f(x)) < 1e-8 || left < 1e-14 * high) break;
+  }
+  return x;
+}
+
 }  // namespace
 
 Collision collide(const ForcePass& laws, const Encounter& e) {
@@ -318,26 +353,9 @@ FoundDamping damping_for(const WantedRestitution& wanted, const BedCoefficients&
     if (found.collision.restitution > wanted.restitution - 1e-6) found.damping_ratio = 0.0;
     return found;
   }
-  // False position (Illinois), restarted by halves where the pair sticks and the restitution says no more.
-  double low = 0.0, high = 1.0;
-  double above = found.collision.restitution - wanted.restitution, below = with(high).restitution - wanted.restitution;
-  while (below > 0.0 && high < 1e3) below = with(high *= 2.0).restitution - wanted.restitution;
-  double zeta = 0.0;
-  for (int k = 0; k < 60; ++k) {
-    const bool stuck = below <= -wanted.restitution;
-    zeta = stuck ? 0.5 * (low + high) : (low * below - high * above) / (below - above);
-    const double miss = with(zeta).restitution - wanted.restitution;
-    if (std::abs(miss) < 1e-8) break;
-    if (miss > 0.0) {
-      low = zeta;
-      above = miss;
-      below *= stuck ? 1.0 : 0.5;
-    } else {
-      high = zeta;
-      below = miss;
-      above *= stuck ? 1.0 : 0.5;
-    }
-  }
+  double high = 1.0;
+  while (with(high).restitution > wanted.restitution && high < 1e3) high *= 2.0;
+  const double zeta = root_between(0.0, high, {[&](double x) { return with(x).restitution - wanted.restitution; }});
   found.damping_ratio = zeta;
   found.collision = with(zeta);
   return found;

@@ -15,6 +15,10 @@
 
 namespace dem {
 
+/// Volume of spheres / volume of the bed that they settle to, for estimates. It lies between random loose packing,
+/// 0.555 (G. Onoda & E. Liniger, Phys. Rev. Lett. 64:2727 (1990)), and random close packing, 0.64.
+inline constexpr double packing_fraction = 0.6;
+
 struct Packable {
   const FillRegion& region;
   Vec3 low, high;  ///< m, the box

@@ -137,8 +137,25 @@ void check_overlap(const Case& c, const Derived& d, Found& found) {
 
 /// Where no damping gives the restitution wanted at restitution_at.
 void check_restitution(const Case& c, const Derived& d, Found& found) {
+  if (!c.contact.restitution_at) return;
+  const BedCoefficients as_given = make_bed(c, body_labels(c));
   for (const ContactKind& kind : d.kinds) {
-    if (!kind.found || kind.found->damping_ratio) continue;
+    if (kind.found && kind.found->damping_ratio) {
+      const auto bodies = as_given.wall.size() / static_cast<std::size_t>(as_given.materials);
+      const PairCoefficients& given =
+          kind.wall ? as_given.wall[kind.material * bodies + kind.other]
+                    : as_given.grain[kind.material * static_cast<std::size_t>(as_given.materials) + kind.other];
+      const double wanted = restitution_of(given.damping_ratio), got = kind.found->collision.restitution;
+      if (std::abs(got - wanted) > 1e-5)
+        found.push_back(
+            {"contact.restitution_at",
+             fmt::format("is {:g} m/s, at which no damping of {} and {} was found for a restitution of {:g}: "
+                         "the nearest gives {:g}",
+                         *c.contact.restitution_at, kind.first, kind.second, wanted, got),
+             "change the speed or the restitution a little"});
+      continue;
+    }
+    if (!kind.found) continue;
     const Collision& undamped = kind.found->collision;
     found.push_back(
         {"contact.restitution_at",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "dem/grains.hpp"
 #include "dem/read_stl_rig.hpp"
@@ -45,11 +46,14 @@ void choose(const Section& s, std::string_view key, const std::vector<std::strin
 /// gets, and that turns it negative.
 void read_fill(const Section& s, Case& c) {
   const data::Unit count{.symbol = "spheres", .factor = -1.0, .offset = 0.0};
+  if (!s.has("fill")) return;
+  constexpr double unread = std::numeric_limits<double>::quiet_NaN();  // what is wrong with it is recorded already
   const double fill =
-      s.quantity("fill", "kg", {.low = -target("fill").high, .high = target("fill_mass").high}, 0.0, &count);
+      s.quantity("fill", "kg", {.low = -target("fill").high, .high = target("fill_mass").high}, unread, &count);
   const bool text = s.kind("fill") == data::ValueKind::text;
   const std::string written = text ? s.text("fill") : "";
   const bool negative = text ? written.find('-') == written.find_first_not_of(" \t") && !written.empty() : fill > 0.0;
+  if (std::isnan(fill)) return;
   if (negative) {
     s.problem("fill", "is negative", "give a number of spheres, or a mass with its unit, above 0");
   } else if (fill < 0.0) {
@@ -57,7 +61,7 @@ void read_fill(const Section& s, Case& c) {
     c.rig.fill_mass.reset();
   } else if (fill > 0.0) {
     c.rig.fill_mass = fill;
-  } else if (s.has("fill")) {
+  } else if (fill == 0.0) {
     s.problem("fill", "is zero", "give a number of spheres, or a mass with its unit");
   }
 }
@@ -276,6 +280,62 @@ void sort_out_pairs(const Section& root, Case& c) {
   });
 }
 
+/// Where the study says what a problem of the case is about: a section, and a key of it that may be missing.
+struct Blamed {
+  Section section;
+  std::string key;
+};
+
+/// Of "rig.mesh.NAME", "rig.KEY", "contact.KEY", "contact.A-B.KEY", "run.KEY", "material.KEY", "material(s).NAME.KEY".
+Blamed blamed_for(const Section& root, const std::string& material, const std::string& place) {
+  const std::size_t dot = std::min(place.find('.'), place.size()), last = place.rfind('.');
+  const std::string first = place.substr(0, dot), rest = dot < place.size() ? place.substr(dot + 1) : "";
+  const Section materials = root.child("materials"), rig = root.child("rig");
+  const Section own = materials.child(material);
+  if (first == "material" || first == "materials") {
+    const std::string name = rest.substr(0, rest.find('.'));
+    if (!materials.has(name)) return {own, rest};
+    return {materials.child(name), name.size() < rest.size() ? rest.substr(name.size() + 1) : ""};
+  }
+  if (first == "contact") {
+    const Section its = own.child("contact"), common = root.child("contact");
+    const std::string key = last > dot ? "pair" : rest;
+    return its.has(key) || (!common.has(key) && its.exists()) ? Blamed{its, key} : Blamed{common, key};
+  }
+  if (first == "run") return {root.child("run"), rest};
+  if (rest == "fill" || rest == "fill_mass") return {own.has("fill") ? own : rig, "fill"};
+  if (rest.starts_with("mesh.")) {
+    for (const Section& mesh : rig.array("mesh"))
+      if (mesh.name() == place) return {mesh, ""};
+  }
+  return {rig, rest};
+}
+
+/// Whether a problem was recorded in one of the sections: what follows from a value that was not read is no news.
+bool spoiled(const data::StudyFile& study, std::initializer_list<std::string_view> sections) {
+  const std::vector<data::Problem> recorded = study.recorded();
+  return std::any_of(recorded.begin(), recorded.end(), [&](const data::Problem& p) {
+    const std::size_t colon = p.place.rfind(": ");
+    const std::string key = colon == std::string::npos ? p.place : p.place.substr(colon + 2);
+    return std::any_of(sections.begin(), sections.end(), [&](std::string_view section) {
+      return key.starts_with(section) && (key.size() == section.size() || key[section.size()] == '.');
+    });
+  });
+}
+
+/// Problems that no single key is to blame for; single keys were checked as they were read. Each stands at the line of
+/// the key that it is about.
+void record_problems(const data::StudyFile& study, const Case& c) {
+  if (spoiled(study, {"rig", "materials"})) return;
+  const bool laws_read = !spoiled(study, {"contact", "run"});
+  const Section root = study.root();
+  for (const data::Problem& p : problems(c)) {
+    if (!laws_read && (p.place.starts_with("contact.") || p.place.starts_with("run."))) continue;
+    const Blamed blamed = blamed_for(root, c.material.name, p.place);
+    blamed.section.problem(blamed.key, p.what, p.remedy);
+  }
+}
+
 }  // namespace
 
 Case read_case(const data::StudyFile& study, std::string_view material) {
@@ -297,8 +357,7 @@ Case read_case(const data::StudyFile& study, std::string_view material) {
     if (name == material) c = other;
   }
   sort_out_pairs(root, c);
-  // An InputError for what no single key is to blame for; single keys were checked as they were read.
-  for (const data::Problem& p : problems(c)) root.child("rig").problem("", p.place + " " + p.what, p.remedy);
+  record_problems(study, c);
   return c;
 }
 

@@ -22,6 +22,7 @@ std::optional<Vec3> read_vector(const Section& s, std::string_view key, std::str
   if (!s.has(key)) return {};
   const std::vector<double> v = s.quantities(key, unit, data::any_number);
   if (v.size() == 3) return Vec3{v[0], v[1], v[2]};
+  if (s.kind(key) != data::ValueKind::other) return {};  // no list: recorded as such
   s.problem(key, fmt::format("has {} numbers", v.size()), "give three: x, y, z");
   return {};
 }

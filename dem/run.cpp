@@ -229,6 +229,11 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
     g.steps_per_second = static_cast<double>(g.steps) * static_cast<double>(d.spheres) / result.summary.cpu_seconds;
   }
   if (result.status == RunStatus::done) result.warnings = warnings_of(c, result.summary);
+  if (result.status == RunStatus::done && !now.series.torque.empty() && result.summary.mean.front().mean == 0.0) {
+    const std::vector<BodyLabel> labels = body_labels(c);
+    result.warnings.push_back(fmt::format("the torque is exactly 0: no sphere ever touched {}",
+                                          sensor.body < labels.size() ? labels[sensor.body].name : "a body"));
+  }
   if (g.deep_contacts > 0) {
     result.warnings.push_back(fmt::format(
         "{} contact-steps overlap by more than {:g} of a radius, half of run.overlap_limit (largest {:.3g}): raise {}",

@@ -1,6 +1,7 @@
 // A case as text, complete: what decides a run is in it.
 #include <fmt/format.h>
 
+#include "dem/drive.hpp"
 #include "dem/grains.hpp"
 #include "dem/rig.hpp"
 #include "dem/target.hpp"
@@ -10,6 +11,17 @@ namespace {
 
 /// Of the DEM's equations: raised where the same settings come to give other torques, so that runs are not mixed.
 constexpr int model = 2;
+
+/// Corrections that change the torques of few cases; theirs alone are run anew.
+std::vector<std::string> corrections(const Case& c) {
+  const Contact& k = c.contact;
+  std::vector<std::string> names;
+  if (k.restitution_at) names.push_back("restitution_at");  // damping by Brent's method
+  if (k.true_young_modulus && k.normal != NormalLaw::linear && c.components.size() > 1)
+    names.push_back("true_young_modulus");  // of unlike materials the same in either order
+  if (drive_sign_corrected(c)) names.push_back("torque_sign");
+  return names;
+}
 
 struct Text {
   std::string lines;
@@ -38,6 +50,7 @@ void add_sizes(const Material& m, Text& text) {
 std::string settings_text(const Case& c) {
   Text text{fmt::format("model = {}\nrig.kind = {}\n", model, c.rig.stl ? "stl" : "slice")};
   for (const std::string& name : quantities_of(c)) text.number(name, get_target(c, name), target(name).unit);
+  for (const std::string& name : corrections(c)) text.lines += fmt::format("model.{} = corrected\n", name);
   const Contact& k = c.contact;
   const RunControl& r = c.run;
   text.lines += rig_settings(c);

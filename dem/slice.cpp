@@ -111,11 +111,11 @@ Packing pack(const Case& c, std::uint64_t seed) {
     if (p.z < 0.0 ? rho > wall : std::abs(p.y) > wall) return false;
     if (rho < rig.shaft_radius + clear) return false;
     if (rho > rig.blade_radius + clear) return true;
-    // Distance along x to the helicoid's faces; the true distance is that times the cosine of the helix angle.
+    // Distance along x to the helicoid's faces; the true distance is that times the cosine of the helix angle, which
+    // is least at the shaft.
     const double turn = std::atan2(p.z, p.y) / (2.0 * pi) * rig.pitch;
     const double off = std::abs(std::remainder(p.x - turn, rig.pitch));
-    const double cosine =
-        std::min(rho, rig.shaft_radius) * 2.0 * pi / std::hypot(rig.pitch, 2.0 * pi * std::min(rho, rig.shaft_radius));
+    const double cosine = rig.shaft_radius * 2.0 * pi / std::hypot(rig.pitch, 2.0 * pi * rig.shaft_radius);
     return (off - 0.5 * rig.blade_thickness) * cosine > clear;
   };
   std::vector<Vec3> taken;
@@ -127,6 +127,14 @@ Packing pack(const Case& c, std::uint64_t seed) {
         const Vec3 p{(ix + 0.5) * dx, (iy - 0.5 * (ny - 1)) * step, z};
         if (free(p)) sites.push_back(p);
       }
+    }
+    // Above the blade one layer is like the next: where none has a free site, no packing ever ends.
+    if (sites.empty() && z > rig.blade_radius + clear) {
+      throw data::InputError(data::ExitStatus::bad_study,
+                             {"rig.trough_radius",
+                              fmt::format("is {:g} m, which leaves no place for a sphere of {:g} m between the walls",
+                                          rig.trough_radius, size),
+                              "make the trough wider, or the spheres smaller"});
     }
     // The last layer is thinned at random.
     for (std::size_t k = sites.size(); k > 1; --k)
@@ -142,6 +150,41 @@ Packing pack(const Case& c, std::uint64_t seed) {
     std::swap(taken[k - 1], taken[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
   packing.position = place(parcels, taken, size);
   return packing;
+}
+
+namespace {
+
+/// Area of a disc of this radius about the axis that lies below the height z [m2].
+double disc_below(double radius, double z) {
+  if (z <= -radius) return 0.0;
+  if (z >= radius) return pi * radius * radius;
+  return radius * radius * std::acos(-z / radius) + z * std::sqrt(radius * radius - z * z);
+}
+
+/// Area of the trough below z, less the mixer's mean over its length [m2].
+double room_below(const Rig& rig, double z) {
+  const double r = rig.trough_radius;
+  const double trough = z <= 0.0 ? disc_below(r, z) : 0.5 * pi * r * r + 2.0 * r * z;
+  const double shaft = disc_below(rig.shaft_radius, z);
+  const double blade = disc_below(rig.blade_radius, z) - shaft;
+  return trough - shaft - rig.blade_thickness / rig.pitch * blade;
+}
+
+}  // namespace
+
+SliceFill fill_of_slice(const Case& c) {
+  const Rig& rig = c.rig;
+  const double area = summarise_bed(c).volume / packing_fraction / (rig.pitches * rig.pitch);
+  double low = -rig.trough_radius, high = rig.blade_radius;
+  SliceFill fill{area / room_below(rig, high), 0.0};
+  while (room_below(rig, high) < area)
+    high += rig.trough_radius + 0.5 * (area - room_below(rig, high)) / rig.trough_radius;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (low + high);
+    (room_below(rig, middle) < area ? low : high) = middle;
+  }
+  fill.surface = high;
+  return fill;
 }
 
 BuiltRig build_slice(const Case& c, std::uint64_t seed) {
@@ -184,8 +227,24 @@ std::vector<data::Problem> slice_problems(const Case& c) {
     found.push_back({"rig.pitch", fmt::format("gives a periodic box of {:g} m, shorter than four spheres", length),
                      "raise pitches"});
   }
+  if (!(rig.trough_radius - rig.shaft_radius > size)) {
+    found.push_back({"rig.trough_radius",
+                     fmt::format("leaves {:.3g} m between trough and shaft, but the largest sphere is {:.3g} m wide",
+                                 rig.trough_radius - rig.shaft_radius, size),
+                     "make the trough wider, or the spheres smaller"});
+  }
   if (rig.angular_velocity == 0.0)
     found.push_back({"rig.rpm", "is zero: a mixer at rest has no torque to measure", "give a speed"});
+  if (!found.empty()) return found;
+  if (const SliceFill fill = fill_of_slice(c); fill.share > most_fill) {
+    const BedSummary bed = summarise_bed(c);
+    found.push_back({rig.fill_mass ? "rig.fill_mass" : "rig.fill",
+                     fmt::format("makes {} spheres, {:.3g} g, which fill the trough up to {:.3g} times the room below "
+                                 "the blade's top",
+                                 bed.spheres, 1e3 * bed.mass, fill.share),
+                     fmt::format("lower the fill to {:.2g} g, or check density, diameter and the slice's lengths",
+                                 1e3 * bed.mass / fill.share)});
+  }
   return found;
 }
 

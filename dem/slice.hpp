@@ -29,6 +29,15 @@ struct Packing {
 };
 Packing pack(const Case& c, std::uint64_t seed);
 
+/// How full the slice will be, the powder taken as a liquid of spheres packed to packing_fraction.
+struct SliceFill {
+  double share = 0.0;    ///< of the room below the blade's top that mixer and trough leave
+  double surface = 0.0;  ///< m above the axis
+};
+SliceFill fill_of_slice(const Case& c);
+/// A slice fuller than this many times that room is refused: the mixer would turn deep under the powder.
+inline constexpr double most_fill = 2.0;
+
 /// Indices of the bodies in the rig made by build_slice.
 inline constexpr std::size_t mixer = 0, trough = 1;
 

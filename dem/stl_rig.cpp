@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "dem/drive.hpp"
 #include "dem/packing.hpp"
 #include "dem/rig.hpp"
 
@@ -65,7 +66,7 @@ void fill(const Case& c, std::uint64_t seed, BuiltRig& built) {
 
 void check_mesh_in_box(const RigMesh& m, const Case& c, std::vector<data::Problem>& found) {
   const StlRig& rig = *c.rig.stl;
-  const std::string place = fmt::format("rig.mesh {}", m.name);
+  const std::string place = fmt::format("rig.mesh.{}", m.name);
   Vec3 low = m.mesh.vertices.at(0), high = low;
   for (const Vec3 v : m.mesh.vertices) {
     low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
@@ -91,7 +92,7 @@ void check_mesh_in_box(const RigMesh& m, const Case& c, std::vector<data::Proble
 
 void check_motion(const RigMesh& m, const Case& c, std::vector<data::Problem>& found) {
   const StlRig& rig = *c.rig.stl;
-  const std::string place = fmt::format("rig.mesh {}", m.name);
+  const std::string place = fmt::format("rig.mesh.{}", m.name);
   const Motion motion = motion_of(m, c.rig.angular_velocity);
   for (std::size_t a = 0; a < 3; ++a) {
     if (!rig.periodic[a]) continue;
@@ -175,8 +176,7 @@ BuiltRig build_stl_rig(const Case& c, std::uint64_t seed) {
   }
   const Motion measured = built.bodies.empty() ? Motion{} : built.bodies[rig.measured].motion;
   const Vec3 axis = measured.axis, size = rig.high - rig.low;
-  const double way = programme_speed(measured, std::numeric_limits<double>::max()) > 0.0 ? -1.0 : 1.0;
-  built.sensor = {rig.measured, way * axis, axis,
+  built.sensor = {rig.measured, drive_sign(measured, c.run) * axis, axis,
                   std::abs(axis.x) * size.x + std::abs(axis.y) * size.y + std::abs(axis.z) * size.z, period(measured)};
   return built;
 }

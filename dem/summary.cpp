@@ -131,7 +131,6 @@ std::vector<std::string> warnings_of(const Case& c, const Summary& summary) {
     warnings.push_back(
         fmt::format("the mean torque is known to {:.2g} %, where {:.2g} % were wanted: raise run.longest",
                     100.0 * error, 100.0 * c.run.standard_error));
-  if (torque.mean == 0.0) warnings.push_back("the torque is exactly 0: nothing touches what is measured");
   if (!summary.ordering.empty())
     warnings.push_back(summary.ordering + (summarise_bed(c).equal
                                                ? "; equal spheres do: give sizes that differ by a tenth"

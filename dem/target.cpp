@@ -177,6 +177,20 @@ std::optional<Names> split(const Case& c, std::string_view between) {
   return {};
 }
 
+/// Whether what is said of p's two names holds for every contact that `names` stands for. "wall" stands for all
+/// bodies, a body's material for those made of it.
+bool holds_for(const Case& c, const PairContact& p, const Names& names) {
+  const std::vector<BodyLabel> bodies = body_labels(c);
+  const auto covers = [&](const std::string& said, const std::string& asked) {
+    return said == asked || std::any_of(bodies.begin(), bodies.end(), [&](const BodyLabel& b) {
+             return (b.name == asked && (said == b.material || said == "wall")) ||
+                    (b.material == asked && said == "wall");
+           });
+  };
+  return (covers(p.first, names.first) && covers(p.second, names.second)) ||
+         (covers(p.first, names.second) && covers(p.second, names.first));
+}
+
 bool same(const PairContact& p, const Names& names) {
   return (p.first == names.first && p.second == names.second) || (p.first == names.second && p.second == names.first);
 }
@@ -187,13 +201,20 @@ Binding of_pair(const Target& usual, std::string_view between, const PairKey& ke
   Target t = usual;
   t.name = fmt::format("contact.{}.{}", pair, key.key);
   t.meaning += fmt::format(", between {}", pair);
-  const auto get = [=](const Case& c) {
+  // What is not said of the pair follows the contact law's, at a wall the wall's, as the coefficients do (bed.cpp).
+  const auto get = [=, wall_key = fmt::format("contact.wall_{}", key.key)](const Case& c) {
+    const std::optional<Names> names = split(c, pair);
+    if (!names) return get_target(c, follows);
     std::optional<double> value;
-    if (const std::optional<Names> names = split(c, pair)) {
-      for (const PairContact& p : c.pairs)
-        if (same(p, *names) && p.*field) value = *(p.*field);
-    }
-    return value ? *value : get_target(c, follows);
+    for (const PairContact& p : c.pairs)
+      if (holds_for(c, p, *names) && p.*field) value = *(p.*field);
+    if (value) return *value;
+    const std::vector<std::string> grains = grain_names(c);
+    const auto grain = [&](const std::string& name) {
+      return std::find(grains.begin(), grains.end(), name) != grains.end();
+    };
+    const bool wall = !grain(names->first) || !grain(names->second);
+    return get_target(c, wall && find_target(wall_key) ? wall_key : follows);
   };
   const auto set = [=](Case& c, double x) {
     const Names names = split(c, pair).value();

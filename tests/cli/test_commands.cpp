@@ -97,7 +97,7 @@ TEST_CASE("training runs are interrupted, go on where they were, and give the ta
   const Folder whole, halted;
   const std::vector<std::string> arguments{"train",  study,
                                            "--runs", "3",
-                                           "--set",  "rig.fill=60",
+                                           "--set",  "rig.fill=200",
                                            "--set",  "run.longest=\"0.4 s\"",
                                            "--set",  "training.unsteady=\"use\""};
   CHECK(whole.demcal(arguments).status == 0);

@@ -301,7 +301,8 @@ TEST_CASE("rows of other settings stay in the table, and runs of other points st
   const Folder folder;
   const auto train = [&](const std::string& restitution, const char* runs) {
     return folder.demcal({"train", DEMCAL_SOURCE_DIR "/data/quick", "--runs", runs, "--set", "rig.fill=60", "--set",
-                          "run.longest=\"0.3 s\"", "--set", "contact.restitution=" + restitution, "--out", "o"});
+                          "run.longest=\"0.3 s\"", "--set", "training.unsteady=\"use\"", "--set",
+                          "contact.restitution=" + restitution, "--out", "o"});
   };
   const auto rows = [&] {
     return data::open_hdf5((folder.path / "o/training.h5").string()).group("runs").read_texts("settings");
@@ -329,7 +330,7 @@ TEST_CASE("rows of other settings stay in the table, and runs of other points st
   };
   simulate("100");
   const auto other = simulate("200");
-  CHECK_THAT(other.err, Contains("run.h5 was a run at another point"));
+  CHECK_THAT(other.err, Contains("run.h5 holds another run and is kept"));
   CHECK(names_in(folder.path / "s").size() == 2);
 }
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "data/error.hpp"
@@ -263,4 +264,86 @@ TEST_CASE("a stiffness that the fill or the attraction presses flat is refused w
   c.contact.stiffness = std::stod(text.substr(text.find("raise it to") + 12));
   c.contact.stiffness *= 1.01;  // the message rounds
   CHECK(said(c).empty());
+}
+
+TEST_CASE("what two materials do to each other is the same in either order, in every field") {
+  dem::Case c = sand_and_steel();
+  c.components[0].material.young_modulus = 5e6;
+  c.components[1].material.young_modulus = 5e7;
+  c.components[0].material.poisson_ratio = 0.2;
+  c.components[1].material.poisson_ratio = 0.35;
+  c.contact.true_young_modulus = 1e9;
+  c.contact.work_of_adhesion = 0.05;
+  c.contact.hamaker = 4e-18;
+  const auto normal = GENERATE(dem::NormalLaw::linear, dem::NormalLaw::hertz, dem::NormalLaw::jkr);
+  c.contact.normal = normal;
+  c.contact.cohesion = GENERATE(dem::Cohesion::van_der_waals, dem::Cohesion::dmt);
+  dem::PairContact own;
+  own.first = "steel";
+  own.second = "sand";
+  own.friction = 0.7;
+  own.restitution = 0.4;
+  c.pairs = {own};
+  const dem::BedCoefficients bed = dem::make_bed(c, 1);
+  const dem::PairCoefficients &ab = bed.grain[1], &ba = bed.grain[2];
+  CHECK(ab.stiffness == ba.stiffness);
+  CHECK(ab.young_modulus == ba.young_modulus);
+  CHECK(ab.shear_modulus == ba.shear_modulus);
+  CHECK(ab.damping_ratio == ba.damping_ratio);
+  CHECK(ab.tension == ba.tension);
+  CHECK(ab.tangential_stiffness == ba.tangential_stiffness);
+  CHECK(ab.tangential_damping == ba.tangential_damping);
+  CHECK(ab.friction == ba.friction);
+  CHECK(ab.cap_weight == ba.cap_weight);
+  CHECK(ab.rolling_friction == ba.rolling_friction);
+  CHECK(ab.twisting_friction == ba.twisting_friction);
+  CHECK(ab.rolling_damping == ba.rolling_damping);
+  CHECK(ab.rolling_stiffness == ba.rolling_stiffness);
+  CHECK(ab.adhesion == ba.adhesion);
+  CHECK(ab.pull_off == ba.pull_off);
+  CHECK(ab.minimum_separation == ba.minimum_separation);
+  CHECK(ab.cut_off == ba.cut_off);
+}
+
+TEST_CASE(
+    "attraction is scaled by the pair's effective modulus: between that of either alone, and theirs where alike") {
+  dem::Case c = sand_and_steel();
+  c.contact.normal = dem::NormalLaw::hertz;
+  c.contact.cohesion = dem::Cohesion::dmt;
+  c.contact.work_of_adhesion = 0.05;
+  c.contact.true_young_modulus = 1e9;
+  c.components[0].material.young_modulus = 5e6;
+  c.components[1].material.young_modulus = 5e7;
+  const dem::BedCoefficients bed = dem::make_bed(c, 1);
+  const auto scaling = [&](std::size_t k) { return bed.grain[k].pull_off / (2.0 * pi * 0.05); };
+  CHECK(scaling(0) == Approx(std::pow(5e6 / 1e9, 0.4)));
+  CHECK(scaling(3) == Approx(std::pow(5e7 / 1e9, 0.4)));
+  // E* of the pair over E* of two real grains: Poisson's ratios are alike here and fall out.
+  const double alike = 1.0 / (2.0 * (1.0 - 0.25 * 0.25) / 1e9);
+  CHECK(scaling(1) == Approx(std::pow(bed.grain[1].young_modulus / alike, 0.4)));
+  // A wall is softened as the grain that it meets, also where it stays rigid.
+  CHECK(bed.wall[1].pull_off / (2.0 * pi * 0.05) == Approx(scaling(3)));
+  c.contact.wall_young_modulus = std::numeric_limits<double>::infinity();
+  CHECK(dem::make_bed(c, 1).wall[1].pull_off == bed.wall[1].pull_off);
+}
+
+TEST_CASE("a pair with a wall follows what is said of the wall, as the coefficients do") {
+  dem::Case c = sand_and_steel();
+  c.contact.friction = 0.3;
+  c.contact.wall_friction = 0.1;
+  const auto friction = [&](const char* pair) {
+    return dem::get_target(c, std::string("contact.") + pair + ".friction");
+  };
+  CHECK(friction("sand-wall") == 0.1);
+  CHECK(friction("mixer-sand") == 0.1);
+  CHECK(friction("sand-steel") == 0.3);
+  CHECK(friction("sand-wall") == dem::derive(c).bed.wall[0].friction);
+  dem::set_target(c, "contact.sand-wall.friction", 0.6);
+  CHECK(friction("sand-mixer") == 0.6);  // what holds at every wall holds at this one
+  CHECK(friction("steel-mixer") == 0.1);
+  dem::set_target(c, "contact.sand-mixer.friction", 0.7);
+  CHECK(friction("sand-mixer") == 0.7);
+  CHECK(friction("sand-wall") == 0.6);
+  CHECK(friction("sand-mixer") == dem::derive(c).bed.wall[0].friction);
+  CHECK(friction("sand-trough") == dem::derive(c).bed.wall[1].friction);
 }

@@ -90,3 +90,25 @@ TEST_CASE("the time step follows the dashpot that a low restitution with clamped
   CHECK(2.0 * k.law.damping_ratio * std::sqrt(k.law.stiffness / k.mass) * d.time_step < 0.2);
   CHECK(simulated_restitution(c, 0.1) == Approx(0.05).margin(0.01));
 }
+
+TEST_CASE("the damping sought is found to within CVODE's tolerance, over restitutions, speeds and laws") {
+  dem::Case c;
+  for (const auto normal : {dem::NormalLaw::linear, dem::NormalLaw::hertz}) {
+    c.contact.normal = normal;
+    c.contact.cohesion = normal == dem::NormalLaw::linear ? dem::Cohesion::van_der_waals : dem::Cohesion::dmt;
+    c.contact.hamaker = normal == dem::NormalLaw::linear ? 4e-18 : 0.0;
+    c.contact.work_of_adhesion = normal == dem::NormalLaw::linear ? 0.0 : 0.02;
+    for (const double e : {0.1, 0.5, 0.9}) {
+      for (const double speed : {0.08, 0.4}) {
+        c.contact.restitution = e;
+        c.contact.restitution_at = speed;
+        for (const dem::ContactKind& kind : dem::derive(c).kinds) {
+          CAPTURE(e, speed, kind.second);
+          REQUIRE(kind.found);
+          if (!kind.found->damping_ratio) continue;  // the attraction alone takes more
+          CHECK(std::abs(kind.found->collision.restitution - e) < 2e-8);
+        }
+      }
+    }
+  }
+}

@@ -209,11 +209,11 @@ TEST_CASE("what is wrong with a rig from STL is named with its place, value and 
   };
   CHECK(said(folder, rig + rest) == "");
   CHECK_THAT(with("mixer.stl", "shaft.stl"), Contains("shaft.stl") && Contains("no such file"));
-  CHECK_THAT(with("unit = \"m\"", "unit = \"mm\""), Contains("rig.mesh mixer") && Contains("smaller than a sphere"));
+  CHECK_THAT(with("unit = \"m\"", "unit = \"mm\""), Contains("rig.mesh.mixer") && Contains("smaller than a sphere"));
   CHECK_THAT(with("unit = \"m\"", "unit = \"kg\""), Contains("'kg' is not a length"));
   CHECK_THAT(with("unit = \"m\"", ""), Contains("unit") && Contains("missing"));
   CHECK_THAT(with("\"12 mm\", \"7.1 mm\", \"60 mm\"", "\"6.5 mm\", \"7.1 mm\", \"60 mm\""),
-             Contains("rig.mesh mixer") && Contains("along x") && Contains("beyond the box"));
+             Contains("rig.mesh.mixer") && Contains("along x") && Contains("beyond the box"));
   CHECK_THAT(with("speed_ratio = 1", "speed_ratio = 1\naxis = [0, 0, 1]"), Contains("periodic"));
   CHECK_THAT(with("speed_ratio = 1", "speed_ratio = 1\nrpm = \"3 rpm\""), Contains("more than one"));
   CHECK_THAT(with("speed_ratio = 1", "axis = [0, 0, 0]"), Contains("is no direction"));
@@ -227,4 +227,16 @@ TEST_CASE("what is wrong with a rig from STL is named with its place, value and 
   folder.write("mixer.stl", "solid broken\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n");
   const std::string both = with("periodic = [\"x\"]", "periodic = [\"w\"]");
   CHECK_THAT(both, Contains("mixer.stl:4") && Contains("'w' is no axis"));
+}
+
+TEST_CASE("a value that was not read makes no second, false problem") {
+  using Catch::Contains;
+  const SliceFolder folder;
+  const std::string point = said(folder, replaced(rig, "speed_ratio = 1", "speed_ratio = 1\npoint = [0, 0, 0]") + rest);
+  CHECK_THAT(point, Contains("0 has no unit") && !Contains("numbers"));
+  const std::string fill = said(folder, replaced(rig, "fill = 400", "fill = \"50 %\"") + rest);
+  CHECK_THAT(fill, Contains("rig.fill") && !Contains("is zero"));
+  CHECK_THAT(said(folder, replaced(rig, "fill = 400", "fill = 0") + rest), Contains("is zero"));
+  const std::string none = said(folder, replaced(rig, "speed_ratio = 1", "speed_ratio = 1\npoint = []") + rest);
+  CHECK_THAT(none, Contains("has 0 numbers"));
 }

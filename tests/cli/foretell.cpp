@@ -1,0 +1,145 @@
+// What check, simulate and train say of a rig before anything runs, on rigs that are nonsense in one way each.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+using Catch::Contains;
+using test::Folder;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string cases = DEMCAL_SOURCE_DIR "/tests/cli/cases/";
+const std::string quick = DEMCAL_SOURCE_DIR "/data/quick";
+
+test::Outcome check(const Folder& folder, const std::string& study, const std::vector<std::string>& set = {}) {
+  std::vector<std::string> words{"check", study};
+  for (const std::string& one : set) words.insert(words.end(), {"--set", one});
+  return folder.demcal(words);
+}
+
+}  // namespace
+
+TEST_CASE("rigs whose runs would be nonsense are refused by check and by simulate, with place, value and remedy") {
+  const Folder folder;
+  const std::vector<std::pair<std::string, std::vector<std::string>>> wrong{
+      {"paddle-above-bed", {"rig.mesh.paddle", "never touches the powder", "raise the fill"}},
+      {"axis-elsewhere", {"rig.mesh.paddle", "leaves the box as it turns", "give rig.mesh.paddle.point"}},
+      {"fill-outside", {"rig.region", "no wall is under them", "inside the vessel"}}};
+  for (const auto& [name, words] : wrong) {
+    for (const char* command : {"check", "simulate"}) {
+      const auto outcome = folder.demcal({command, cases + name});
+      INFO(name << ": " << outcome.err);
+      CHECK(outcome.status == 78);
+      for (const std::string& word : words) CHECK_THAT(outcome.err, Contains(word));
+    }
+  }
+  CHECK(folder.demcal({"train", cases + "paddle-above-bed"}).status == 78);
+}
+
+TEST_CASE("the same rigs put right are not refused") {
+  const Folder folder;
+  const auto fuller = check(folder, cases + "paddle-above-bed", {"rig.fill=3000"});
+  INFO(fuller.err);
+  CHECK((fuller.status == 0 || fuller.status == 2));
+  const auto turned = check(folder, cases + "axis-elsewhere", {R"(rig.mesh.paddle.point=["40 mm", "25 mm", "0 mm"])"});
+  INFO(turned.err);
+  CHECK_THAT(turned.err, !Contains("leaves the box"));
+  const auto inside =
+      check(folder, cases + "fill-outside",
+            {R"(rig.region={ from = ["0 mm", "0 mm", "0 mm"], to = ["20 mm", "0 mm", "0 mm"], radius = "11 mm" })"});
+  INFO(inside.err);
+  CHECK((inside.status == 0 || inside.status == 2));
+}
+
+TEST_CASE("check says how many spheres, their fill, gaps, Bond number, time step, memory and time, also as JSON") {
+  const Folder folder;
+  const auto outcome = folder.demcal({"check", quick, "--json"});
+  INFO(outcome.err);
+  for (const char* word : {"420 spheres", "fill: ", "gap between blade and trough: 2.4 mm, 3 of the largest sphere",
+                           "Bond number", "time step", "MB", "24 runs are missing", "measured on this machine"})
+    CHECK_THAT(outcome.err, Contains(word));
+  const nlohmann::json one = nlohmann::json::parse(outcome.out)["materials"][0];
+  CHECK(one["spheres"] == 420);
+  CHECK(one["missing_runs"] == 24);
+  CHECK(one["fill"].get<double>() > 0.2);
+  CHECK(one["fill"].get<double>() < 1.0);
+  CHECK(one["cpu_seconds_at_most"].get<double>() ==
+        Approx(one["steps"].get<double>() * 420 / one["particle_steps_per_second"].get<double>()));
+}
+
+TEST_CASE("a slice's nonsense is refused or warned of") {
+  const Folder folder;
+  const auto refused = [&](std::vector<std::string> set) {
+    const auto outcome = check(folder, quick, set);
+    INFO(outcome.err);
+    CHECK(outcome.status == 78);
+    return outcome.err;
+  };
+  CHECK_THAT(refused({"rig.fill=\"60 g\""}), Contains("study.toml:15: rig.fill") || Contains("--set"));
+  CHECK_THAT(refused({"rig.fill=\"0.7 g\"", "materials.powder.density=\"2.5 kg/m3\""}), Contains("blade's top"));
+  CHECK_THAT(refused({"rig.trough_radius=\"0.3 mm\"", "rig.blade_radius=\"0.2 mm\"", "rig.shaft_radius=\"0.1 mm\""}),
+             Contains("rig.trough_radius"));
+  CHECK_THAT(refused({"rig.fill=40"}), Contains("never touches the powder"));
+  const auto narrow = check(folder, quick, {"rig.trough_radius=\"4 mm\"", "rig.fill=200"});
+  INFO(narrow.err);
+  CHECK(narrow.status == 2);
+  CHECK_THAT(narrow.err, Contains("the gap between blade and trough is 0.4 mm, 0.5 of the largest sphere"));
+  const auto light = check(folder, quick, {"materials.powder.density=\"2.5 kg/m3\""});
+  CHECK(light.status == 2);
+  CHECK_THAT(light.err, Contains("2.5 g/cm3"));
+}
+
+TEST_CASE("a problem of the whole case stands at its key's line, and a value that was not read makes no second one") {
+  const Folder folder;
+  folder.study("quick");
+  folder.replace("study/study.toml", "stiffness = \"300 N/m\"", "stiffness = \"0.01 N/m\"");
+  const auto soft = folder.demcal({"check", "study"});
+  CHECK(soft.status == 78);
+  CHECK_THAT(soft.err, Contains("study.toml:23: contact.stiffness: lets"));
+  folder.replace("study/study.toml", "fill = 420", "fill = \"50 %\"");
+  const auto fill = folder.demcal({"check", "study"});
+  CHECK(fill.status == 78);
+  CHECK_THAT(fill.err, Contains("rig.fill") && !Contains("is zero") && !Contains("contact.stiffness"));
+}
+
+TEST_CASE("simulate says where the study has no runs, keeps another point's file, and goes back to it") {
+  const Folder folder;
+  const std::vector<std::string> few{"--set", "run.start_up=\"0.004 s\"", "--set", "run.shortest=\"0.008 s\"",
+                                     "--set", "run.shortest_turns=0",     "--set", "run.longest=\"0.01 s\""};
+  const auto simulate = [&](const std::string& at) {
+    std::vector<std::string> words{"simulate", quick, "--out", "out", "--json", "--at", at};
+    words.insert(words.end(), few.begin(), few.end());
+    const auto outcome = folder.demcal(words);
+    INFO(outcome.err);
+    REQUIRE((outcome.status == 0 || outcome.status == 2));
+    return std::pair{nlohmann::json::parse(outcome.out), outcome.err};
+  };
+  const auto first = simulate("rpm=100");
+  CHECK(first.first["notes"].empty());
+  const std::string kept = folder.read("out/run.h5");
+  const auto beyond = simulate("rpm=900");
+  CHECK_THAT(beyond.second, Contains("rpm 900 rpm lies outside the study's range, 50 rpm to 300 rpm"));
+  CHECK_THAT(beyond.second, Contains("run.h5 holds another run and is kept"));
+  CHECK(folder.read("out/run.h5") == kept);
+  CHECK(fs::exists(fs::path(beyond.first["file"].get<std::string>())));
+  CHECK(simulate("rpm=900").first["outputs"] == beyond.first["outputs"]);
+  CHECK(simulate("rpm=100").first["outputs"] == first.first["outputs"]);
+  folder.write("out/run.h5", "not a run");
+  simulate("rpm=100");
+  CHECK(folder.read("out/run.h5") == "not a run");
+}
+
+TEST_CASE("a torque that is exactly 0 is said, with status 2") {
+  const Folder folder;
+  // The mixer turns over powder that it reaches only with its lowest sphere's width: for so short a time it touches
+  // none.
+  const auto outcome = folder.demcal({"simulate", quick, "--set", "rig.fill=130", "--set", "run.settle=\"0.02 s\"",
+                                      "--set", "run.start_up=\"1 ms\"", "--set", "run.shortest=\"2 ms\"", "--set",
+                                      "run.shortest_turns=0", "--set", "run.longest=\"4 ms\""});
+  INFO(outcome.err);
+  CHECK(outcome.status == 2);
+  CHECK_THAT(outcome.err, Contains("warning: the torque is exactly 0: no sphere ever touched mixer"));
+}
