@@ -11,7 +11,6 @@
 #include "data/hash.hpp"
 #include "data/hash.hpp"
 #include "data/interrupt.hpp"
-#include "data/origin.hpp"
 #include "data/progress.hpp"
 #include "dem/rig.hpp"
 #include "dem/run_file.hpp"

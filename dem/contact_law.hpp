@@ -12,7 +12,7 @@
 // normal      linear: N = k delta - c u_n, c = 2 zeta sqrt(k m*), zeta = -ln e / sqrt(pi^2 + ln^2 e).
 //             Hertz: N = 4/3 E* sqrt(R*) delta^(3/2) - c u_n, c = 2 sqrt(5/6) zeta sqrt(S m*), S = 2 E* a, a =
 //             sqrt(R* delta); Y. Tsuji et al., Powder Technol. 71:239 (1992); that this zeta gives the restitution e at
-//             every speed is T. Antypov & J. Elliott, EPL 94:50004 (2011).
+//             every speed is D. Antypov & J. Elliott, EPL 94:50004 (2011).
 //             JKR: K. Johnson, K. Kendall, A. Roberts, Proc. R. Soc. A 324:301 (1971), in terms of y = sqrt(a/a0),
 //             a0 = (9 pi w R*^2 / 2 E*)^(1/3), w the work of adhesion [J/m2]:
 //             delta = (a0^2 / R*) (y^4 - 2/3 y), force = 6 pi w R* (y^6 - y^3); made at delta = 0, broken at the
@@ -143,14 +143,20 @@ struct JkrNormal {
     C scale;     // m, a0^2 / R*
     C a0;        // m
     C pull_off;  // N, 3/2 pi w R*
+    /// y of y^4 - 2/3 y = d on the upper branch. At break-off, y = b, the root is double, where Newton's method creeps.
+    /// With y = b + e the quartic is e^2 (6 b^2 + 4 b e + e^2) = d - d(b). The root of both sides, e s(e) =
+    /// sqrt(d - d(b)), s = sqrt(6 b^2 + 4 b e + e^2), is convex and has no double root: four steps of Newton from above
+    /// leave rounding at any d.
     template <class T>
-    static T root(T d) {  // y of y^4 - 2/3 y = d, the upper branch: Newton from above, where the function is convex
-      T y = square_root(square_root(larger(d, T(0.0)))) + 0.874;  // y(0) = (2/3)^(1/3)
-      for (int k = 0; k < 9; ++k) {
-        const T y3 = y * y * y;
-        y = larger(T(y - (y3 * y - 2.0 / 3.0 * y - d) / (4.0 * y3 - 2.0 / 3.0)), T(break_root));
+    static T root(T d) {
+      constexpr double b = break_root;
+      const T rest = square_root(larger(T(d + 0.5 * b), T(0.0)));
+      T e = smaller(T(rest / (b * std::numbers::sqrt2 * std::numbers::sqrt3)), square_root(rest));
+      for (int k = 0; k < 4; ++k) {
+        const T s = square_root(T(6.0 * b * b + (4.0 * b + e) * e));
+        e = e - (e * s - rest) * s / (6.0 * b * b + (6.0 * b + 2.0 * e) * e);
       }
-      return y;
+      return b + e;
     }
     template <class T>
     NormalForce<T> operator()(T overlap, T normal_velocity, T radius_before) const {
