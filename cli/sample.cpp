@@ -6,6 +6,7 @@
 
 #include "cli/calibration.hpp"
 #include "data/atomic_file.hpp"
+#include "data/random.hpp"
 #include "uq/posterior_nc.hpp"
 #include "uq/report_gnuplot.hpp"
 #include "uq/report_text.hpp"
@@ -32,9 +33,11 @@ data::ExitStatus check_width(const Common& common, const Workspace& workspace,
     uq::SimulationCalibration found;
     {
       JobProgress progress(common, "simulating " + model.name);
-      found = uq::simulate_calibration(model, {.replicates = replicates,
-                                               .seed = workspace.study.seed,
-                                               .progress = [&](double share) { progress("", share); }});
+      found = uq::simulate_calibration(
+          model, {.replicates = replicates,
+                  .seed = data::child_seed(workspace.study.seed, data::Purpose::simulation_case_seed,
+                                           static_cast<std::uint32_t>(i)),
+                  .progress = [&](double share) { progress("", share); }});
     }
     const std::string path = (out / ("sbc-" + model.name + ".json")).string();
     data::write_atomically(path, uq::to_json_text(found));

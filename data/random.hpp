@@ -10,17 +10,39 @@
 
 namespace data {
 
-/// What a stream is drawn for; two purposes never share numbers under one seed.
+/// What a stream is drawn for; two purposes never share numbers under one seed. Each stands in the code at one place
+/// per index (a test sees to it), so no two uses draw the same numbers.
 enum class Purpose : std::uint32_t {
   packing = 1,
   run = 2,
   measurement_noise = 3,
   design_scramble = 4,
   optimiser_starts = 5,
-  sampler = 6,
-  posterior_predictive = 7,
-  prior_predictive = 8,
+  sampler = 6,               ///< chains of the mixture sampler
+  posterior_predictive = 7,  ///< replicate data
+  prior_predictive = 8,      ///< are the data within the priors' reach?
   test = 9,
+  nuts = 10,               ///< its chains
+  cut = 11,                ///< chains of a cut posterior
+  scouts = 12,             ///< reference draws in which maxima are looked for
+  proposal = 13,           ///< adaptation of the mixture sampler's proposals
+  search_directions = 14,  ///< in which scouts are compared
+  predictive_curve = 15,
+  discrepancy_band = 16,
+  sobol = 17,                 ///< surrogates drawn for sensitivities
+  contradiction = 18,         ///< starts of each observation set's own fit
+  rank_bands = 19,            ///< of simulation-based calibration
+  simulated_truth = 20,       ///< of simulation-based calibration
+  case_seed = 21,             ///< child_seed of a case's sampler
+  error_scan_seed = 22,       ///< child_seed of the samplers of an error scan
+  comparison_seed = 23,       ///< child_seed of the sampler of a held model
+  simulation_seed = 24,       ///< child_seed of a replicate's sampler
+  surrogate_part = 25,        ///< surrogates drawn for the error of a Bayes factor
+  second_check = 26,          ///< of draws by NUTS
+  shuffled_points = 29,       ///< beside which a cloud of points is thin
+  repeated_data = 30,         ///< for the probabilities of words
+  report_seed = 28,           ///< child_seed of what a case's report draws
+  simulation_case_seed = 27,  ///< child_seed of a case's simulation-based calibration
 };
 
 /// Philox4x32-10: four 32-bit words from a 128-bit counter and a 64-bit key.
@@ -88,5 +110,10 @@ class RandomStream {
   double spare_ = 0.0;
   bool has_spare_ = false;
 };
+
+/// A seed of its own for the index-th of many jobs, each of which draws streams as if it were alone.
+inline std::uint64_t child_seed(std::uint64_t seed, Purpose purpose, std::uint32_t index) {
+  return RandomStream(seed, purpose, index)();
+}
 
 }  // namespace data

@@ -68,11 +68,13 @@ Parameter read_unknown(const Section& section, const std::string& name, const Un
     prior.high = parameter.high;
     return parameter;
   }
-  // First the numbers, which tell the range; then the prior is cut to it.
+  // First the numbers, which tell the range. The prior is cut to it; a beta's ends are part of its law and stay, and
+  // what lies outside the range has no mass.
   parameter.low = -INFINITY;
   parameter.high = INFINITY;
   prior = read_prior(section, parameter, PriorOf::case_);
   find_range(section, parameter, usual);
+  if (prior.kind == PriorKind::beta) return parameter;
   prior.low = std::max(prior.low, parameter.low);
   prior.high = std::min(prior.high, parameter.high);
   return parameter;

@@ -9,6 +9,7 @@
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "uq/build_measurement.hpp"
+#include "uq/distinct.hpp"
 #include "uq/linked_cases.hpp"
 
 namespace uq {
@@ -61,6 +62,9 @@ class Builder {
       for (auto& part : group.measurement.discrepancies)
         part.magnitude = std::sqrt(group.observed.segment(part.first, part.count).array().square().mean());
     }
+    pool_rows(model);
+    check_settings(model);
+    stop_on_problems();
     return model;
   }
 
@@ -361,6 +365,21 @@ class Builder {
                 lines.size(), set.points.size(), control.name, control.unit.from_si(low), control.unit.from_si(high),
                 control.unit.symbol, control.unit.from_si(range.first), control.unit.symbol, control.name),
             "leave the points out, or add runs at other values");
+  }
+
+  /// Each evaluation costs the cube of the number of settings.
+  void check_settings(const CaseModel& model) {
+    for (const RowGroup& group : distinct_rows(model).groups) {
+      if (group.base.rows() <= settings_max) continue;
+      const data::ObservationSet& set = study_.observations[group.origin.front().set];
+      throw data::InputError(
+          ExitStatus::bad_data,
+          {set.file,
+           fmt::format("case '{}' has measurements of {} at {} different settings; above {} a calibration takes hours",
+                       wanted_.name, study_.outputs[group.emulator.output].name, group.base.rows(), settings_max),
+           "average them to a row per setting with its standard error (demcal observe), or round the settings: rows at "
+           "exactly the same settings count as one"});
+    }
   }
 
   void check_slots_used(const CaseModel& model) {

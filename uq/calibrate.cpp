@@ -130,11 +130,15 @@ std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& 
                             static_cast<std::uint32_t>(case_index));
   Eigen::VectorXd normal(truth.size());
   for (double& value : normal) value = random.normal();
+  std::uint32_t index = 0;
   for (const double error : options.error_scan) {
+    CalibrateOptions own = options;
+    own.seed = data::child_seed(seed_of(study, options), data::Purpose::error_scan_seed,
+                                static_cast<std::uint32_t>(case_index << 8) + index++);
     const Eigen::VectorXd sd = error * truth.cwiseAbs();
     const Eigen::VectorXd y = truth + sd.cwiseProduct(normal);
     const auto model = std::make_shared<const CaseModel>(with_data(*sampled.model, y, sd.cwiseAbs2()));
-    const Draws draws = sample_model(study, sampled, model, options, 500);
+    const Draws draws = sample_model(study, sampled, model, own, 500);
     ErrorScan scan;
     scan.case_name = model->name;
     scan.relative_error = error;
@@ -206,7 +210,7 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
     CaseReport& made = report.cases.back();
     made.without = std::move(without);
     put_suspicions_first(made, findings);
-    if (made.doubt.empty()) made.comparisons = compare_models(study, emulators, sampled, index, own);
+    if (made.doubt.empty()) made.comparisons = compare_models(study, sampled, index, own);
     report.warnings.insert(report.warnings.end(), made.warnings.begin(), made.warnings.end());
     if (options.error_scan.empty()) continue;
     tell("error scan of case " + study.cases[index].name);

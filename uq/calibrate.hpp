@@ -72,9 +72,8 @@ WithoutRuns calibrate_without(const data::Study& study, const std::vector<Fitted
 
 /// The case beside itself with the parameters of its `compare` held: whether the data ask for them (Bayes factor). None
 /// where the case has no such key, or its sampler gives no evidence.
-std::vector<ModelComparison> compare_models(const data::Study& study, const std::vector<Emulator>& emulators,
-                                            const SampledCase& sampled, std::size_t case_index,
-                                            const CalibrateOptions& options = {});
+std::vector<ModelComparison> compare_models(const data::Study& study, const SampledCase& sampled,
+                                            std::size_t case_index, const CalibrateOptions& options = {});
 
 /// What the verdicts would be at other measurement errors. The observed numbers keep the noise that they have, so they
 /// are replaced by the posterior mean of what is predicted there, plus noise of the stated relative error, the same

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "uq/distinct.hpp"
+
 namespace uq {
 
 int CaseModel::own_count() const {
@@ -50,6 +52,7 @@ CaseModel with_data(const CaseModel& model, const Eigen::VectorXd& observed, con
     first += rows;
   }
   assert(first == observed.size());
+  if (model.distinct) pool_rows(other);
   return other;
 }
 

@@ -14,6 +14,7 @@
 // Nuisances of the measurement (uq/measurement.hpp) are unknowns like the parameters, with priors; the rig's scale is
 // one unknown of all cases that need it.
 #include <Eigen/Dense>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,14 @@ struct RowOrigin {
   std::size_t output = 0;          ///< in Study::outputs
 };
 
+/// What rows measured again at the same settings tell of their own errors (uq/distinct.hpp).
+struct Repeats {
+  int noise = -1;             ///< unknown that their standard errors are multiplied by, -1: none
+  int extra = 0;              ///< rows beyond one per setting
+  double scatter = 0.0;       ///< chi squared about the settings' means, at a factor of one
+  double log_constant = 0.0;  ///< of their log likelihood
+};
+
 /// The rows that one emulator predicts.
 struct RowGroup {
   Emulator emulator;
@@ -43,14 +52,17 @@ struct RowGroup {
   std::vector<std::optional<int>> coordinate;
   bool uniform = true;  ///< each unknown sets the same input in all rows, or none
   Measurement measurement = {};
+  std::vector<Eigen::Index> distinct_row = {};  ///< of each row, in the model of distinct rows; empty: itself
+  std::vector<Repeats> repeats = {};            ///< in the model of distinct rows: what was averaged
 };
 
 struct CaseModel {
   std::string name;
   std::vector<Slot> slots;  ///< the case's own parameters first, in its order, then its nuisances
   std::vector<RowGroup> groups;
-  std::vector<std::string> linked;         ///< names of the other cases that are sampled with it
-  std::vector<std::string> observed_sets;  ///< of the case itself
+  std::vector<std::string> linked;                 ///< names of the other cases that are sampled with it
+  std::vector<std::string> observed_sets;          ///< of the case itself
+  std::shared_ptr<const CaseModel> distinct = {};  ///< rows of equal settings as one; none where all differ
 
   int dimension() const { return static_cast<int>(slots.size()); }
   int own_count() const;  ///< parameters free in the case itself

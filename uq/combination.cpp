@@ -179,7 +179,7 @@ double filled_share(const Eigen::MatrixXd& values) {
     return sum / static_cast<double>(n);
   };
   Eigen::MatrixXd shuffled = ranks;
-  data::RandomStream random(1, data::Purpose::sampler, 0x7F17ED);
+  data::RandomStream random(1, data::Purpose::shuffled_points);
   for (Index k = 1; k < m; ++k)
     for (Index i = n - 1; i > 0; --i)
       std::swap(shuffled(i, k), shuffled(static_cast<Index>(random.uniform(0.0, static_cast<double>(i + 1))), k));

@@ -1,12 +1,16 @@
-// Bayes factors between a case and itself with some parameters held.
+// Bayes factors between a case and itself with some parameters held (uq/held.hpp): the same data on both sides, those
+// of linked cases included.
 //
 // Words by R. E. Kass, A. E. Raftery, "Bayes factors", J. Am. Stat. Assoc. 90 (1995) 773, section 3.2: 2 ln B below 2
 // is not worth more than a bare mention, 2 to 6 positive, 6 to 10 strong, above 10 very strong.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "uq/calibrate.hpp"
+#include "uq/held.hpp"
 
 namespace uq {
 namespace {
@@ -28,29 +32,42 @@ std::string in_words(const ModelComparison& found, const std::string& names) {
 
 }  // namespace
 
-std::vector<ModelComparison> compare_models(const data::Study& study, const std::vector<Emulator>& emulators,
-                                            const SampledCase& sampled, std::size_t case_index,
-                                            const CalibrateOptions& options) {
+std::vector<ModelComparison> compare_models(const data::Study& study, const SampledCase& sampled,
+                                            std::size_t case_index, const CalibrateOptions& options) {
   const data::CalibrationCase& item = study.cases.at(case_index);
   if (item.held.empty() || std::isnan(sampled.draws.log_evidence) || sampled.draws.chains.empty()) return {};
-  data::Study smaller = study;
-  data::CalibrationCase& held = smaller.cases[case_index];
   ModelComparison found;
   std::string names;
+  std::vector<Held> held;
   for (const auto& [name, value] : item.held) {
-    std::erase(held.free, name);
-    held.priors.erase(name);
-    held.fixed[name] = value;
-    const data::Unit& unit = study.parameters[*study.parameter_index(name)].unit;
-    found.held += fmt::format("{}{} = {:.4g}{}{}", found.held.empty() ? "" : ", ", name, unit.from_si(value),
-                              unit.symbol.empty() ? "" : " ", unit.symbol);
+    const data::Parameter& parameter = study.parameters[*study.parameter_index(name)];
+    const auto slot = std::find_if(sampled.model->slots.begin(), sampled.model->slots.end(),
+                                   [&](const Slot& one) { return one.label == name; });
+    held.push_back(
+        {.coordinate = static_cast<int>(slot - sampled.model->slots.begin()), .value = to_scaled(parameter, value)});
+    found.held += fmt::format("{}{} = {:.4g}{}{}", found.held.empty() ? "" : ", ", name, parameter.unit.from_si(value),
+                              parameter.unit.symbol.empty() ? "" : " ", parameter.unit.symbol);
     names += (names.empty() ? "" : " and ") + name;
   }
-  const SampledCase beside = sample_case(smaller, emulators, case_index, options);
-  if (beside.draws.chains.empty()) return {};
-  found.log_bayes_factor = sampled.draws.log_evidence - beside.draws.log_evidence;
-  found.error = std::hypot(sampled.draws.log_evidence_error, beside.draws.log_evidence_error);
+  MixtureSamplerOptions sampler = options.mixture;
+  const std::uint64_t seed = seed_of(study, options);
+  sampler.seed = data::child_seed(seed, data::Purpose::comparison_seed, static_cast<std::uint32_t>(case_index));
+  sampler.threads = options.threads;
+  const Draws beside = sample_mixture(held_target(sampled.model, held), sampler);
+  if (beside.chains.empty()) {
+    // The data rule the held value out, or nearly: a finding without a number, and no reason to end.
+    found.log_bayes_factor = found.error = std::numeric_limits<double>::quiet_NaN();
+    found.sentence = fmt::format("{} could not be compared with {} free: {}.", found.held, names, beside.reason);
+    return {found};
+  }
+  found.log_bayes_factor = sampled.draws.log_evidence - beside.log_evidence;
+  found.sampling_error = std::hypot(sampled.draws.log_evidence_error, beside.log_evidence_error);
+  found.surrogate_error =
+      surrogate_part(*sampled.model, sampled.draws.pooled(), with_held(beside.pooled(), held), seed);
+  found.error = std::hypot(found.sampling_error, found.surrogate_error);
   found.sentence = in_words(found, names);
+  if (!beside.converged)
+    found.sentence += fmt::format(" The draws with {} have not converged: {}.", found.held, beside.reason);
   return {found};
 }
 

@@ -25,7 +25,7 @@ bool replaces_errors(const CaseModel& model) {
 
 /// The best fit to all, and draws from the prior: what fits one set may lie far from what fits all.
 Eigen::MatrixXd starting_points(const data::Study& study, const CaseModel& model, const Eigen::VectorXd& first) {
-  data::RandomStream random(study.seed, data::Purpose::optimiser_starts);
+  data::RandomStream random(study.seed, data::Purpose::contradiction);
   Eigen::MatrixXd starts(1 + starts_over_prior, model.dimension());
   starts.row(0) = first.transpose();
   for (Eigen::Index i = 1; i < starts.rows(); ++i)
@@ -64,7 +64,7 @@ std::vector<SetFit> fits_alone(const data::Study& study, const CaseModel& model,
     const Maximum best = maximum_likelihood(alone, starts);
     const int dof = std::max(1, rows - fisher_spectrum(alone, best.x).known_directions);
     found.push_back({.name = study.observations[set].name,
-                     .best_fit_p = gsl_cdf_chisq_Q(chi_squared(predict(alone, best.x), y), dof)});
+                     .best_fit_p = gsl_cdf_chisq_Q(chi_squared(alone, best.x), dof)});
   }
   return found;
 }

@@ -8,16 +8,11 @@
 namespace uq {
 namespace {
 
-constexpr std::uint32_t first_stream = 4096;  // beyond those of other samplers' chains
-
 /// One chain of theta under a held phi.
 class Conditional {
  public:
   Conditional(const Target& target, const GivenDraws& given, const CutOptions& options, std::uint32_t chain)
-      : target_(target),
-        given_(given),
-        phi_(given.chains[chain]),
-        random_(options.seed, data::Purpose::sampler, first_stream + chain) {
+      : target_(target), given_(given), phi_(given.chains[chain]), random_(options.seed, data::Purpose::cut, chain) {
     for (int s = 0; s < target.dimension; ++s)
       if (std::find(given.unknowns.begin(), given.unknowns.end(), s) == given.unknowns.end()) free_.push_back(s);
   }
@@ -86,9 +81,10 @@ class Conditional {
     return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value;
   }
 
-  /// One slice update along each axis, by stepping out and shrinking.
+  /// One slice update along each axis, by stepping out and shrinking. The steps out are limited, and a random share of
+  /// them is each side's (Neal, figure 3): with a fixed limit a side the update would not leave the density invariant.
   void sweep() {
-    constexpr int out_max = 40, shrink_max = 200;
+    constexpr int out_max = 80, shrink_max = 200;
     for (Eigen::Index k = 0; k < axes_.cols(); ++k) {
       const Eigen::VectorXd axis = axes_.col(k);
       const auto at = [&](double t) {
@@ -97,8 +93,9 @@ class Conditional {
       };
       const double slice = level_ + std::log(random_.uniform());
       double low = -random_.uniform(), high = low + 1.0;
-      for (int i = 0; i < out_max && at(low) > slice; ++i) low -= 1.0;
-      for (int i = 0; i < out_max && at(high) > slice; ++i) high += 1.0;
+      int left = static_cast<int>(random_.uniform() * out_max), right = out_max - 1 - left;
+      for (; left > 0 && at(low) > slice; --left) low -= 1.0;
+      for (; right > 0 && at(high) > slice; --right) high += 1.0;
       for (int i = 0; i < shrink_max; ++i) {
         const double t = random_.uniform(low, high);
         const double level = at(t);

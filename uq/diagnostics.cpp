@@ -22,6 +22,13 @@ Eigen::MatrixXd split(const Eigen::MatrixXd& draws) {
   return halves;
 }
 
+/// Of two judgements of one quantity; NaN if either is.
+enum class Worse { smaller, larger };
+double worse_of(double a, double b, Worse worse) {
+  if (std::isnan(a) || std::isnan(b)) return not_a_number;
+  return worse == Worse::smaller ? std::min(a, b) : std::max(a, b);
+}
+
 bool unusable(const Eigen::MatrixXd& draws) {
   return draws.size() < 6 || !draws.allFinite() || draws.maxCoeff() == draws.minCoeff();
 }
@@ -137,7 +144,7 @@ double rank_rhat(const Eigen::MatrixXd& draws) {
   if (unusable(draws)) return not_a_number;
   const double centre = median(draws.reshaped());
   const Eigen::MatrixXd folded = (draws.array() - centre).abs();
-  return std::max(plain_rhat(normal_scores(split(draws))), plain_rhat(normal_scores(split(folded))));
+  return worse_of(plain_rhat(normal_scores(split(draws))), plain_rhat(normal_scores(split(folded))), Worse::larger);
 }
 
 double bulk_ess(const Eigen::MatrixXd& draws) {
@@ -151,7 +158,7 @@ double tail_ess(const Eigen::MatrixXd& draws) {
     const Eigen::MatrixXd below = (draws.array() <= level).cast<double>();
     return plain_ess(split(below));
   };
-  return std::min(of_quantile(0.05), of_quantile(0.95));
+  return worse_of(of_quantile(0.05), of_quantile(0.95), Worse::smaller);
 }
 
 double mean_ess(const Eigen::MatrixXd& draws) { return unusable(draws) ? not_a_number : plain_ess(split(draws)); }

@@ -5,6 +5,7 @@
 
 #include "data/random.hpp"
 #include "uq/diagnostics.hpp"
+#include "uq/factor.hpp"
 #include "uq/posterior.hpp"
 #include "uq/predictive.hpp"
 
@@ -42,7 +43,8 @@ DiscrepancyBand band_of(const data::Study& study, const CaseModel& model, const 
                         const Eigen::MatrixXd& draws) {
   const data::ObservationSet& set = study.observations[set_and_seed.first];
   const Line line = line_through(study, set);
-  data::RandomStream random(set_and_seed.second, data::Purpose::posterior_predictive, 2);
+  data::RandomStream random(set_and_seed.second, data::Purpose::discrepancy_band,
+                            static_cast<std::uint32_t>(set_and_seed.first));
   Eigen::MatrixXd values(draws.rows(), band_points);
   double share = 0.0;
   for (Eigen::Index i = 0; i < draws.rows(); ++i) {
@@ -56,10 +58,10 @@ DiscrepancyBand band_of(const data::Study& study, const CaseModel& model, const 
     Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(group.observed.size(), band_points);
     cross.middleRows(part.first, part.count) =
         variance * discrepancy_correlation(part.controls, line.controls, length.value(u[part.length]));
-    const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+    const Factor root = factor(covariance, "the data about the model");
     Eigen::VectorXd residual = group.observed - law.mean;
-    factor.matrixL().solveInPlace(residual);
-    factor.matrixL().solveInPlace(cross);
+    root.llt.matrixL().solveInPlace(residual);
+    root.llt.matrixL().solveInPlace(cross);
     // Each point's own law; the band is pointwise.
     for (Eigen::Index j = 0; j < band_points; ++j)
       values(i, j) = cross.col(j).dot(residual) +
@@ -90,8 +92,9 @@ DiscrepancyBand band_of(const data::Study& study, const CaseModel& model, const 
 
 }  // namespace
 
-std::vector<DiscrepancyBand> discrepancy_bands(const data::Study& study, const CaseModel& model,
+std::vector<DiscrepancyBand> discrepancy_bands(const data::Study& study, const CaseModel& full,
                                                const Eigen::MatrixXd& draws, std::uint64_t seed) {
+  const CaseModel& model = distinct_rows(full);
   std::vector<DiscrepancyBand> bands;
   if (study.controls.empty()) return bands;
   const Eigen::MatrixXd used = thinned(draws, band_draws);

@@ -2,6 +2,7 @@
 // Draws of a sampler and what is known of their quality.
 #include <Eigen/Dense>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,11 @@ struct Draws {
   double log_evidence = 0.0;         ///< log integral of the density; NaN when the sampler does not give it
   double log_evidence_error = 0.0;   ///< its standard error
   double proposal_efficiency = 0.0;  ///< share of an independent draw that one proposal of the mixture is worth
-  std::int64_t evaluations = 0;      ///< of the log density, warm-up included
+  double pareto_shape = std::numeric_limits<double>::quiet_NaN();  ///< k-hat of the evidence's weights
+  int scouts = 0;                ///< reference draws among which unknown maxima were looked for
+  int searched_starts = 0;                                         ///< places from which unknown maxima were looked for
+  int found_modes = 0;                                             ///< that the search added to the proposal
+  std::int64_t evaluations = 0;                                    ///< of the log density, warm-up included
 
   int dimension() const { return chains.empty() ? 0 : static_cast<int>(chains.front().x.cols()); }
   /// iterations x chains of one coordinate, for the diagnostics.

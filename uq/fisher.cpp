@@ -4,29 +4,26 @@
 #include <cmath>
 #include <limits>
 
+#include "uq/factor.hpp"
 #include "uq/posterior.hpp"
 
 namespace uq {
 
 namespace {
 
-/// S^-1/2 J for the slots listed, each column times its prior's sd. NaN where S has no Cholesky factor: what is made of
-/// it says so.
+/// S^-1/2 J for the slots listed, each column times its prior's sd.
 Eigen::MatrixXd whiten(const Eigen::MatrixXd& slopes, const std::vector<Eigen::Index>& chosen,
                        const Eigen::MatrixXd& covariance) {
   Eigen::MatrixXd whitened(slopes.rows(), static_cast<Eigen::Index>(chosen.size()));
   for (std::size_t k = 0; k < chosen.size(); ++k) whitened.col(static_cast<Eigen::Index>(k)) = slopes.col(chosen[k]);
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  if (factor.info() == Eigen::Success)
-    factor.matrixL().solveInPlace(whitened);
-  else
-    whitened.setConstant(std::numeric_limits<double>::quiet_NaN());
+  factor(covariance, "the data at the best fit").llt.matrixL().solveInPlace(whitened);
   return whitened;
 }
 
 }  // namespace
 
-FisherSpectrum fisher_spectrum(const CaseModel& model, const Eigen::VectorXd& u) {
+FisherSpectrum fisher_spectrum(const CaseModel& full, const Eigen::VectorXd& u) {
+  const CaseModel& model = distinct_rows(full);
   constexpr double infinite = std::numeric_limits<double>::infinity();
   Eigen::MatrixXd covariance = predict(model, u).total();
   Eigen::MatrixXd slopes = sensitivity(model, u);

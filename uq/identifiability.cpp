@@ -131,7 +131,8 @@ void add_structure(const CaseModel& model, const Profiles& all, std::vector<Para
 
 }  // namespace
 
-Identification identify(const CaseModel& model, const Eigen::MatrixXd& draws, const IdentifyOptions& options) {
+Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, const IdentifyOptions& options) {
+  const CaseModel& model = distinct_rows(full);
   const VerdictThresholds& thresholds = options.thresholds;
   Identification found;
   const Eigen::MatrixXd guiding = thinned(draws, 1500);

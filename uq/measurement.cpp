@@ -130,6 +130,21 @@ Meter meter_at(const Measurement& measurement, const std::vector<Slot>& slots, c
   return {};
 }
 
+Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Slot>& slots,
+                         const Eigen::VectorXd& variance, const Eigen::VectorXd& u) {
+  Eigen::VectorXd noise = variance;
+  for (const ReadSet& set : measurement.sets) {
+    if (set.noise < 0) continue;
+    const double k = slots[static_cast<std::size_t>(set.noise)].value(u[set.noise]);
+    if (set.noise_is_sd) {
+      noise.segment(set.first, set.count).setConstant(k * k);
+    } else {
+      noise.segment(set.first, set.count) *= k * k;
+    }
+  }
+  return noise;
+}
+
 GroupLaw law_of(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& variance,
                 const surrogate::Prediction& prediction, const Eigen::VectorXd& u) {
   const Eigen::Index rows = variance.size();
@@ -137,20 +152,12 @@ GroupLaw law_of(const Measurement& measurement, const std::vector<Slot>& slots, 
   const Eigen::VectorXd f = factors_of(measurement, slots, u, rows);
   GroupLaw law{.mean = f.cwiseProduct(prediction.mean.head(rows)),
                .covariance = (f * f.transpose()).cwiseProduct(prediction.covariance.topLeftCorner(rows, rows)),
-               .noise = variance};
+               .noise = noise_of(measurement, slots, variance, u)};
   for (const ReadSet& set : measurement.sets) {
     if (set.common_relative > 0.0)
       add_pair(law.covariance, set, law.mean, law.mean, 0.5 * set.common_relative * set.common_relative, true);
     law.covariance.block(set.first, set.first, set.count, set.count).array() +=
         set.common_absolute * set.common_absolute;
-    if (set.noise >= 0) {
-      const double k = value(set.noise);
-      if (set.noise_is_sd) {
-        law.noise.segment(set.first, set.count).setConstant(k * k);
-      } else {
-        law.noise.segment(set.first, set.count) *= k * k;
-      }
-    }
   }
   for_each_setting(measurement, [&](const ReadSet& set, std::size_t q, const SettingShift& setting) {
     const Eigen::VectorXd t = f.cwiseProduct(half_change(prediction.mean, rows, q));

@@ -74,6 +74,10 @@ struct Meter {
 Meter meter_at(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& u,
                Eigen::Index row);
 
+/// Variance of each number's own error.
+Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Slot>& slots,
+                         const Eigen::VectorXd& variance, const Eigen::VectorXd& u);
+
 /// `variance`: of the stated standard errors, one per row; `prediction`: at the rows and their shifted copies.
 GroupLaw law_of(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& variance,
                 const surrogate::Prediction& prediction, const Eigen::VectorXd& u);

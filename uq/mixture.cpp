@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "uq/factor.hpp"
+
 namespace uq {
 namespace {
 
@@ -20,17 +22,6 @@ struct Gaussians {
   std::vector<Eigen::MatrixXd> factors;
   double mean_log_density = -std::numeric_limits<double>::infinity();
 };
-
-/// Cholesky factor, with a ridge that grows until there is one.
-Eigen::MatrixXd factor_of(Eigen::MatrixXd covariance) {
-  const Eigen::VectorXd diagonal = covariance.diagonal().cwiseMax(1e-300);
-  for (double ridge = 1e-10; ridge < 1.0; ridge *= 10.0) {
-    const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
-    if (llt.info() == Eigen::Success && llt.matrixLLT().diagonal().minCoeff() > 0.0) return llt.matrixL();
-    covariance.diagonal() += ridge * diagonal;
-  }
-  return diagonal.cwiseSqrt().asDiagonal();
-}
 
 /// Squared length of L^-1 (x - mean) for each row x: forward substitution on all points at once, a column at a time.
 Eigen::ArrayXd squared_distances(const Eigen::MatrixXd& points, const Eigen::VectorXd& mean,
@@ -83,7 +74,7 @@ void refit_component(Gaussians& fit, std::size_t k, const Eigen::MatrixXd& point
     for (Eigen::Index b = 0; b <= a; ++b)
       fit.covariances[k](a, b) = fit.covariances[k](b, a) =
           (share * centred.col(a) * centred.col(b)).sum() / total + 1e-6 * pooled(a, b);
-  fit.factors[k] = factor_of(fit.covariances[k]);
+  fit.factors[k] = factor_for_proposal(fit.covariances[k]);
 }
 
 /// Component centres apart from each other (k-means++): each point's weight goes to its nearest.
@@ -117,7 +108,7 @@ Gaussians maximise(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights
   Gaussians fit{.weights = Eigen::VectorXd::Zero(count), .means = {}, .covariances = {}, .factors = {}};
   fit.means.assign(static_cast<std::size_t>(count), points.transpose() * weights);
   fit.covariances.assign(static_cast<std::size_t>(count), pooled);
-  fit.factors.assign(static_cast<std::size_t>(count), factor_of(pooled));
+  fit.factors.assign(static_cast<std::size_t>(count), factor_for_proposal(pooled));
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     for (Eigen::Index k = 0; k < count; ++k)
       refit_component(fit, static_cast<std::size_t>(k), points, share.col(k), pooled);
@@ -149,6 +140,17 @@ Eigen::ArrayXXd responsibilities(const Mixture& before, const Eigen::MatrixXd& p
   }
   for (Eigen::Index k = 0; k < share.cols(); ++k) share.col(k) *= weights.array() / sums;
   return share;
+}
+
+/// Divides the weights by their total, and sets the constants of the densities.
+void weigh(Mixture& mixture, double total) {
+  const double dimension = static_cast<double>(mixture.components.front().mean.size());
+  const double constant = std::lgamma(0.5 * (degrees_of_freedom + dimension)) - std::lgamma(0.5 * degrees_of_freedom) -
+                          0.5 * dimension * std::log(degrees_of_freedom * std::numbers::pi);
+  for (auto& component : mixture.components) {
+    component.weight /= total;
+    component.log_constant = std::log(component.weight) + constant - component.factor.diagonal().array().log().sum();
+  }
 }
 
 }  // namespace
@@ -210,8 +212,8 @@ Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weight
     best = maximise(points, normalised, pooled, responsibilities(*before, points, normalised), options);
     best_criterion = criterion_of(best, known);
   }
-  const Eigen::MatrixXd pooled_factor = factor_of(pooled);
-  for (const int count : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32}) {
+  const Eigen::MatrixXd pooled_factor = factor_for_proposal(pooled);
+  for (const int count : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
     if (count <= known) continue;
     if (count > options.components_max || (count > 1 && effective < 4.0 * numbers_of(count))) break;
     const Gaussians fit =
@@ -241,12 +243,17 @@ Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weight
                                   .factor = pooled_factor * defensive_scale});
     total /= 1.0 - defensive_share;
   }
-  const double constant = std::lgamma(0.5 * (degrees_of_freedom + dimension)) - std::lgamma(0.5 * degrees_of_freedom) -
-                          0.5 * dimension * std::log(degrees_of_freedom * std::numbers::pi);
-  for (auto& component : mixture.components) {
-    component.weight /= total;
-    component.log_constant = std::log(component.weight) + constant - component.factor.diagonal().array().log().sum();
-  }
+  weigh(mixture, total);
+  return mixture;
+}
+
+Mixture with_components(Mixture mixture, const std::vector<MixtureComponent>& added) {
+  double share = 0.0;
+  for (const auto& component : added) share += component.weight;
+  for (auto& component : mixture.components) component.weight *= 1.0 - share;
+  mixture.components.insert(mixture.components.begin() + mixture.fitted, added.begin(), added.end());
+  mixture.fitted += static_cast<int>(added.size());
+  weigh(mixture, 1.0);
   return mixture;
 }
 

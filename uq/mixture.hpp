@@ -32,7 +32,7 @@ struct Mixture {
 };
 
 struct MixtureOptions {
-  int components_max = 12;  ///< largest number of components tried
+  int components_max = 64;  ///< largest number of components tried
   int iterations = 60;      ///< of expectation maximisation
   double tolerance = 1e-3;  ///< stop when the mean log density rises by less: a thousandth of a proposal's worth
 };
@@ -41,5 +41,8 @@ struct MixtureOptions {
 /// `before`, goes on from there, and tries no other number of components but the next larger one.
 Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, data::RandomStream& random,
                     const MixtureOptions& options = {}, const Mixture* before = nullptr);
+
+/// With further components, whose weights are shares of the whole.
+Mixture with_components(Mixture mixture, const std::vector<MixtureComponent>& added);
 
 }  // namespace uq

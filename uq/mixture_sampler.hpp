@@ -3,37 +3,45 @@
 // dimensions and for ridges, bounds and several modes, where local moves alone give under a hundredth of an independent
 // draw each.
 //
-// 1. Each chain tempers a population of its own from reference draws (uq/tempering.hpp): over-dispersed starts.
-// 2. A Student-t mixture (uq/mixture.hpp), cut at the support, is fitted to all populations, then refitted to its own
-//    importance-weighted draws while that helps (population Monte Carlo; Cappe et al. 2004). After this nothing adapts.
+// 1. Scouts are drawn from the reference (uq/explore.hpp). Each chain tempers a population of its own from its share of
+//    them (uq/tempering.hpp): over-dispersed starts.
+// 2. The chains are two halves. For each a proposal is adapted to the populations of its own chains (uq/proposal.hpp),
+//    so that what one lost the other may have. Maxima that a search finds and the proposals do not know join both.
+//    After this nothing adapts.
 // 3. A chain starts at a point of its own population. Each move is, by chance, an independence proposal from the
 // mixture
-//    (Metropolis-Hastings ratio p(x') q(x) / p(x) q(x')) or a differential-evolution step from the frozen populations
-//    (symmetric). Proposals of the mixture do not depend on the chain's state, so they are evaluated in batches.
-// 4. Draws go on until R-hat and effective sample sizes are met, or the largest number of draws is reached, which is
-// said. The evidence is the importance-sampling mean of p / q over all global proposals made in step 3, with its
-// standard error.
+//    (Metropolis-Hastings ratio p(x') q(x) / p(x) q(x')) or a symmetric local step: along the difference of two points
+//    of the populations, or of the shape of one of the mixture's components. Proposals of the mixture do not depend on
+//    the chain's state, so they are evaluated in batches.
+// 4. Draws go on until R-hat and effective sample sizes are met and the halves' means and spreads agree, or the largest
+//    number of draws is reached, which is said. The evidence is the importance-sampling mean of p / q over all global
+//    proposals made in step 3, with its standard error.
+// 5. Second checks, which share no chain: a maximum that stays unknown, weights without a variance, or halves whose
+//    evidences differ, each end as "not converged" with their reason.
 //
 // A result depends on (seed, chain) alone, never on the number of threads.
 #include <cstdint>
 
 #include "uq/draws.hpp"
 #include "uq/log_density.hpp"
-#include "uq/mixture.hpp"
+#include "uq/proposal.hpp"
 #include "uq/tempering.hpp"
 
 namespace uq {
 
 struct MixtureSamplerOptions {
   int chains = 4;
-  int draws = 1000;          ///< per chain in the first round; each further round doubles the number
-  int draws_max = 32000;     ///< per chain, at which sampling stops without convergence
-  int burn_in = 64;          ///< draws of each chain that are left out
-  double local_share = 0.2;  ///< chance that a move is a local one
-  int refits_max = 5;        ///< of the mixture to its own weighted draws
-  int refit_draws = 1024;    ///< proposals per refit
+  int draws = 1000;             ///< per chain in the first round; each further round doubles the number
+  int draws_max = 32000;        ///< per chain, at which sampling stops without convergence
+  int burn_in = 64;             ///< draws of each chain that are left out
+  double local_share = 0.2;     ///< chance that a move is a local one
+  double unknown_ratio = 30.0;  ///< p / (Z q) from which a place is unknown to a proposal
+  double unknown_mass = 1e-4;   ///< of the whole, from which an unknown maximum matters
+  int search_rounds = 3;        ///< in which unknown maxima are added
+  double apart_max = 4.5;       ///< standard errors by which the halves may differ
   TemperingOptions tempering = {};
-  MixtureOptions mixture = {};
+  ProposalOptions proposal = {};
+  ExploreOptions explore = {};
   StopRule stop = {};
   int threads = 0;  ///< 0: as many as the machine has
   std::uint64_t seed = 1;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "uq/parallel.hpp"
+#include "uq/second_check.hpp"
 #include "uq/unconstrained.hpp"
 
 namespace uq {
@@ -64,7 +65,7 @@ struct StepSize {
 class NutsChain {
  public:
   NutsChain(const Target& target, const NutsOptions& options, std::uint32_t index)
-      : target_(target), options_(options), random_(options.seed, Purpose::sampler, index), metric_(target.dimension) {}
+      : target_(target), options_(options), random_(options.seed, Purpose::nuts, index), metric_(target.dimension) {}
 
   /// Starts from a reference draw where the density is positive; false when 100 draws found none.
   bool start() {
@@ -311,6 +312,9 @@ Draws sample_nuts(const Target& target, const NutsOptions& options) {
     result.evaluations += chains[c].evaluations();
     for (const bool diverged : result.chains[c].diverged) result.divergences += diverged ? 1 : 0;
   }
+  if (!result.converged) return result;
+  result.reason = missed_maxima(target, result, {.explore = {.threads = options.threads}, .seed = options.seed});
+  result.converged = result.reason.empty();
   return result;
 }
 

@@ -7,7 +7,8 @@
 //   H(z, p) = -log p(z) + 1/2 p' S p,   S the covariance of z, momentum p ~ N(0, S^-1), z unconstrained
 //   (uq/unconstrained.hpp)
 // A trajectory whose energy rises by more than 1000 is a divergence, and is counted. Chains start from reference draws.
-// A result depends on (seed, chain) alone. Log evidence: not given (NaN).
+// A result depends on (seed, chain) alone. Log evidence: not given (NaN). Maxima that the chains
+// missed end as "not converged" (uq/second_check.hpp).
 #include <cstdint>
 
 #include "uq/draws.hpp"

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "uq/distinct.hpp"
+#include "uq/factor.hpp"
+
 namespace uq {
 namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::infinity();
-
-/// Rows at which a group's emulator is asked: the measured ones and their shifted copies.
-Eigen::Index rows_asked(const RowGroup& group) { return group.base.rows() * (1 + group.measurement.shifts()); }
 
 /// Writes the rows of a group at u into `points`, from row `first` on.
 void place_rows(const RowGroup& group, const Eigen::VectorXd& u, Eigen::MatrixXd& points, Eigen::Index first) {
@@ -22,12 +22,6 @@ void place_rows(const RowGroup& group, const Eigen::VectorXd& u, Eigen::MatrixXd
   if (group.measurement.shifts() > 0) place_shifts(group.measurement, points, first, group.base.rows());
 }
 
-Eigen::MatrixXd rows_at(const RowGroup& group, const Eigen::VectorXd& u) {
-  Eigen::MatrixXd points(rows_asked(group), group.base.cols());
-  place_rows(group, u, points, 0);
-  return points;
-}
-
 double log_normal(Eigen::VectorXd residual, const Eigen::MatrixXd& covariance) {
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success) return nowhere;
@@ -37,8 +31,9 @@ double log_normal(Eigen::VectorXd residual, const Eigen::MatrixXd& covariance) {
   return -0.5 * residual.squaredNorm() - log_root - 0.5 * rows * std::log(2.0 * std::numbers::pi);
 }
 
-double log_group_density(const CaseModel& model, const RowGroup& group, const surrogate::Prediction& prediction,
-                         const Eigen::VectorXd& u) {
+/// Log density of a group's numbers without what repeats say of their own scatter.
+double log_row_density(const CaseModel& model, const RowGroup& group, const surrogate::Prediction& prediction,
+                       const Eigen::VectorXd& u) {
   if (group.measurement.plain()) {
     Eigen::MatrixXd covariance = prediction.covariance;
     covariance.diagonal() += group.variance;
@@ -49,12 +44,26 @@ double log_group_density(const CaseModel& model, const RowGroup& group, const su
   return log_normal(group.observed - law.mean, law.covariance);
 }
 
+/// What the scatter of repeats about their means says (uq/distinct.hpp), with its slope along the noise's factor.
+struct Scatter {
+  double log_density = 0.0, chi_squared = 0.0, slope = 0.0;  // slope: to u of the factor's unknown
+};
+Scatter scatter_of(const CaseModel& model, const Repeats& repeats, const Eigen::VectorXd& u) {
+  if (repeats.noise < 0)
+    return {.log_density = repeats.log_constant - 0.5 * repeats.scatter, .chi_squared = repeats.scatter};
+  const Slot& slot = model.slots[static_cast<std::size_t>(repeats.noise)];
+  const double k = slot.value(u[repeats.noise]), chi = repeats.scatter / (k * k);
+  return {.log_density = repeats.log_constant - 0.5 * chi - repeats.extra * std::log(k),
+          .chi_squared = chi,
+          .slope = (chi - repeats.extra) / k * slot.slope(u[repeats.noise])};
+}
+
 /// Adds the gradient of one group's log density to `sum`.
 void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u, Evaluation& sum) {
   if (!group.uniform || !group.emulator.predict_with_gradient) {
     // No derivative along a common shift: central differences.
     const auto density = [&](const Eigen::VectorXd& at) {
-      return log_group_density(model, group, group.emulator.predict(rows_at(group, at)), at);
+      return log_row_density(model, group, group.emulator.predict(rows_at(group, at)), at);
     };
     sum.value += density(u);
     constexpr double step = 1e-5;
@@ -97,7 +106,27 @@ void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::Ve
   }
 }
 
+/// The prediction of a group's rows from that of its distinct rows.
+GroupLaw spread(const GroupLaw& distinct, const std::vector<Eigen::Index>& row) {
+  return {.mean = distinct.mean(row), .covariance = distinct.covariance(row, row), .noise = {}};
+}
+
 }  // namespace
+
+Eigen::Index rows_asked(const RowGroup& group) { return group.base.rows() * (1 + group.measurement.shifts()); }
+
+Eigen::MatrixXd rows_at(const RowGroup& group, const Eigen::VectorXd& u) {
+  Eigen::MatrixXd points(rows_asked(group), group.base.cols());
+  place_rows(group, u, points, 0);
+  return points;
+}
+
+double log_group_density(const CaseModel& model, const RowGroup& group, const surrogate::Prediction& prediction,
+                         const Eigen::VectorXd& u) {
+  double sum = log_row_density(model, group, prediction, u);
+  for (const Repeats& repeats : group.repeats) sum += scatter_of(model, repeats, u).log_density;
+  return sum;
+}
 
 GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u) {
   return law_of(group.measurement, model.slots, group.variance, group.emulator.predict(rows_at(group, u)), u);
@@ -108,8 +137,12 @@ StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u) {
   StackedPrediction stacked{
       .mean = Eigen::VectorXd(rows), .covariance = Eigen::MatrixXd::Zero(rows, rows), .noise = Eigen::VectorXd(rows)};
   Eigen::Index first = 0;
-  for (const auto& group : model.groups) {
-    const GroupLaw part = group_law(model, group, u);
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    const RowGroup& group = model.groups[g];
+    GroupLaw part = model.distinct
+                        ? spread(group_law(*model.distinct, model.distinct->groups[g], u), group.distinct_row)
+                        : group_law(model, group, u);
+    if (model.distinct) part.noise = noise_of(group.measurement, model.slots, group.variance, u);
     const Eigen::Index count = part.mean.size();
     stacked.mean.segment(first, count) = part.mean;
     stacked.covariance.block(first, first, count, count) = part.covariance;
@@ -117,6 +150,25 @@ StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u) {
     first += count;
   }
   return stacked;
+}
+
+RowMoments row_moments(const CaseModel& model, const Eigen::VectorXd& u) {
+  const Eigen::Index rows = model.row_count();
+  RowMoments moments{.mean = Eigen::VectorXd(rows), .variance = Eigen::VectorXd(rows)};
+  const CaseModel& distinct = distinct_rows(model);
+  Eigen::Index first = 0;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    const RowGroup& group = model.groups[g];
+    const GroupLaw law = group_law(distinct, distinct.groups[g], u);
+    const Eigen::VectorXd noise = noise_of(group.measurement, model.slots, group.variance, u);
+    for (Eigen::Index i = 0; i < noise.size(); ++i) {
+      const Eigen::Index at = model.distinct ? group.distinct_row[static_cast<std::size_t>(i)] : i;
+      moments.mean[first + i] = law.mean[at];
+      moments.variance[first + i] = law.covariance(at, at) + noise[i];
+    }
+    first += noise.size();
+  }
+  return moments;
 }
 
 double log_prior(const CaseModel& model, const Eigen::VectorXd& u) {
@@ -133,20 +185,30 @@ Evaluation log_prior_gradient(const CaseModel& model, const Eigen::VectorXd& u) 
   return found;
 }
 
-double log_likelihood(const CaseModel& model, const Eigen::VectorXd& u) {
+double log_likelihood(const CaseModel& full, const Eigen::VectorXd& u) {
+  const CaseModel& model = distinct_rows(full);
   double sum = 0.0;
   for (const auto& group : model.groups)
     sum += log_group_density(model, group, group.emulator.predict(rows_at(group, u)), u);
   return sum;
 }
 
-Evaluation log_likelihood_gradient(const CaseModel& model, const Eigen::VectorXd& u) {
+Evaluation log_likelihood_gradient(const CaseModel& full, const Eigen::VectorXd& u) {
+  const CaseModel& model = distinct_rows(full);
   Evaluation sum{.value = 0.0, .gradient = Eigen::VectorXd::Zero(u.size())};
-  for (const auto& group : model.groups) add_gradient(model, group, u, sum);
+  for (const auto& group : model.groups) {
+    add_gradient(model, group, u, sum);
+    for (const Repeats& repeats : group.repeats) {
+      const Scatter scatter = scatter_of(model, repeats, u);
+      sum.value += scatter.log_density;
+      if (repeats.noise >= 0) sum.gradient[repeats.noise] += scatter.slope;
+    }
+  }
   return sum;
 }
 
-Eigen::VectorXd log_likelihoods(const CaseModel& model, const Eigen::MatrixXd& points) {
+Eigen::VectorXd log_likelihoods(const CaseModel& full, const Eigen::MatrixXd& points) {
+  const CaseModel& model = distinct_rows(full);
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(points.rows());
   for (const auto& group : model.groups) {
     const Eigen::Index rows = rows_asked(group);
@@ -172,20 +234,27 @@ Eigen::VectorXd log_likelihoods(const CaseModel& model, const Eigen::MatrixXd& p
 }
 
 Eigen::VectorXd pointwise_log_likelihood(const CaseModel& model, const Eigen::VectorXd& u) {
-  const StackedPrediction prediction = predict(model, u);
-  const Eigen::ArrayXd variance = (prediction.covariance.diagonal() + prediction.noise).array();
-  const Eigen::ArrayXd residual = (observed(model) - prediction.mean).array();
+  const RowMoments moments = row_moments(model, u);
+  const Eigen::ArrayXd variance = moments.variance.array();
+  const Eigen::ArrayXd residual = (observed(model) - moments.mean).array();
   return -0.5 * (residual.square() / variance + (2.0 * std::numbers::pi * variance).log());
 }
 
 double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& y, double noise_factor) {
   Eigen::MatrixXd covariance = prediction.covariance;
   covariance.diagonal() += noise_factor * prediction.noise;
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  if (factor.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+  const Factor root = factor(covariance, "the data under the model");
   Eigen::VectorXd residual = y - prediction.mean;
-  factor.matrixL().solveInPlace(residual);
+  root.llt.matrixL().solveInPlace(residual);
   return residual.squaredNorm();
+}
+
+double chi_squared(const CaseModel& full, const Eigen::VectorXd& u) {
+  const CaseModel& model = distinct_rows(full);
+  double sum = chi_squared(predict(model, u), observed(model));
+  for (const RowGroup& group : model.groups)
+    for (const Repeats& repeats : group.repeats) sum += scatter_of(model, repeats, u).chi_squared;
+  return sum;
 }
 
 Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u) {
@@ -230,7 +299,8 @@ Target posterior_target(std::shared_ptr<const CaseModel> model) {
 }
 
 Eigen::MatrixXd sensitivity(const CaseModel& model, const Eigen::VectorXd& u) {
-  // Differences of second order, one-sided at the support's ends, so that any emulator and any binding of rows will do.
+  // Central differences, of first order and one-sided at the support's ends, so that any emulator and any binding of
+  // rows will do.
   Eigen::MatrixXd slopes(model.row_count(), u.size());
   const Eigen::VectorXd lower = model.lower(), upper = model.upper();
   for (Eigen::Index s = 0; s < u.size(); ++s) {
@@ -238,7 +308,7 @@ Eigen::MatrixXd sensitivity(const CaseModel& model, const Eigen::VectorXd& u) {
     Eigen::VectorXd high = u, low = u;
     high[s] = std::min(u[s] + step, upper[s]);
     low[s] = std::max(u[s] - step, lower[s]);
-    slopes.col(s) = (predict(model, high).mean - predict(model, low).mean) / (high[s] - low[s]);
+    slopes.col(s) = (row_moments(model, high).mean - row_moments(model, low).mean) / (high[s] - low[s]);
   }
   return slopes;
 }

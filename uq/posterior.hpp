@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "uq/case_model.hpp"
+#include "uq/distinct.hpp"
 #include "uq/log_density.hpp"
 
 namespace uq {
@@ -28,6 +29,18 @@ struct StackedPrediction {
   }
 };
 StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u);
+/// Mean and variance, noise included, of each row alone.
+struct RowMoments {
+  Eigen::VectorXd mean, variance;
+};
+RowMoments row_moments(const CaseModel& model, const Eigen::VectorXd& u);
+
+/// Rows at which a group's emulator is asked: the measured ones and their shifted copies.
+Eigen::Index rows_asked(const RowGroup& group);
+Eigen::MatrixXd rows_at(const RowGroup& group, const Eigen::VectorXd& u);
+/// Of the group's numbers, given the emulator's prediction at those rows.
+double log_group_density(const CaseModel& model, const RowGroup& group, const surrogate::Prediction& prediction,
+                         const Eigen::VectorXd& u);
 /// Of one group's rows.
 GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u);
 
@@ -44,6 +57,9 @@ Eigen::VectorXd pointwise_log_likelihood(const CaseModel& model, const Eigen::Ve
 
 /// (y - mean)' S^-1 (y - mean) of other data y, with the noise's variance times `noise_factor`.
 double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& y, double noise_factor = 1.0);
+
+/// Of the case's own data at u.
+double chi_squared(const CaseModel& model, const Eigen::VectorXd& u);
 
 /// What is known beside the data of the unknowns that no profile should leave free: log priors of the nuisances (a
 /// calibration certificate is a measurement, too), and the law of the unknowns that were cut from another case.

@@ -210,16 +210,18 @@ void write_statistics(const File& file, const Draws& draws) {
   if (diverging.size() == lp.size()) group.flags("diverging", {"chain", "draw"}, diverging);
 }
 
-/// A variable (chain, draw, point) per block from rows of `values` (draws x model rows), each value passed through
-/// `shown`.
-template <class Shown>
-void write_blocks(Group& group, const std::vector<Block>& blocks, const Eigen::MatrixXd& values, const Shown& shown) {
+/// A variable (chain, draw, point) per block from rows of `values` (draws x model rows) in SI, shown in the unit that
+/// `unit_of` names.
+template <class UnitOf>
+void write_blocks(Group& group, const std::vector<Block>& blocks, const Eigen::MatrixXd& values,
+                  const UnitOf& unit_of) {
   for (const auto& block : blocks) {
+    const data::Unit unit = unit_of(block);
     std::vector<double> flat;
     flat.reserve(static_cast<std::size_t>(values.rows()) * block.rows.size());
     for (Eigen::Index i = 0; i < values.rows(); ++i)
-      for (const Eigen::Index row : block.rows) flat.push_back(shown(block, values(i, row)));
-    group.doubles(block.name, {"chain", "draw", block.dimension}, flat, "");
+      for (const Eigen::Index row : block.rows) flat.push_back(unit.from_si(values(i, row)));
+    group.doubles(block.name, {"chain", "draw", block.dimension}, flat, unit.symbol);
   }
 }
 
@@ -237,7 +239,7 @@ void write_file(const std::string& path, const data::Study& study, const Sampled
     chain_dimensions(group, sampled.draws);
     point_dimensions(group, study, blocks);
     write_blocks(group, blocks, replicates(model, draws, seed),
-                 [&](const Block& block, double value) { return study.outputs[block.output].unit.from_si(value); });
+                 [&](const Block& block) { return study.outputs[block.output].unit; });
   }
   {
     Group group(file, "log_likelihood");
@@ -246,7 +248,7 @@ void write_file(const std::string& path, const data::Study& study, const Sampled
     Eigen::MatrixXd values(draws.rows(), model.row_count());
     for (Eigen::Index i = 0; i < draws.rows(); ++i)
       values.row(i) = pointwise_log_likelihood(model, draws.row(i).transpose()).transpose();
-    write_blocks(group, blocks, values, [](const Block&, double value) { return value; });
+    write_blocks(group, blocks, values, [](const Block&) { return data::Unit{}; });
   }
   const Eigen::VectorXd y = observed(model), variance = observed_variance(model);
   Group measured(file, "observed_data"), constant(file, "constant_data");

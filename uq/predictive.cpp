@@ -9,6 +9,7 @@
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "uq/diagnostics.hpp"
+#include "uq/factor.hpp"
 #include "uq/fisher.hpp"
 #include "uq/posterior.hpp"
 
@@ -60,7 +61,8 @@ std::vector<PredictiveCurve> curves_of(const data::Study& study, const CaseModel
       for (Eigen::Index i = 0; i < used.rows(); ++i) {
         Eigen::MatrixXd points = rows.base;
         for (Eigen::Index k = 0; k < points.cols(); ++k)
-          if (rows.slot[k] >= 0) points.col(k).setConstant(used(i, rows.slot[k]));
+          if (rows.slot[k] >= 0 && static_cast<std::size_t>(k) != control_column)
+            points.col(k).setConstant(used(i, rows.slot[k]));
         const surrogate::Prediction prediction = group.emulator.predict(points);
         const Meter meter =
             meter_at(group.measurement, model.slots, used.row(i).transpose(), static_cast<Eigen::Index>(row));
@@ -107,28 +109,40 @@ Eigen::MatrixXd thinned(const Eigen::MatrixXd& draws, Eigen::Index count) {
 }
 
 FitCheck check_fit(const CaseModel& model, const Eigen::MatrixXd& draws, const Eigen::VectorXd& best) {
-  const Eigen::VectorXd y = observed(model);
-  const double n = static_cast<double>(y.size());
+  const int count = number_count(model);
+  const double n = count;
   const Eigen::MatrixXd used = thinned(draws, predictive_draws);
   FitCheck check;
   for (Eigen::Index i = 0; i < used.rows(); ++i)
-    check.predictive_p += gsl_cdf_chisq_Q(chi_squared(predict(model, used.row(i).transpose()), y), n);
+    check.predictive_p += gsl_cdf_chisq_Q(chi_squared(model, used.row(i).transpose()), n);
   check.predictive_p /= static_cast<double>(used.rows());
-  check.chi2 = chi_squared(predict(model, best), y);
-  check.dof = std::max(1, static_cast<int>(y.size()) - fisher_spectrum(model, best).known_directions);
+  check.chi2 = chi_squared(model, best);
+  check.dof = std::max(1, count - fisher_spectrum(model, best).known_directions);
   check.best_fit_p = gsl_cdf_chisq_Q(check.chi2, check.dof);
   return check;
 }
 
 Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws, std::uint64_t seed) {
   Eigen::MatrixXd made(draws.rows(), model.row_count());
-  data::RandomStream random(seed, data::Purpose::posterior_predictive, 0);
+  const CaseModel& distinct = distinct_rows(model);
+  data::RandomStream random(seed, data::Purpose::posterior_predictive);
   for (Eigen::Index i = 0; i < draws.rows(); ++i) {
-    const StackedPrediction prediction = predict(model, draws.row(i).transpose());
-    const Eigen::LLT<Eigen::MatrixXd> factor(prediction.total());
-    Eigen::VectorXd noise(made.cols());
-    for (double& value : noise) value = random.normal();
-    made.row(i) = (prediction.mean + factor.matrixL() * noise).transpose();
+    const Eigen::VectorXd u = draws.row(i).transpose();
+    Eigen::Index first = 0;
+    for (std::size_t g = 0; g < model.groups.size(); ++g) {
+      // What rows of equal settings share, then each row's own noise.
+      const RowGroup& group = model.groups[g];
+      const GroupLaw law = group_law(distinct, distinct.groups[g], u);
+      Eigen::VectorXd shared(law.mean.size());
+      for (double& value : shared) value = random.normal();
+      shared = law.mean + semidefinite_root(law.covariance, "replicate data") * shared;
+      const Eigen::VectorXd noise = noise_of(group.measurement, model.slots, group.variance, u);
+      for (Eigen::Index row = 0; row < noise.size(); ++row) {
+        const Eigen::Index at = model.distinct ? group.distinct_row[static_cast<std::size_t>(row)] : row;
+        made(i, first + row) = shared[at] + std::sqrt(noise[row]) * random.normal();
+      }
+      first += noise.size();
+    }
   }
   return made;
 }
@@ -136,7 +150,7 @@ Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws,
 Eigen::VectorXd mean_prediction(const CaseModel& model, const Eigen::MatrixXd& draws) {
   const Eigen::MatrixXd used = thinned(draws, predictive_draws);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(model.row_count());
-  for (Eigen::Index i = 0; i < used.rows(); ++i) sum += predict(model, used.row(i).transpose()).mean;
+  for (Eigen::Index i = 0; i < used.rows(); ++i) sum += row_moments(model, used.row(i).transpose()).mean;
   return sum / static_cast<double>(used.rows());
 }
 
@@ -174,7 +188,7 @@ std::vector<PredictiveCurve> predictive_curves(const data::Study& study, const C
   const Eigen::MatrixXd used = thinned(draws, predictive_draws);
   // One normal number per draw moves its whole curve: the bands are pointwise, so the covariance between points does
   // not enter, and the quantiles come out as smooth as the curves.
-  data::RandomStream random(seed, data::Purpose::posterior_predictive, 1);
+  data::RandomStream random(seed, data::Purpose::predictive_curve);
   Eigen::VectorXd normal(used.rows());
   for (double& value : normal) value = random.normal();
   return curves_of(study, model, used, normal);
@@ -187,7 +201,7 @@ std::vector<PredictiveCurve> mean_curves(const data::Study& study, const CaseMod
 void check_priors(const data::Study& study, const CaseModel& model) {
   const Eigen::VectorXd y = observed(model);
   const std::vector<RowOrigin> from = origins(model);
-  data::RandomStream random(study.seed, data::Purpose::prior_predictive, 0);
+  data::RandomStream random(study.seed, data::Purpose::prior_predictive);
   // Smallest distance of each measured number from the predictions, in sd, and which side they lie on.
   struct Reach {
     Eigen::VectorXd nearest;
@@ -198,8 +212,8 @@ void check_priors(const data::Study& study, const CaseModel& model) {
                 .lowest = Eigen::VectorXd::Constant(y.size(), 1e300),
                 .highest = Eigen::VectorXd::Constant(y.size(), -1e300)};
     for (int i = 0; i < count; ++i) {
-      const StackedPrediction prediction = predict(model, draw());
-      const Eigen::VectorXd sd = (prediction.covariance.diagonal() + prediction.noise).cwiseSqrt();
+      const RowMoments prediction = row_moments(model, draw());
+      const Eigen::VectorXd sd = prediction.variance.cwiseSqrt();
       const Eigen::VectorXd away = (y - prediction.mean).cwiseQuotient(sd);
       found.nearest = found.nearest.cwiseMin(away.cwiseAbs());
       found.lowest = found.lowest.cwiseMin(prediction.mean);

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 #include <gsl/gsl_cdf.h>
-#include <gsl/gsl_sf_gamma.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <numbers>
 
 #include "data/error.hpp"
+#include "uq/beta_law.hpp"
 
 namespace uq {
 
@@ -41,6 +41,15 @@ ScaledPrior::ScaledPrior(const data::Parameter& parameter, const data::Prior& pr
                             fmt::format("the prior of {} is the posterior of case '{}', which is not linked here",
                                         parameter.name, prior.posterior_of),
                             "give it a density of its own"});
+  const bool shaped = prior.alpha >= beta_shape_min && prior.alpha <= beta_shape_max && prior.beta >= beta_shape_min &&
+                      prior.beta <= beta_shape_max;
+  if (prior.kind == PriorKind::beta && !shaped)
+    throw data::InputError(
+        data::ExitStatus::bad_study,
+        {where,
+         fmt::format("the beta prior of {} has the shapes {:g} and {:g}, outside {:g} to {:g}", parameter.name,
+                     prior.alpha, prior.beta, beta_shape_min, beta_shape_max),
+         "below, all mass lies on the range's ends; above, on one value: fix the parameter instead"});
   const double low = std::max(prior.low, parameter.low), high = std::min(prior.high, parameter.high);
   const data::Unit& unit = parameter.unit;
   if (!(low < high))
@@ -90,8 +99,7 @@ double ScaledPrior::law_cdf(double x, bool upper) const {
     }
     case PriorKind::beta: {
       const double share = std::clamp((x - prior_.low) / (prior_.high - prior_.low), 0.0, 1.0);
-      return upper ? gsl_cdf_beta_Q(share, prior_.alpha, prior_.beta)
-                   : gsl_cdf_beta_P(share, prior_.alpha, prior_.beta);
+      return upper ? beta_upper(share, {prior_.alpha, prior_.beta}) : beta_cdf(share, {prior_.alpha, prior_.beta});
     }
     case PriorKind::posterior:
       break;
@@ -112,8 +120,8 @@ double ScaledPrior::law_inverse(double probability, bool upper) const {
              std::exp(prior_.sd * (upper ? gsl_cdf_ugaussian_Qinv(probability) : gsl_cdf_ugaussian_Pinv(probability)));
     case PriorKind::beta:
       return prior_.low +
-             (prior_.high - prior_.low) * (upper ? gsl_cdf_beta_Qinv(probability, prior_.alpha, prior_.beta)
-                                                 : gsl_cdf_beta_Pinv(probability, prior_.alpha, prior_.beta));
+             (prior_.high - prior_.low) * (upper ? 1.0 - beta_quantile(probability, {prior_.beta, prior_.alpha})
+                                                 : beta_quantile(probability, {prior_.alpha, prior_.beta}));
     case PriorKind::posterior:
       break;
   }
@@ -138,9 +146,7 @@ double ScaledPrior::log_density_of_value(double x) const {
     }
     case PriorKind::beta: {
       const double width = prior_.high - prior_.low, share = (x - prior_.low) / width;
-      const double first = prior_.alpha == 1.0 ? 0.0 : (prior_.alpha - 1.0) * std::log(share);
-      const double second = prior_.beta == 1.0 ? 0.0 : (prior_.beta - 1.0) * std::log1p(-share);
-      return first + second - gsl_sf_lnbeta(prior_.alpha, prior_.beta) - std::log(width);
+      return beta_log_density(share, {prior_.alpha, prior_.beta}) - std::log(width);
     }
     case PriorKind::posterior:
       break;
@@ -158,8 +164,9 @@ double ScaledPrior::slope_of_value(double x) const {
     case PriorKind::log_normal:
       return -(std::log(x / prior_.mean) / (prior_.sd * prior_.sd) + 1.0) / x;
     case PriorKind::beta: {
-      const double first = prior_.alpha == 1.0 ? 0.0 : (prior_.alpha - 1.0) / (x - prior_.low);
-      const double second = prior_.beta == 1.0 ? 0.0 : (prior_.beta - 1.0) / (prior_.high - x);
+      const double edge = std::numeric_limits<double>::epsilon() * (prior_.high - prior_.low);
+      const double first = prior_.alpha == 1.0 ? 0.0 : (prior_.alpha - 1.0) / std::max(x - prior_.low, edge);
+      const double second = prior_.beta == 1.0 ? 0.0 : (prior_.beta - 1.0) / std::max(prior_.high - x, edge);
       return first - second;
     }
     case PriorKind::posterior:

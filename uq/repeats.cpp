@@ -156,7 +156,7 @@ std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, c
   const Eigen::LLT<Eigen::MatrixXd> spread(predict(model, best).total());
   if (spread.info() != Eigen::Success) return all;
   const Eigen::MatrixXd truths = thinned(draws, options.repeats);
-  data::RandomStream random(options.seed, data::Purpose::posterior_predictive, 0x5EED01);
+  data::RandomStream random(options.seed, data::Purpose::repeated_data);
   Eigen::MatrixXd repeats(truths.rows(), model.row_count());
   for (Eigen::Index b = 0; b < truths.rows(); ++b) {
     Eigen::VectorXd z(repeats.cols());

@@ -113,6 +113,18 @@ double difference(const Eigen::MatrixXd& draws, const Quadrature& exact) {
   return largest;
 }
 
+/// Whether a mean or a variance of the draws is further from quadrature's than five of its standard errors. The error
+/// of a variance is that of the squares: a far mode of little mass makes it many times a normal's.
+bool beyond_its_error(const Draws& draws, const Quadrature& exact) {
+  for (int k = 0; k < draws.dimension(); ++k) {
+    const Eigen::MatrixXd values = draws.coordinate(k), squares = (values.array() - exact.mean[k]).square();
+    if (std::abs(values.mean() - exact.mean[k]) > 5.0 * mean_mcse(values) + 0.01 * exact.sd[k]) return true;
+    const double variance = exact.sd[k] * exact.sd[k];
+    if (std::abs(squares.mean() - variance) > 5.0 * mean_mcse(squares) + 0.02 * variance) return true;
+  }
+  return false;
+}
+
 void add_quadrature(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
                     const CalibrateOptions& options) {
   const Quadrature exact = integrate(
@@ -120,12 +132,22 @@ void add_quadrature(CaseReport& report, const SampledCase& sampled, const Eigen:
       {.tolerance = 1e-4, .evaluations_max = 60000, .threads = options.threads, .guides = thinned(draws, 1000)});
   if (!exact.resolved) return;
   report.grid_difference = difference(draws, exact);
-  // The draws' own error is 1 / sqrt(ESS) sd; beyond five of these the two disagree.
-  double least = sampled.draws.ess_bulk.minCoeff();
-  least = std::min(least, sampled.draws.ess_tail.minCoeff());
-  if (*report.grid_difference > 5.0 / std::sqrt(least))
+  if (beyond_its_error(sampled.draws, exact))
     report.warnings.push_back(fmt::format("case {}: sampler and grid quadrature differ by {:.2g} posterior sd",
                                           report.name, *report.grid_difference));
+}
+
+/// What the second look saw, and how small a place it would have missed: n draws miss a share v with (1 - v)^n.
+std::string search_in_words(const Draws& draws) {
+  if (draws.scouts == 0) return "";
+  const std::string found = draws.found_modes == 0 ? "no maximum that the draws do not know"
+                            : draws.found_modes == 1
+                                ? "one maximum, which the draws then took in"
+                                : fmt::format("{} maxima, which the draws then took in", draws.found_modes);
+  return fmt::format(
+      "{} draws of the prior, and lines through the best fit along every axis and diagonal, gave {} starts uphill: "
+      "{}. A basin that holds less than {:.2g} % of the prior and lies on none of these lines could have escaped.",
+      draws.scouts, draws.searched_starts, found, 100.0 * (1.0 - std::pow(0.05, 1.0 / draws.scouts)));
 }
 
 /// What is known of a cut parameter is what its own case says.
@@ -224,6 +246,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.chains = static_cast<int>(sampled.draws.chains.size());
   report.divergences = sampled.draws.divergences;
   report.sampler = sampled.draws.sampler;
+  report.search = search_in_words(sampled.draws);
   for (const auto& slot : model.slots)
     if (!slot.cut_from.empty()) report.cuts.push_back(slot.label + " from " + slot.cut_from);
   report.log_evidence = sampled.draws.log_evidence;
@@ -265,7 +288,10 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   add_diagnostics(report, sampled);
   add_nuisances(report, sampled);
   add_draws(report, model, draws);
-  const std::uint64_t seed = seed_of(study, options);
+  const auto item = std::find_if(study.cases.begin(), study.cases.end(),
+                                 [&](const data::CalibrationCase& one) { return one.name == model.name; });
+  const std::uint64_t seed = data::child_seed(seed_of(study, options), data::Purpose::report_seed,
+                                              static_cast<std::uint32_t>(item - study.cases.begin()));
   report.predictive = predictive_points(study, model, draws, seed);
   report.curves = predictive_curves(study, model, draws, seed);
   report.discrepancies = discrepancy_bands(study, model, draws, seed);

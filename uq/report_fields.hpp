@@ -235,6 +235,8 @@ void visit_fields(Visit&& visit, T& m) {
   visit("held", m.held);
   visit("log_bayes_factor", m.log_bayes_factor);
   visit("error", m.error);
+  visit("sampling_error", m.sampling_error);
+  visit("surrogate_error", m.surrogate_error);
   visit("sentence", m.sentence);
 }
 
@@ -298,6 +300,7 @@ void visit_fields(Visit&& visit, T& c) {
   visit("discrepancies", c.discrepancies);
   visit("cuts", c.cuts);
   visit("sampler", c.sampler);
+  visit("search", c.search);
   visit("energy_fraction", c.energy_fraction);
   visit("support", c.support);
   visit("without", c.without);

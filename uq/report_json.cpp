@@ -242,6 +242,8 @@ Json comparison_json(const ModelComparison& comparison) {
   return {{"held", comparison.held},
           {"log_bayes_factor", number(comparison.log_bayes_factor)},
           {"error", number(comparison.error)},
+          {"sampling_error", number(comparison.sampling_error)},
+          {"surrogate_error", number(comparison.surrogate_error)},
           {"sentence", comparison.sentence}};
 }
 
@@ -285,6 +287,7 @@ Json case_json(const CaseReport& result) {
       {"discrepancies", Json::array()},
       {"cuts", result.cuts},
       {"sampler", result.sampler},
+      {"search", result.search},
       {"energy_fraction", number(result.energy_fraction)},
       {"support", support_json(result.support)},
       {"without", without_json(result.without)},

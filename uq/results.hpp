@@ -156,7 +156,9 @@ struct ModeReport {
 struct ModelComparison {
   std::string held;               ///< "hamaker = 0 J"
   double log_bayes_factor = 0.0;  ///< natural log of evidence(free) / evidence(held)
-  double error = 0.0;             ///< its standard error
+  double error = 0.0;             ///< its standard error, of both kinds
+  double sampling_error = 0.0;    ///< Monte Carlo's
+  double surrogate_error = 0.0;   ///< of the surrogate, which more runs would make smaller
   std::string sentence;           ///< the finding in words
 };
 
@@ -231,6 +233,7 @@ struct CaseReport {
   std::string doubt;                   ///< why no verdict can rest on the surrogate; empty: it can
   bool unusable = false;               ///< the doubt is of the surrogate itself: the values are not shown
   double surrogate_share = 0.0;        ///< surrogate's sd over the measurement's, median of the rows
+  std::string search;                  ///< what was looked for beside the chains, and what would have escaped
   double energy_fraction = std::numeric_limits<double>::quiet_NaN();  ///< smallest of the chains (E-BFMI); NaN where
                                                                       ///< the sampler has no energy
   std::vector<ModeReport> modes;  ///< separate regions of the posterior, by falling weight; none where there is one
@@ -240,7 +243,7 @@ struct CaseReport {
 /// How the verdict changes when the measurement error is another one.
 struct ErrorScan {
   std::string case_name;
-  double relative_error = 0.0;  ///< of torque
+  double relative_error = 0.0;  ///< of the measured values
   std::vector<std::string> parameters, verdicts;
   std::vector<double> mean, sd;
   double ppp = 0.0;

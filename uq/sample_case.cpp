@@ -103,7 +103,11 @@ SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& e
   }
   sampled.model = std::make_shared<const CaseModel>(std::move(model));
   check_priors(study, *sampled.model);
-  sampled.draws = sample_model(study, sampled, sampled.model, options);
+  // Each case draws its own numbers.
+  CalibrateOptions own = options;
+  own.seed =
+      data::child_seed(seed_of(study, options), data::Purpose::case_seed, static_cast<std::uint32_t>(case_index));
+  sampled.draws = sample_model(study, sampled, sampled.model, own);
   if (!sampled.draws.chains.empty()) sampled.support = find_support(study, *sampled.model, sampled.draws.pooled());
   return sampled;
 }

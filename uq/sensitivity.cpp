@@ -93,7 +93,7 @@ std::vector<SobolIndex> sobol_indices(const std::function<surrogate::Prediction(
   const Eigen::LLT<Eigen::MatrixXd> root(covariance);
   if (root.info() != Eigen::Success) return {};
 
-  data::RandomStream random(options.seed, data::Purpose::posterior_predictive);
+  data::RandomStream random(options.seed, data::Purpose::sobol);
   Eigen::MatrixXd first(inputs, options.draws), total(inputs, options.draws);
   for (int draw = 0; draw < options.draws; ++draw) {
     Eigen::VectorXd z(response.mean.size());

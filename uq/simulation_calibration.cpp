@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "uq/diagnostics.hpp"
+#include "uq/factor.hpp"
 #include "uq/parallel.hpp"
 #include "uq/posterior.hpp"
 
@@ -66,20 +67,20 @@ struct Replicate {
 };
 
 Replicate replicate(const CaseModel& model, const SimulationOptions& options, int index) {
-  data::RandomStream random(options.seed, data::Purpose::prior_predictive, static_cast<std::uint32_t>(index) + 1);
+  data::RandomStream random(options.seed, data::Purpose::simulated_truth, static_cast<std::uint32_t>(index));
   Eigen::VectorXd truth(model.dimension());
   for (Eigen::Index s = 0; s < truth.size(); ++s)
     truth[s] = model.slots[static_cast<std::size_t>(s)].prior.draw(random);
   const StackedPrediction prediction = predict(model, truth);
-  const Eigen::LLT<Eigen::MatrixXd> factor(prediction.total());
+  const Factor root = factor(prediction.total(), "simulated data");
   Eigen::VectorXd y(prediction.mean.size());
   for (double& value : y) value = random.normal();
-  y = prediction.mean + factor.matrixL() * y;
+  y = prediction.mean + root.llt.matrixL() * y;
 
   const auto simulated = std::make_shared<const CaseModel>(with_data(model, y, observed_variance(model)));
   MixtureSamplerOptions sampler = options.sampler;
   sampler.threads = 1;
-  sampler.seed = options.seed + static_cast<std::uint64_t>(index);
+  sampler.seed = data::child_seed(options.seed, data::Purpose::simulation_seed, static_cast<std::uint32_t>(index));
   const Draws draws = sample_mixture(posterior_target(simulated), sampler);
   Replicate found{.converged = draws.converged, .ranks = {}, .covered = {}};
   if (!draws.converged) return found;
@@ -104,7 +105,7 @@ bool SimulationCalibration::calibrated() const {
 
 RankBands rank_bands(int count, int rank_max, double level, std::uint64_t seed) {
   const Binomials binomials(count, rank_max);
-  data::RandomStream random(seed, data::Purpose::test, 0);
+  data::RandomStream random(seed, data::Purpose::rank_bands);
   // The smallest tail probability along the way, of uniform ranks.
   std::vector<double> least(band_simulations, 1.0);
   for (double& smallest : least) {

@@ -14,7 +14,7 @@ constexpr Eigen::Index many_rows = 300;  // beyond, the typical row stands for t
 
 /// The case without all that is uncertain of the data but the emulators and the noise.
 CaseModel emulators_alone(const CaseModel& model) {
-  CaseModel alone = model;
+  CaseModel alone = distinct_rows(model);
   for (auto& group : alone.groups) {
     group.measurement.discrepancies.clear();
     for (auto& set : group.measurement.sets) {
@@ -90,7 +90,8 @@ Structure find_structure(const CaseModel& model, const Profiles& all, const Prof
   return found;
 }
 
-double median_surrogate_share(const CaseModel& model, const Eigen::VectorXd& u) {
+double median_surrogate_share(const CaseModel& full, const Eigen::VectorXd& u) {
+  const CaseModel& model = distinct_rows(full);
   const Eigen::ArrayXd own = predict(emulators_alone(model), u).covariance.diagonal().array().max(0.0);
   const Eigen::ArrayXd other = predict(model, u).total().diagonal().array() - own;
   return quantile((own / other).sqrt(), 0.5);

@@ -13,26 +13,27 @@ double effective_share(const Eigen::VectorXd& slope, double step) {
   return weights.sum() * weights.sum() / (weights.square().sum() * static_cast<double>(slope.size()));
 }
 
-/// Largest step in b that leaves half of the population effective.
-double next_step(const Eigen::VectorXd& slope, double left) {
-  if (effective_share(slope, left) >= 0.5) return left;
+/// Largest step in b that leaves as many points effective as half a population.
+double next_step(const Eigen::VectorXd& slope, double left, Eigen::Index population) {
+  const double wanted = 0.5 * static_cast<double>(population) / static_cast<double>(slope.size());
+  if (effective_share(slope, left) >= wanted) return left;
   double low = 0.0, high = left;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (effective_share(slope, middle) >= 0.5 ? low : high) = middle;
+    (effective_share(slope, middle) >= wanted ? low : high) = middle;
   }
   return low;
 }
 
-/// Systematic resampling by weights.
-std::vector<Eigen::Index> resample(const Eigen::ArrayXd& weights, data::RandomStream& random) {
+/// Systematic resampling of `count` by weights.
+std::vector<Eigen::Index> resample(const Eigen::ArrayXd& weights, Eigen::Index count, data::RandomStream& random) {
   const Eigen::Index n = weights.size();
   std::vector<Eigen::Index> kept;
-  kept.reserve(static_cast<std::size_t>(n));
-  const double spacing = weights.sum() / static_cast<double>(n);
+  kept.reserve(static_cast<std::size_t>(count));
+  const double spacing = weights.sum() / static_cast<double>(count);
   double position = random.uniform() * spacing, sum = weights[0];
   Eigen::Index i = 0;
-  for (Eigen::Index j = 0; j < n; ++j, position += spacing) {
+  for (Eigen::Index j = 0; j < count; ++j, position += spacing) {
     while (sum < position && i + 1 < n) sum += weights[++i];
     kept.push_back(i);
   }
@@ -67,7 +68,7 @@ void move(const Target& target, Population& population, MoveState& state, double
     if (!std::isfinite(values[i])) continue;
     const double reference = target.reference.log_density(proposals.row(i).transpose());
     const double rise = b * (values[i] - population.log_density[i]) + (1.0 - b) * (reference - state.log_reference[i]);
-    if (std::log(chance) >= rise) continue;
+    if (!(std::log(chance) < rise)) continue;
     population.x.row(i) = proposals.row(i);
     population.log_density[i] = values[i];
     state.log_reference[i] = reference;
@@ -79,13 +80,9 @@ void move(const Target& target, Population& population, MoveState& state, double
 
 }  // namespace
 
-Population temper(const Target& target, data::RandomStream& random, const TemperingOptions& options) {
-  const Eigen::Index n = options.population, d = target.dimension;
-  Population population;
-  population.x.resize(n, d);
-  for (Eigen::Index i = 0; i < n; ++i) population.x.row(i) = target.reference.draw(random).transpose();
-  population.log_density = evaluate(target, population.x);
-  population.evaluations = n;
+Population temper(const Target& target, Starts starts, data::RandomStream& random, const TemperingOptions& options) {
+  const Eigen::Index n = options.population;
+  Population population{.x = std::move(starts.x), .log_density = std::move(starts.log_density)};
   if (!(population.log_density.maxCoeff() > -std::numeric_limits<double>::infinity())) return population;
 
   MoveState state;
@@ -93,22 +90,18 @@ Population temper(const Target& target, data::RandomStream& random, const Temper
   while (population.steps < options.steps_max && b < 1.0) {
     ++population.steps;
     // Weights (p / reference)^step; a point where p is zero has none.
-    state.log_reference.resize(n);
-    for (Eigen::Index i = 0; i < n; ++i)
+    const Eigen::Index now = population.x.rows();
+    state.log_reference.resize(now);
+    for (Eigen::Index i = 0; i < now; ++i)
       state.log_reference[i] = target.reference.log_density(population.x.row(i).transpose());
-    Eigen::VectorXd slope = (population.log_density - state.log_reference).cwiseMax(-1e300);
-    const double step = next_step(slope, 1.0 - b);
-    const std::vector<Eigen::Index> kept = resample((step * (slope.array() - slope.maxCoeff())).exp(), random);
+    const Eigen::VectorXd slope = (population.log_density - state.log_reference).cwiseMax(-1e300);
+    const double step = next_step(slope, 1.0 - b, n);
+    const std::vector<Eigen::Index> kept = resample((step * (slope.array() - slope.maxCoeff())).exp(), n, random);
     b = step >= 1.0 - b ? 1.0 : b + step;
 
-    const Population before = population;
-    const Eigen::VectorXd reference = state.log_reference;
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const Eigen::Index i = kept[static_cast<std::size_t>(j)];
-      population.x.row(j) = before.x.row(i);
-      population.log_density[j] = before.log_density[i];
-      state.log_reference[j] = reference[i];
-    }
+    population.x = Eigen::MatrixXd(population.x(kept, Eigen::all));
+    population.log_density = Eigen::VectorXd(population.log_density(kept));
+    state.log_reference = Eigen::VectorXd(state.log_reference(kept));
     const int moves = options.moves + (b == 1.0 ? options.final_moves : 0);
     for (int m = 0; m < moves; ++m) move(target, population, state, b, random);
   }

@@ -28,6 +28,12 @@ struct Population {
   std::int64_t evaluations = 0;
 };
 
-Population temper(const Target& target, data::RandomStream& random, const TemperingOptions& options = {});
+/// From reference draws, of which there may be more than the population holds.
+struct Starts {
+  Eigen::MatrixXd x;
+  Eigen::VectorXd log_density;
+};
+Population temper(const Target& target, Starts starts, data::RandomStream& random,
+                  const TemperingOptions& options = {});
 
 }  // namespace uq

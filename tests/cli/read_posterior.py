@@ -40,6 +40,7 @@ def check(path, draws, engine):
             assert groups[group][name].dims == ("chain", "draw", point), (group, name)
         assert groups["constant_data"].sizes[point] == observed.size
         predicted = groups["posterior_predictive"][name]
+        assert predicted.attrs["units"] == observed.attrs["units"], name
         spread = predicted.std(("chain", "draw"))
         away = abs(predicted.mean(("chain", "draw")) - observed) / spread
         assert float(away.max()) < 4.0, away  # this study's model fits

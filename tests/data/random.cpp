@@ -1,9 +1,16 @@
 // Known answers: the kat_vectors file of Random123 (D. E. Shaw Research), philox4x32 with 10 rounds.
 #include "data/random.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
 #include <set>
+#include <sstream>
 
 using Words = std::array<std::uint32_t, 4>;
 
@@ -53,4 +60,52 @@ TEST_CASE("uniform and normal draws have the moments of their laws") {
   CHECK(z1 / n == Approx(0.0).margin(4.0 / std::sqrt(n)));
   CHECK(z2 / n == Approx(1.0).margin(4.0 * std::sqrt(2.0 / n)));
   CHECK(z4 / n == Approx(3.0).margin(4.0 * std::sqrt(96.0 / n)));
+}
+
+TEST_CASE("no two places of the program draw the same stream") {
+  // Every RandomStream and child seed names its purpose, and its index where it has one, in one expression.
+  const std::regex use(R"(Purpose::(\w+)\s*(?:,([^;]*?))?\)[;,){])");
+  std::map<std::string, std::set<std::string>> places;
+  for (const char* room : {"data", "dem", "surrogate", "uq", "campaign", "cli"}) {
+    const std::filesystem::path root = std::filesystem::path(DEMCAL_SOURCE_DIR) / room;
+    if (!std::filesystem::exists(root)) continue;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
+      const std::string extension = entry.path().extension();
+      if (extension != ".cpp" && extension != ".hpp") continue;
+      std::ostringstream text;
+      text << std::ifstream(entry.path()).rdbuf();
+      const std::string code = text.str();
+      for (auto at = std::sregex_iterator(code.begin(), code.end(), use); at != std::sregex_iterator(); ++at) {
+        std::string index = (*at)[2].str();
+        index.erase(std::remove_if(index.begin(), index.end(), [](char c) { return std::isspace(c) != 0; }),
+                    index.end());
+        // An index that is counted covers all of them.
+        const bool constant =
+            !index.empty() && std::all_of(index.begin(), index.end(), [](char c) { return std::isdigit(c) != 0; });
+        places[(*at)[1].str() + " " + (index.empty() ? "0" : constant ? index : "counted")].insert(entry.path());
+      }
+    }
+  }
+  CHECK(places.size() > 15);
+  // A rig has one packing: that of a slice, or that of its own shape.
+  places["packing 0"].erase((std::filesystem::path(DEMCAL_SOURCE_DIR) / "dem" / "slice.cpp").string());
+  std::map<std::string, std::set<std::string>> by_purpose;
+  for (const auto& [stream, files] : places) {
+    INFO(stream);
+    CHECK(files.size() == 1);
+    by_purpose[stream.substr(0, stream.find(' '))].insert(stream);
+  }
+  for (const auto& [purpose, streams] : by_purpose) {
+    INFO(purpose << ": a counted index beside a constant one may be it");
+    CHECK((streams.size() == 1 || streams.count(purpose + " counted") == 0));
+  }
+}
+
+TEST_CASE("child seeds of jobs differ from each other and from their parent's") {
+  std::set<std::uint64_t> seeds = {7};
+  for (std::uint32_t index = 0; index < 100; ++index) {
+    seeds.insert(data::child_seed(7, data::Purpose::test, index));
+    seeds.insert(data::child_seed(8, data::Purpose::test, index));
+  }
+  CHECK(seeds.size() == 201);
 }

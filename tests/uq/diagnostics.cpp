@@ -35,6 +35,17 @@ TEST_CASE("ranks make R-hat and bulk ESS blind to a monotone change of scale", "
   CHECK(uq::tail_ess(stretched) == uq::tail_ess(draws));
 }
 
+TEST_CASE("an effective size that one tail does not have is nobody's, whichever tail", "[uq]") {
+  // R's posterior gives NA where over 5 % of the draws are tied at a bound.
+  data::RandomStream random(6, data::Purpose::test);
+  Eigen::MatrixXd draws(500, 4);
+  for (double& value : draws.reshaped()) value = random.uniform();
+  const Eigen::MatrixXd at_high = draws.cwiseMin(0.9), at_low = draws.cwiseMax(0.1);
+  CHECK(std::isnan(uq::tail_ess(at_high)));
+  CHECK(std::isnan(uq::tail_ess(-at_high)) == std::isnan(uq::tail_ess(at_low)));
+  CHECK(std::isfinite(uq::tail_ess(draws)));
+}
+
 TEST_CASE("a chain that never moves is not called converged", "[uq]") {
   const Eigen::MatrixXd stuck = Eigen::MatrixXd::Constant(100, 4, 1.0);
   CHECK(std::isnan(uq::rank_rhat(stuck)));
