@@ -63,8 +63,8 @@ std::vector<SetFit> fits_alone(const data::Study& study, const CaseModel& model,
     const CaseModel alone = with_data(model, y, variance);
     const Maximum best = maximum_likelihood(alone, starts);
     const int dof = std::max(1, rows - fisher_spectrum(alone, best.x).known_directions);
-    found.push_back({.name = study.observations[set].name,
-                     .best_fit_p = gsl_cdf_chisq_Q(chi_squared(alone, best.x), dof)});
+    found.push_back(
+        {.name = study.observations[set].name, .best_fit_p = gsl_cdf_chisq_Q(chi_squared(alone, best.x), dof)});
   }
   return found;
 }

@@ -30,9 +30,9 @@ struct Draws {
   double proposal_efficiency = 0.0;  ///< share of an independent draw that one proposal of the mixture is worth
   double pareto_shape = std::numeric_limits<double>::quiet_NaN();  ///< k-hat of the evidence's weights
   int scouts = 0;                ///< reference draws among which unknown maxima were looked for
-  int searched_starts = 0;                                         ///< places from which unknown maxima were looked for
-  int found_modes = 0;                                             ///< that the search added to the proposal
-  std::int64_t evaluations = 0;                                    ///< of the log density, warm-up included
+  int searched_starts = 0;       ///< places from which unknown maxima were looked for
+  int found_modes = 0;           ///< that the search added to the proposal
+  std::int64_t evaluations = 0;  ///< of the log density, warm-up included
 
   int dimension() const { return chains.empty() ? 0 : static_cast<int>(chains.front().x.cols()); }
   /// iterations x chains of one coordinate, for the diagnostics.
