@@ -1,45 +1,188 @@
-// demcal calibrate: the main job. Surrogates, posteriors, verdicts, report.
+// demcal calibrate: the main job. Surrogates, posteriors, verdicts, report; with --verify the posteriors are confirmed
+// by runs of the simulation at their points, which then join the table.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "cli/calibration.hpp"
+#include "cli/train_posterior.hpp"
+#include "cli/verify.hpp"
+#include "data/interrupt.hpp"
 #include "uq/posterior_nc.hpp"
 #include "uq/report_results.hpp"
 
 namespace cli {
+namespace {
+
+struct Options {
+  Common common;
+  std::shared_ptr<std::optional<data::Sampler>> sampler;
+  int verify = 0;  ///< points of each case's posterior; 0: none
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  int rounds = 3;    ///< of verification, at most
+  std::string time;  ///< no new round after it
+};
+
+uq::Calibration calibrate_once(const Options& options, const Workspace& workspace, const TrainingRows& rows) {
+  const uq::SurrogateOptions surrogates = surrogate_options(options.common, workspace, rows);
+  uq::Calibration result;
+  {
+    JobProgress progress(options.common, "calibrating");
+    result = uq::calibrate_all(workspace.study, rows.table,
+                               {.surrogates = surrogates,
+                                .sampler = *options.sampler,
+                                .seed = workspace.study.seed,
+                                .findings = rows.findings,
+                                .progress = std::ref(progress)});
+  }
+  keep_surrogates(workspace, rows, surrogates, result.surrogates);
+  return result;
+}
+
+data::ExitStatus report_on(const Common& common, const Workspace& workspace, const TrainingRows& rows,
+                           uq::Calibration& result) {
+  for (const uq::SampledCase& sampled : result.cases)
+    if (!sampled.draws.chains.empty())
+      uq::write_posterior(posterior_path(workspace, sampled.model->name), workspace.study, sampled,
+                          workspace.study.seed);
+  std::vector<uq::SupportReport> supports;
+  for (const uq::CaseReport& one : result.report.cases) supports.push_back(one.support);
+  write_next_runs(workspace, supports);
+  add_provenance(result.report, workspace, rows);
+  uq::save_results(result.report, (std::filesystem::path(workspace.out) / "results.json").string());
+  say_surrogates(common, result.surrogates);  // after everything is saved: saying may fail
+  return write_report(common, workspace, result.report);
+}
+
+/// Rounds of verification so far, per case.
+using Rounds = std::vector<std::vector<uq::VerificationReport>>;
+
+/// Puts the rounds into the report; a case that its last round does not confirm has a warning.
+void add_rounds(const Rounds& rounds, uq::CalibrationReport& report) {
+  for (std::size_t i = 0; i < rounds.size() && i < report.cases.size(); ++i) {
+    uq::CaseReport& one = report.cases[i];
+    one.verification = rounds[i];
+    if (rounds[i].empty() || rounds[i].back().agrees || rounds[i].back().values.empty()) continue;
+    one.warnings.push_back(fmt::format("case '{}': {}", one.name, rounds[i].back().sentence));
+    report.warnings.push_back(one.warnings.back());
+    report.warning = true;
+  }
+}
+
+bool all_agree(const std::vector<uq::VerificationReport>& reports) {
+  return std::all_of(reports.begin(), reports.end(),
+                     [](const uq::VerificationReport& one) { return one.agrees || one.values.empty(); });
+}
+
+data::ExitStatus calibrate_and_verify(const Options& options) {
+  const data::InterruptGuard interrupt;
+  const Common& common = options.common;
+  const auto begin = std::chrono::steady_clock::now();
+  const Workspace workspace = open_workspace(common);
+  const bool rig = !workspace.cases.empty();
+  TrainingRows rows = rows_to_learn_from(common, workspace);
+  make_out(workspace, rig ? "runs" : "");
+  const auto results = hold_out(workspace, Writes::results, "calibrate --verify");
+  const auto training = rig ? hold_out(workspace, Writes::training, "calibrate --verify") : nullptr;
+  const std::optional<double> limit =
+      options.time.empty() ? std::nullopt : std::optional(parse_duration(options.time, "--for"));
+  Rounds rounds(workspace.study.cases.size());
+  std::vector<ListedRun> listed = read_verify_runs(workspace);
+  for (int round = 1;; ++round) {
+    // Surrogates that have not seen the round's runs, and the runs.
+    HeldBack held = hold_back(workspace, rows.table, listed);
+    TrainingRows unseen = rows;
+    unseen.table = held.others;
+    uq::Calibration result = calibrate_once(options, workspace, unseen);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+    const bool last = round > options.rounds || (limit && elapsed.count() > *limit);
+    const bool agreed = round > 1 && all_agree([&] {
+                          std::vector<uq::VerificationReport> latest;
+                          for (const auto& one : rounds)
+                            if (!one.empty()) latest.push_back(one.back());
+                          return latest;
+                        }());
+    if (agreed || last) {
+      add_rounds(rounds, result.report);
+      return report_on(common, workspace, unseen, result);
+    }
+    if (listed.empty()) {
+      listed = verification_runs(workspace, unseen, result, options.verify);
+      write_verify_runs(workspace, listed);
+      held = hold_back(workspace, rows.table, listed);
+    }
+    // A run that is not of the steady flow was made, though it says nothing.
+    const HeldBack made = hold_back(workspace, rows.all, listed);
+    std::vector<PlannedRun> missing;
+    for (std::size_t i = 0; i < listed.size(); ++i)
+      if (!made.listed[i]) missing.push_back(listed[i].run);
+    if (!missing.empty() && !rig) {
+      say(common, fmt::format("{} points to run with your code: {}. Add their rows to {}, and give this command again",
+                              missing.size(), verify_runs_path(workspace), workspace.study.training.table));
+      return report_on(common, workspace, unseen, result);
+    }
+    if (!missing.empty()) {
+      say(common, fmt::format("verification, round {}: {} runs at points of the posterior", round, missing.size()));
+      BatchResult batch;
+      {
+        data::Progress progress("verification runs", missing.size(),
+                                {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
+        batch = run_batch(workspace, missing, std::move(rows.all),
+                          {.jobs = options.jobs, .kept = rows.kept, .stop = interrupt.token(), .progress = &progress});
+      }
+      rows = rows_to_learn_from(common, workspace);
+      for (const std::string& warning : batch.warnings) say(common, "warning: " + warning);
+      for (const std::string& failure : batch.failures) say(common, "failed: " + failure);
+      if (batch.error) std::rethrow_exception(batch.error);
+      if (interrupt.interrupted()) {
+        say(common,
+            fmt::format("interrupted after {} of {} runs; the same command goes on", batch.finished, missing.size()));
+        return data::ExitStatus::interrupted;
+      }
+      held = hold_back(workspace, rows.table, listed);
+    }
+    const std::vector<uq::VerificationReport> reports = verify_cases(workspace, result.surrogates, listed, held);
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+      rounds[i].push_back(reports[i]);
+      if (!reports[i].sentence.empty())
+        say(common, fmt::format("case {}: {}", workspace.study.cases[i].name, reports[i].sentence));
+    }
+    // From now on these runs teach the surrogates.
+    listed.clear();
+    std::error_code ignored;
+    std::filesystem::remove(verify_runs_path(workspace), ignored);
+  }
+}
+
+}  // namespace
 
 Action add_calibrate(CLI::App& program) {
-  const auto common = std::make_shared<Common>();
+  const auto options = std::make_shared<Options>();
   CLI::App* command =
       add_study_command(program, "calibrate", "fit, sample, identify, report: what the torque determines and what not",
-                        "demcal calibrate data/developer", *common);
-  const auto sampler = add_sampler_option(*command);
-  return [common, sampler] {
-    const Workspace workspace = open_workspace(*common);
-    const TrainingRows rows = rows_to_learn_from(*common, workspace);
+                        "demcal calibrate data/developer", options->common);
+  options->sampler = add_sampler_option(*command);
+  add_isa_option(*command);
+  command
+      ->add_option("--verify", options->verify,
+                   "run the simulation at so many points of each case's posterior, at up to three measured settings, "
+                   "compare with the surrogate, learn from the runs, and repeat until they agree. For another code's "
+                   "runs it writes OUT/verify-runs.csv")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--rounds", options->rounds, "of --verify, at most (default 3)")->check(CLI::Range(1, 100));
+  command->add_option("--for", options->time, "with --verify: no new round after this time, as 2h or 90min");
+  command->add_option("--jobs", options->jobs, "with --verify: runs at the same time (default: one a core)")
+      ->check(CLI::Range(1, 4096));
+  return [options] {
+    if (options->verify > 0) return calibrate_and_verify(*options);
+    const Workspace workspace = open_workspace(options->common);
+    const TrainingRows rows = rows_to_learn_from(options->common, workspace);
     const auto held = hold_out(workspace, Writes::results, "calibrate");
-    const uq::SurrogateOptions surrogates = surrogate_options(*common, workspace, rows);
-    uq::Calibration result;
-    {
-      JobProgress progress(*common, "calibrating");
-      result = uq::calibrate_all(workspace.study, rows.table,
-                                 {.surrogates = surrogates,
-                                  .sampler = *sampler,
-                                  .seed = workspace.study.seed,
-                                  .findings = rows.findings,
-                                  .progress = std::ref(progress)});
-    }
-    keep_surrogates(workspace, rows, surrogates, result.surrogates);
-    for (const uq::SampledCase& sampled : result.cases)
-      if (!sampled.draws.chains.empty())
-        uq::write_posterior(posterior_path(workspace, sampled.model->name), workspace.study, sampled,
-                            workspace.study.seed);
-    std::vector<uq::SupportReport> supports;
-    for (const uq::CaseReport& one : result.report.cases) supports.push_back(one.support);
-    write_next_runs(workspace, supports);
-    add_provenance(result.report, workspace, rows);
-    uq::save_results(result.report, (std::filesystem::path(workspace.out) / "results.json").string());
-    say_surrogates(*common, result.surrogates);  // after everything is saved: saying may fail
-    return write_report(*common, workspace, result.report);
+    uq::Calibration result = calibrate_once(*options, workspace, rows);
+    return report_on(options->common, workspace, rows, result);
   };
 }
 

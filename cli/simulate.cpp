@@ -9,7 +9,6 @@
 #include "cli/run_point.hpp"
 #include "data/file_name.hpp"
 #include "data/hash.hpp"
-#include "data/hash.hpp"
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
 #include "dem/rig.hpp"

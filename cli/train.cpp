@@ -2,16 +2,12 @@
 // file in OUT/runs, its row in OUT/training.h5 and training.csv. An interrupted run goes on from its checkpoint.
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <atomic>
 #include <filesystem>
-#include <mutex>
 #include <thread>
 
 #include "cli/campaign.hpp"
-#include "cli/foretell.hpp"
-#include "cli/run_point.hpp"
-#include "cli/training_table.hpp"
+#include "cli/run_batch.hpp"
+#include "cli/train_posterior.hpp"
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
 
@@ -23,61 +19,10 @@ struct Options {
   Common common;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   int runs = 0, at_posterior = 0;
+  bool until_posterior = false;
+  std::string time;
+  double share = 0.1;
 };
-
-/// What the workers share; the mutex guards all but the counter.
-struct Ledger {
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  data::RunTable table;
-  std::vector<data::RunRow> kept;  ///< rows of other settings, written back
-  std::size_t finished = 0, unsteady = 0;
-  std::vector<bool> ended;  ///< per point of the campaign: finished or failed
-  std::vector<std::string> failures, warnings;
-  std::exception_ptr error;
-};
-
-/// Adds the row, or puts it where an earlier, shorter run of the point stands.
-void put_row(data::RunTable& table, data::RunRow row) {
-  const std::string key = data::row_key(row);
-  for (data::RunRow& there : table.rows) {
-    if (data::row_key(there) != key) continue;
-    there = std::move(row);
-    return;
-  }
-  table.rows.push_back(std::move(row));
-}
-
-/// One worker: takes points until there are none, or the campaign is to stop.
-void work(const Workspace& workspace, const Campaign& campaign, Ledger& ledger, data::Progress& progress,
-          std::stop_source& stop) {
-  try {
-    for (std::size_t i = ledger.next++; i < campaign.points.size() && !stop.stop_requested(); i = ledger.next++) {
-      const Point& point = campaign.points[i];
-      const dem::RunResult result = run_point(
-          workspace, point, {.path = run_path(workspace, point), .keep_state = false, .stop = stop.get_token()});
-      if (result.status == dem::RunStatus::interrupted) return;
-      const std::string what = fmt::format("{} {}", point.material, describe(workspace.study, point));
-      const std::lock_guard lock(ledger.mutex);
-      for (const std::string& warning : result.warnings) ledger.warnings.push_back(what + ": " + warning);
-      if (result.status == dem::RunStatus::failed) {
-        ledger.failures.push_back(what + ": " + result.reason);
-        progress.note("failed: " + ledger.failures.back());
-      } else {
-        put_row(ledger.table, to_row(workspace, point, result));
-        if (result.summary.state != dem::Steady::yes) ++ledger.unsteady;
-        write_tables(workspace, ledger.table, ledger.kept);
-        ++ledger.finished;
-      }
-      ledger.ended[i] = true;
-      progress.advance();
-    }
-  } catch (...) {
-    const std::lock_guard lock(ledger.mutex);
-    if (!ledger.error) ledger.error = std::current_exception();
-    stop.request_stop();
-  }
-}
 
 }  // namespace
 
@@ -98,7 +43,23 @@ Action add_train(CLI::App& program) {
                    "(OUT/next-runs.csv)")
       ->check(CLI::Range(1, 100000))
       ->type_name("N");
+  command
+      ->add_option_function<std::string>(
+          "--until", [options](const std::string&) { options->until_posterior = true; },
+          "posterior: runs in batches where they sharpen the posteriors of the study's cases, until little of their "
+          "width is the surrogate's; --runs and --for limit them. For another code's runs it writes OUT/next-runs.csv")
+      ->check(CLI::IsMember({"posterior"}));
+  command->add_option("--for", options->time, "with --until: no new batch after this time, as 2h or 90min");
+  command
+      ->add_option("--share", options->share,
+                   "with --until: the part of the posterior variance that may stay the surrogate's (default 0.1)")
+      ->check(CLI::Range(0.001, 1.0));
   return [options] {
+    if (options->until_posterior) {
+      PosteriorTraining training{.jobs = options->jobs, .runs = options->runs, .seconds = {}, .share = options->share};
+      if (!options->time.empty()) training.seconds = parse_duration(options->time, "--for");
+      return train_until_posterior(options->common, training);
+    }
     const data::InterruptGuard interrupt;
     const Common& common = options->common;
     const Workspace workspace = open_workspace(common);
@@ -110,11 +71,6 @@ Action add_train(CLI::App& program) {
     const std::size_t before = rows.all.rows.size();
     const Campaign campaign = options->at_posterior > 0 ? plan_at_posterior(workspace, rows.all, options->at_posterior)
                                                         : plan_campaign(workspace, rows.all, options->runs);
-    for (const auto& [material, unused] : workspace.cases) {
-      if (std::any_of(campaign.points.begin(), campaign.points.end(),
-                      [&](const Point& p) { return p.material == material; }))
-        foretell(workspace, parse_point(workspace, material, {}));  // before hours go into runs of nothing
-    }
     write_design(workspace, campaign.points);
     if (campaign.points.empty())
       say(common, fmt::format("nothing is missing: the table has {} runs. For more of them: --runs N", before));
@@ -122,20 +78,14 @@ Action add_train(CLI::App& program) {
       say(common, fmt::format("{} runs to make{}; the table has {}", campaign.points.size(),
                               campaign.continues ? ", left by an unfinished campaign" : "", before));
 
-    Ledger ledger;
-    ledger.table = std::move(rows.all);
-    ledger.ended.assign(campaign.points.size(), false);
-    ledger.kept = std::move(rows.kept);
-    write_tables(workspace, ledger.table, ledger.kept);
-    std::stop_source stop;
-    const std::stop_callback forward(interrupt.token(), [&] { stop.request_stop(); });
+    std::vector<PlannedRun> runs;
+    for (const Point& point : campaign.points) runs.push_back({point, workspace.study.seed});
+    BatchResult ledger;
     {
       data::Progress progress("training runs", campaign.points.size(),
                               {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
-      std::vector<std::jthread> workers;
-      const std::size_t jobs = std::min<std::size_t>(static_cast<std::size_t>(options->jobs), campaign.points.size());
-      for (std::size_t j = 0; j < jobs; ++j)
-        workers.emplace_back([&] { work(workspace, campaign, ledger, progress, stop); });
+      ledger = run_batch(workspace, runs, std::move(rows.all),
+                         {.jobs = options->jobs, .kept = rows.kept, .stop = interrupt.token(), .progress = &progress});
     }
     std::vector<Point> left;
     for (std::size_t i = 0; i < campaign.points.size(); ++i)

@@ -266,6 +266,33 @@ void visit_fields(Visit&& visit, T& c) {
   visit("q95", c.q95);
 }
 
+template <class Visit, SameAs<VerifiedValue> T>
+void visit_fields(Visit&& visit, T& v) {
+  visit("inputs", v.inputs);
+  visit("material", v.material);
+  visit("output", v.output);
+  visit("unit", v.unit);
+  visit("label", v.label);
+  visit("predicted", v.predicted);
+  visit("predicted_sd", v.predicted_sd);
+  visit("simulated", v.simulated);
+  visit("standard_error", v.standard_error);
+  visit("z", v.z);
+}
+
+template <class Visit, SameAs<VerificationReport> T>
+void visit_fields(Visit&& visit, T& v) {
+  visit("runs", v.runs);
+  visit("points", v.points);
+  visit("chi2", v.chi2);
+  visit("dof", v.dof);
+  visit("p", v.p);
+  visit("z_limit", v.z_limit);
+  visit("agrees", v.agrees);
+  visit("sentence", v.sentence);
+  visit("values", v.values);
+}
+
 template <class Visit, SameAs<CaseReport> T>
 void visit_fields(Visit&& visit, T& c) {
   visit("name", c.name);
@@ -309,6 +336,7 @@ void visit_fields(Visit&& visit, T& c) {
   visit("surrogate_share", c.surrogate_share);
   visit("modes", c.modes);
   visit("modes_parted_by", c.modes_parted_by);
+  visit("verification", c.verification);
 }
 
 template <class Visit, SameAs<ErrorScan> T>

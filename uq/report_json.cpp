@@ -259,6 +259,24 @@ Json predictive_json(const PredictivePoint& point) {
           {"observation_set", point.observation_set}};
 }
 
+Json verification_json(const VerificationReport& round) {
+  Json values = Json::array();
+  for (const VerifiedValue& value : round.values)
+    values.push_back({{"inputs", numbers(value.inputs)},
+                      {"material", value.material},
+                      {"output", value.output},
+                      {"unit", value.unit},
+                      {"point", value.label},
+                      {"surrogate", number(value.predicted)},
+                      {"surrogate_sd", number(value.predicted_sd)},
+                      {"simulated", number(value.simulated)},
+                      {"standard_error", number(value.standard_error)},
+                      {"z", number(value.z)}});
+  return {{"runs", round.runs},     {"points", round.points},     {"chi2", number(round.chi2)},
+          {"dof", round.dof},       {"p", number(round.p)},       {"z_limit", number(round.z_limit)},
+          {"agrees", round.agrees}, {"sentence", round.sentence}, {"values", values}};
+}
+
 Json case_json(const CaseReport& result) {
   Json json = {
       {"name", result.name},
@@ -294,7 +312,9 @@ Json case_json(const CaseReport& result) {
       {"doubt", result.doubt.empty() ? Json(nullptr) : Json(result.doubt)},
       {"surrogate_share", number(result.surrogate_share)},
       {"modes", modes_json(result)},
-      {"modes_parted_by", result.modes_parted_by}};
+      {"modes_parted_by", result.modes_parted_by},
+      {"verification", Json::array()}};
+  for (const auto& round : result.verification) json["verification"].push_back(verification_json(round));
   for (const auto& parameter : result.parameters) json["parameters"].push_back(parameter_json(result, parameter));
   for (const auto& one : result.comparisons) json["comparisons"].push_back(comparison_json(one));
   for (const auto& nuisance : result.nuisances) json["nuisances"].push_back(nuisance_json(nuisance));

@@ -43,6 +43,8 @@ std::string case_id(std::size_t index, const CaseReport& result);
 
 /// Of a case: its parameters' joint posterior and what is traded; `id` as in case_id.
 std::string joint_part(const CaseReport& result, const std::string& id, const Context& context);
+/// Runs of the simulation at points of the posterior beside the surrogate; nothing where there are none.
+std::string verification_part(const CaseReport& result, const std::string& id, const Context& context);
 std::string case_section(const CaseReport& result, std::size_t index, const Context& context);
 std::string surrogate_section(const std::vector<SurrogateReport>& surrogates, const Context& context);
 

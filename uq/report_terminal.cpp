@@ -119,6 +119,7 @@ std::string case_text(const CaseReport& result, int columns) {
   for (const ModelComparison& comparison : result.comparisons) text += fold("  ", comparison.sentence, columns);
   text += fold("  ", result.finding, columns);
   text += fold("  ", without_sentence(result), columns);
+  if (!result.verification.empty()) text += fold("  ", result.verification.back().sentence, columns);
   text += fold("  ", result.consequence, columns);
   text += fold("  -> ", result.remedy, columns);
   return text;

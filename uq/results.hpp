@@ -199,6 +199,27 @@ struct WithoutRuns {
   std::string sentence;
 };
 
+/// One output of a run of the simulation at a point of the posterior, beside what the surrogate said before the run.
+struct VerifiedValue {
+  std::map<std::string, double> inputs;  ///< parameters and controls
+  std::string material, output, unit;
+  std::string label;  ///< "draw 3", "equivalent point 2"
+  double predicted = 0.0, predicted_sd = 0.0;
+  double simulated = 0.0, standard_error = 0.0;
+  double z = 0.0;
+};
+
+/// One round of verification (uq/verification.hpp).
+struct VerificationReport {
+  int runs = 0, points = 0;
+  double chi2 = 0.0;
+  int dof = 0;
+  double p = 1.0, z_limit = 0.0;
+  bool agrees = false;
+  std::string sentence;
+  std::vector<VerifiedValue> values;
+};
+
 struct CaseReport {
   std::string name;
   std::vector<std::string> observed_sets;  ///< names, with what the file's header says of each in observed_notes
@@ -238,6 +259,7 @@ struct CaseReport {
                                                                       ///< the sampler has no energy
   std::vector<ModeReport> modes;  ///< separate regions of the posterior, by falling weight; none where there is one
   std::string modes_parted_by;    ///< the measurement that would tell the modes apart
+  std::vector<VerificationReport> verification;  ///< round by round, the last one decides; empty: not asked for
 };
 
 /// How the verdict changes when the measurement error is another one.

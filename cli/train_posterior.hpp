@@ -1,0 +1,21 @@
+#pragma once
+// demcal train --until posterior: runs where they sharpen the posteriors of the study's cases.
+#include <optional>
+
+#include "cli/command.hpp"
+
+namespace cli {
+
+struct PosteriorTraining {
+  int jobs = 1;                   ///< runs at the same time, and of a batch
+  int runs = 0;                   ///< most new runs; 0: as many as it takes
+  std::optional<double> seconds;  ///< wall time
+  double share = 0.1;             ///< of the posterior variance that may stay the surrogate's
+};
+
+/// Parses "2h", "90 min". Throws InputError (64).
+double parse_duration(const std::string& text, const std::string& place);
+
+data::ExitStatus train_until_posterior(const Common& common, const PosteriorTraining& options);
+
+}  // namespace cli
