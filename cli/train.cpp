@@ -107,7 +107,10 @@ Action add_train(CLI::App& program) {
       return data::ExitStatus::interrupted;
     }
     say(common, fmt::format("{} new runs, {} in all: {}", ledger.finished, ledger.table.rows.size(), table));
-    if (workspace.unsteady == Unsteady::use) ledger.unsteady = 0;  // they were asked for
+    if (workspace.unsteady == Unsteady::use) {  // they were asked for
+      ledger.unsteady = 0;
+      ledger.warnings.clear();
+    }
     if (ledger.unsteady > 0)
       say(common,
           fmt::format("warning: {} of the new runs are not of the steady flow and train nothing (training.unsteady "
