@@ -61,6 +61,17 @@ TEST_CASE("JKR: a sphere comes off a plane at 3/2 pi w R*, and tears at its dist
   scene::row("JKR force at tear / pull-off", 5.0 / 9.0, p.at_tear / pull_off, {0.05});
 }
 
+TEST_CASE("JKR: the contact radius solves its equation from break-off on, as closely as the distance is known") {
+  const double b = dem::JkrNormal::break_root;
+  for (double e = 1e-7; e < 30.0; e *= 1.3) {
+    const double y = b + e;
+    const double d = y * (y * y * y - 2.0 / 3.0);
+    const double slope = 4.0 * y * y * y - 2.0 / 3.0;
+    INFO("y - b = " << e);
+    CHECK(std::abs(dem::JkrNormal::At<double>::root(d) - y) < 1e-13 * y + 4e-16 * (std::abs(d) + 0.5 * b) / slope);
+  }
+}
+
 TEST_CASE("DMT: a sphere comes off a plane at 2 pi w R*, and is free beyond touching", "[table]") {
   const dem::Case c = sticky(dem::NormalLaw::hertz);
   const Pull p = pull_off_wall(c);
