@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "surrogate/dense.hpp"
+#include "surrogate/gaps.hpp"
 #include "surrogate/gaussian_process.hpp"
 
 namespace surrogate {
@@ -33,6 +34,7 @@ Standardised append(const Standardised& data, const Eigen::VectorXd& x, double y
   result.high = data.high.cwiseMax(x);
   Eigen::RowVectorXd point(data.points.cols());
   for (std::size_t k = 0; k < data.active.size(); ++k) point[k] = x[data.active[k]];
+  result.gaps = parted(data.gaps, point);
   Index row = 0;
   while (row < data.points.rows() && data.points.row(row) != point) ++row;
   if (row == data.points.rows()) {

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "surrogate/design.hpp"
+#include "surrogate/gaps.hpp"
 #include "surrogate/marginal.hpp"
 #include "surrogate/maximise.hpp"
 
@@ -141,6 +143,7 @@ std::vector<BoundHit> find_bound_hits(const Objective& objective, const Eigen::V
     hit.parameter =
         j < d ? fmt::format("length scale of input {}", data.active[j] + 1) : (j == d ? "signal" : "nugget");
     hit.value = std::exp((at_high ? objective.high[j] : objective.low[j]) * (j < d ? 1.0 : 0.5));
+    hit.input = j < d ? static_cast<int>(j) : -1;
     hit.harmless = (j < d && at_high) || (j == d + 1 && at_low);
     hits.push_back(hit);
   }
@@ -151,7 +154,7 @@ std::vector<BoundHit> find_bound_hits(const Objective& objective, const Eigen::V
 
 GaussianProcess fit(const TrainingSet& training, const FitOptions& options) {
   Standardised data = standardise(training, options.scale, centre_of(options.mean));
-  const int d = static_cast<int>(data.active.size()), p = basis_size(options.mean, d);
+  const int d = static_cast<int>(data.active.size()), p = flat_coefficients(options.mean, d);
   if (data.points.rows() <= p)
     throw data::InputError(data::ExitStatus::bad_data,
                            {"training set of the surrogate",
@@ -162,7 +165,11 @@ GaussianProcess fit(const TrainingSet& training, const FitOptions& options) {
   const Objective objective = make_objective(likelihood, options);
 
   FitDiagnostics diagnostics;
-  diagnostics.starts = search(data, make_starts(d, options), options);
+  const int points = static_cast<int>(data.points.rows());
+  diagnostics.starts = points > options.hyper_points
+                           ? search(subset(data, random_rows(options.hyper_points, points, options.seed)),
+                                    make_starts(d, options), options)
+                           : search(data, make_starts(d, options), options);
   const StartOutcome& best = *std::max_element(diagnostics.starts.begin(), diagnostics.starts.end(), better);
   diagnostics.converged = best.converged;
   diagnostics.agreeing_starts = static_cast<int>(
@@ -187,7 +194,51 @@ GaussianProcess fit(const TrainingSet& training, const FitOptions& options) {
     diagnostics.jitter = std::max(diagnostics.jitter, part.factorised.jitter);
     parts.push_back(std::move(part));
   }
+  if (options.between_runs == BetweenRuns::doubted) data.gaps = find_gaps(data);
+  const bool unused = std::any_of(diagnostics.bound_hits.begin(), diagnostics.bound_hits.end(),
+                                  [](const BoundHit& hit) { return hit.input >= 0 && hit.upper; });
+  if (data.gaps.empty() && !unused)
+    return {options.kernel, options.mean, options.nugget, std::move(data), std::move(parts), std::move(diagnostics)};
+
+  // What an input does decides how far the function may leave the fit between its values, and what a length scale on
+  // its bound means: nothing depends on the input, or all that does is a straight line.
+  Standardised plain = data;
+  plain.gaps.clear();
+  const Eigen::VectorXd effects =
+      input_effects({options.kernel, options.mean, options.nugget, std::move(plain), parts, {}});
+  for (InputGap& gap : data.gaps) gap.sd *= gap_share * (effects[gap.input] + gap_floor);
+  for (BoundHit& hit : diagnostics.bound_hits)
+    if (hit.input >= 0) hit.effect = effects[hit.input];
   return {options.kernel, options.mean, options.nugget, std::move(data), std::move(parts), std::move(diagnostics)};
+}
+
+GaussianProcess fit_best(const TrainingSet& training, const FitOptions& options, const std::vector<ModelForm>& forms) {
+  const bool positive = training.y.size() > 0 && training.y.minCoeff() > 0.0;
+  std::optional<GaussianProcess> best;
+  double highest = 0.0;
+  for (const ModelForm& form : forms) {
+    if (form.scale == OutputScale::log && !positive) continue;
+    FitOptions one = options;
+    one.kernel = form.kernel;
+    one.mean = form.mean;
+    one.scale = form.scale;
+    GaussianProcess process = fit(training, one);
+    const std::vector<StartOutcome>& starts = process.diagnostics().starts;
+    const double flat = flat_coefficients(form.mean, static_cast<int>(process.data().active.size()));
+    const double density = std::max_element(starts.begin(), starts.end(), better)->objective +
+                           process.data().log_jacobian + flat * std::log(process.data().unit);
+    if (best && !(density > highest)) continue;
+    highest = density;
+    best = std::move(process);
+  }
+  return best ? *best : fit(training, options);
+}
+
+FitOptions with_form(FitOptions options, const GaussianProcess& process) {
+  options.kernel = process.kernel();
+  options.mean = process.mean();
+  options.scale = process.data().scale;
+  return options;
 }
 
 }  // namespace surrogate

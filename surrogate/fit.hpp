@@ -20,6 +20,9 @@ enum class Estimate { maximum_likelihood, maximum_a_posteriori };
 /// Plugged in at the best setting, or integrated over (marginal.hpp; predictions cost up to 33 times as much).
 enum class HyperUncertainty { plug_in, integrated };
 
+/// Where no run speaks for an input: the process alone, or with what gaps.hpp adds.
+enum class BetweenRuns { trusted, doubted };
+
 /// Normal density of the logarithm of a hyper-parameter.
 struct LogNormalPrior {
   double median = 1.0;
@@ -55,10 +58,20 @@ struct FitOptions {
   int iterations = 60;      ///< of Newton's method, per start
   double tolerance = 1e-5;  ///< stop when the next step would raise the log likelihood by less
   HyperUncertainty hyper_uncertainty = HyperUncertainty::plug_in;
+  BetweenRuns between_runs = BetweenRuns::trusted;
+  int hyper_points = 1000;      ///< hyper-parameters are fitted to at most so many points, a random subset of all; the
+                                ///< process is conditioned on all of them
   Eigen::VectorXd first_start;  ///< instead of the heuristic start, logs as in StartOutcome; empty: heuristic
 };
 
 /// Throws data::InputError (65) for data that cannot train a process; a fit that does not converge is in diagnostics().
 GaussianProcess fit(const TrainingSet& training, const FitOptions& options = {});
+
+/// Fits every form and keeps the one under which the runs are most probable (log posterior density at its maximum;
+/// all forms have the same hyper-parameters and priors). A form whose scale the runs do not allow is passed over.
+GaussianProcess fit_best(const TrainingSet& training, const FitOptions& options, const std::vector<ModelForm>& forms);
+
+/// The options under which a process was fitted, given those that fit_best was called with.
+FitOptions with_form(FitOptions options, const GaussianProcess& process);
 
 }  // namespace surrogate

@@ -21,7 +21,7 @@ GaussianProcess::GaussianProcess(Kernel kernel, MeanBasis mean, bool nugget, Sta
 
 double GaussianProcess::log_marginal_likelihood() const {
   // The flat prior on beta is flat in the units of y, so p of the n Jacobian factors cancel.
-  const double p = static_cast<double>(parts_->front().factorised.whitened_basis.cols());
+  const double p = flat_coefficients(mean_, static_cast<int>(data_->active.size()));
   return parts_->front().factorised.log_likelihood + data_->log_jacobian + p * std::log(data_->unit);
 }
 

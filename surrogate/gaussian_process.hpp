@@ -75,6 +75,8 @@ struct BoundHit {
   bool upper = false;
   double value = 0.0;     ///< the bound: length in the unit cube, or sd in units of the output's sd
   bool harmless = false;  ///< a nugget at its floor or an input without influence: the model means what it says
+  int input = -1;         ///< of a length scale, among the active ones
+  double effect = 0.0;    ///< of that input: range of the mean along it, in units of the output's sd
 };
 
 /// How the fit went; nothing in it is an exception.

@@ -17,15 +17,18 @@ struct MeanFit {
   double log_likelihood = 0.0;
 };
 
-MeanFit fit_mean(const Eigen::MatrixXd& inverse_factor, const Eigen::MatrixXd& basis, const Eigen::VectorXd& m) {
+MeanFit fit_mean(const Eigen::MatrixXd& inverse_factor, const Eigen::MatrixXd& basis, const Eigen::VectorXd& precision,
+                 const Eigen::VectorXd& m) {
   const Eigen::Index n = m.size(), p = basis.cols();
   MeanFit fit;
   Eigen::VectorXd whitened = inverse_factor.triangularView<Eigen::Lower>() * m;
-  double log_determinant = -2.0 * inverse_factor.diagonal().array().log().sum();
+  double log_determinant = -2.0 * inverse_factor.diagonal().array().log().sum(), shrinkage = 0.0;
+  Eigen::Index flat = p;
   if (p > 0) {
     fit.whitened_basis = inverse_factor.triangularView<Eigen::Lower>() * basis;
     fit.basis_factor = Eigen::MatrixXd::Zero(p, p);
     fit.basis_factor.selfadjointView<Eigen::Lower>().rankUpdate(fit.whitened_basis.transpose());
+    fit.basis_factor.diagonal() += precision;
     if (!cholesky_in_place(fit.basis_factor)) return fit;
     log_determinant += 2.0 * fit.basis_factor.diagonal().array().log().sum();
     invert_lower_in_place(fit.basis_factor);
@@ -33,14 +36,20 @@ MeanFit fit_mean(const Eigen::MatrixXd& inverse_factor, const Eigen::MatrixXd& b
     const Eigen::VectorXd projected = fit.basis_factor * (fit.whitened_basis.transpose() * whitened);
     fit.coefficients = fit.basis_factor.transpose() * projected;
     whitened -= fit.whitened_basis * fit.coefficients;
+    shrinkage = fit.coefficients.cwiseAbs2().dot(precision);
+    for (const double one : precision)
+      if (one > 0.0) {
+        log_determinant -= std::log(one);
+        --flat;
+      }
   } else {
     fit.whitened_basis.resize(n, 0);
     fit.basis_factor.resize(0, 0);
     fit.coefficients.resize(0);
   }
   fit.weights = inverse_factor.transpose().triangularView<Eigen::Upper>() * whitened;
-  fit.log_likelihood = -0.5 * whitened.squaredNorm() - 0.5 * log_determinant -
-                       0.5 * static_cast<double>(n - p) * std::log(2.0 * std::numbers::pi);
+  fit.log_likelihood = -0.5 * (whitened.squaredNorm() + shrinkage) - 0.5 * log_determinant -
+                       0.5 * static_cast<double>(n - flat) * std::log(2.0 * std::numbers::pi);
   fit.ok = std::isfinite(fit.log_likelihood);
   return fit;
 }
@@ -62,7 +71,12 @@ ScaledParameters from_logs(const Eigen::VectorXd& u, bool nugget) {
 }
 
 Likelihood::Likelihood(const Standardised& data, Kernel kernel, MeanBasis mean, bool nugget)
-    : data_(data), kernel_(kernel), mean_(mean), nugget_(nugget), basis_(basis_matrix(mean, data.points)) {
+    : data_(data),
+      kernel_(kernel),
+      mean_(mean),
+      nugget_(nugget),
+      basis_(basis_matrix(mean, data.points)),
+      precision_(basis_precision(mean, static_cast<int>(data.points.cols()))) {
   const Eigen::Index n = data_.points.rows();
   matrix_.resize(n, n);
   square_.resize(n);
@@ -108,7 +122,7 @@ Factorised Likelihood::factorise(const ScaledParameters& parameters) {
 
 /// What follows from the inverse factor and the pooled data.
 void Likelihood::complete(Factorised& result) const {
-  MeanFit mean = fit_mean(result.inverse_factor, basis_, result.pooled.mean);
+  MeanFit mean = fit_mean(result.inverse_factor, basis_, precision_, result.pooled.mean);
   result.ok = mean.ok;
   result.log_likelihood = mean.log_likelihood + result.pooled.log_likelihood;
   result.residual_weights = std::move(mean.weights);
@@ -125,7 +139,7 @@ LikelihoodGradient Likelihood::evaluate(const Eigen::VectorXd& u) {
   if (!build(parameters, pooled.variance, true)) return result;
   result.jitter = jitter_;
   invert_lower_in_place(matrix_);
-  const MeanFit mean = fit_mean(matrix_, basis_, pooled.mean);
+  const MeanFit mean = fit_mean(matrix_, basis_, precision_, pooled.mean);
   if (!mean.ok) return result;
   result.value = mean.log_likelihood + pooled.log_likelihood;
 
@@ -155,11 +169,13 @@ LikelihoodGradient Likelihood::evaluate(const Eigen::VectorXd& u) {
       tangent(j, k) += (difference.head(length) * a(below).array()).sum();
     }
   }
-  // log s^2: s^2 C = K - diag(v), and K a = m - H beta.
+  // log s^2: s^2 C = K - diag(v), K a = m - H beta, tr(P K) = n - p + tr((R R')^-1 B^-1).
   const Eigen::VectorXd diagonal = pooled.variance.array() + jitter_;
   tangent.col(d) = pooled.mean - diagonal.cwiseProduct(a);
   if (p > 0) tangent.col(d) -= basis_ * mean.coefficients;
-  result.gradient[d] = 0.5 * (a.dot(tangent.col(d)) - static_cast<double>(n - p) + matrix_.diagonal().dot(diagonal));
+  const double spread = p > 0 ? mean.basis_factor.colwise().squaredNorm().dot(precision_) : 0.0;
+  result.gradient[d] =
+      0.5 * (a.dot(tangent.col(d)) - static_cast<double>(n - p) - spread + matrix_.diagonal().dot(diagonal));
   if (nugget_) {
     const double g = parameters.nugget_variance;
     tangent.col(d + 1) = g * (pooled.variance_slope.cwiseProduct(a) - pooled.mean_slope);

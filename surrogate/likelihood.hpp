@@ -6,7 +6,9 @@
 //   l = -1/2 m' P m - 1/2 log|K| - 1/2 log|H' K^-1 H| - (n - p)/2 log(2 pi) + E
 //   P = K^-1 - K^-1 H (H' K^-1 H)^-1 H' K^-1
 // (restricted likelihood: Harville, JASA 72:320 (1977); Rasmussen & Williams 2006, eq. 2.45). With p = 0 it is the
-// plain marginal likelihood. Parameters are logarithms: u = (log l_1 ... log l_d, log s^2, log g).
+// plain marginal likelihood. Coefficients with a prior N(0, B) (mean_basis.hpp) enter as H' K^-1 H + B^-1 in place of
+// H' K^-1 H, with -1/2 log|B|, and p counts the flat ones. Parameters are logarithms: u = (log l_1 ... log l_d, log
+// s^2, log g).
 //   dl/du_j = 1/2 a' K_j a - 1/2 tr(P K_j),   a = P m,   K_j = dK/du_j
 //   information  I_jk = 1/2 a' K_j P K_k a  (average of the observed and expected information: Gilmour, Thompson &
 //   Cullis, Biometrics 51:1440 (1995)): it costs n^2 where the expected one costs n^3.
@@ -76,9 +78,10 @@ class Likelihood {
   MeanBasis mean_;
   bool nugget_;
   Eigen::MatrixXd basis_;
-  Eigen::MatrixXd matrix_;  // K, then L, L^-1, K^-1 (lower)
-  Eigen::MatrixXd slope_;   // s^2 f (lower)
-  Eigen::MatrixXd scaled_;  // points / length scales
+  Eigen::VectorXd precision_;  // prior precision of the mean's coefficients
+  Eigen::MatrixXd matrix_;     // K, then L, L^-1, K^-1 (lower)
+  Eigen::MatrixXd slope_;      // s^2 f (lower)
+  Eigen::MatrixXd scaled_;     // points / length scales
   Eigen::ArrayXd square_;
   double jitter_ = 0.0;
 };

@@ -1,13 +1,20 @@
 #pragma once
 // Mean functions of a Gaussian process, m(x) = h(x)' beta, of the active inputs centred in the unit cube, t = x - 1/2:
 //   zero: none (the process has zero mean in the units of y, or of log y);  constant: 1;  linear: 1, t_k;  quadratic:
-//   1, t_k, t_j t_k (j <= k).
-// The coefficients have a flat prior and are integrated out (generalised least squares, restricted likelihood).
+//   1, t_k, t_j t_k (j <= k);  trend: as quadratic.
+// The coefficients are integrated out (generalised least squares, restricted likelihood). Their prior is flat, but for
+// the trend: its constant is flat, the others are N(0, trend_sd^2) in units of the output's standard deviation. With a
+// proper prior few runs, or few levels of an input, may have as many coefficients as they like, and what the runs leave
+// open of them widens the prediction.
 #include <Eigen/Core>
 
 namespace surrogate {
 
-enum class MeanBasis { zero, constant, linear, quadratic };
+enum class MeanBasis { zero, constant, linear, quadratic, trend };
+
+/// Prior sd of a trend's coefficients: an input may well move the output by twice its standard deviation from one end
+/// of its range to the other, and bend by a quarter of that.
+constexpr double trend_sd = 2.0;
 
 inline const char* to_text(MeanBasis basis) {
   switch (basis) {
@@ -19,6 +26,8 @@ inline const char* to_text(MeanBasis basis) {
       return "linear";
     case MeanBasis::quadratic:
       return "quadratic";
+    case MeanBasis::trend:
+      return "trend";
   }
   return "";
 }
@@ -33,10 +42,21 @@ inline int basis_size(MeanBasis basis, int d) {
     case MeanBasis::linear:
       return 1 + d;
     case MeanBasis::quadratic:
+    case MeanBasis::trend:
       return 1 + d + d * (d + 1) / 2;
   }
   return 0;
 }
+
+/// Prior precision of each coefficient, in units of the output's standard deviation; 0: flat.
+inline Eigen::VectorXd basis_precision(MeanBasis basis, int d) {
+  Eigen::VectorXd precision = Eigen::VectorXd::Zero(basis_size(basis, d));
+  if (basis == MeanBasis::trend) precision.tail(precision.size() - 1).setConstant(1.0 / (trend_sd * trend_sd));
+  return precision;
+}
+
+/// How many coefficients the data alone must determine: those with a flat prior.
+inline int flat_coefficients(MeanBasis basis, int d) { return basis == MeanBasis::trend ? 1 : basis_size(basis, d); }
 
 /// h(x) of every row of x: rows of x by basis_size.
 inline Eigen::MatrixXd basis_matrix(MeanBasis basis, const Eigen::MatrixXd& x) {

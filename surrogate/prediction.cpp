@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "surrogate/gaps.hpp"
 #include "surrogate/mixture.hpp"
 
 namespace surrogate {
@@ -69,6 +70,9 @@ void latent(const Conditioned& part, const GaussianProcess& process, PointRange 
         workspace.projected.middleCols(first, m).transpose() * workspace.projected.middleCols(first, m);
   // Rounding may leave a variance at a training point of an exact code just below zero.
   result.covariance.diagonal() = result.covariance.diagonal().cwiseMax(0.0);
+  if (!process.data().gaps.empty())
+    add_gaps(process.data().gaps, workspace.points.middleRows(first, m) * part.parameters.length_scales.asDiagonal(),
+             result.covariance);
 }
 
 void rescale(const Standardised& data, Prediction& result) {
@@ -153,6 +157,10 @@ MarginalPrediction GaussianProcess::predict_marginal(const Eigen::MatrixXd& poin
                                   workspace.projected.colwise().squaredNorm().array())
                                      .max(0.0)
                                      .transpose();
+      if (!data_->gaps.empty())
+        for (Index j = 0; j < count; ++j)
+          variance[j] +=
+              gap_variance(data_->gaps, workspace.points.row(j) * part.parameters.length_scales.asDiagonal());
       mean = (data_->shift + data_->unit * mean.array()).matrix();
       variance *= data_->unit * data_->unit;
       if (data_->scale == OutputScale::log) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surrogate/gaps.hpp"
 #include "surrogate/mixture.hpp"
 #include "surrogate/prediction.hpp"
 
@@ -93,6 +94,9 @@ void GaussianProcess::predict_with_gradient(const Eigen::MatrixXd& points, std::
         workspace.squares.noalias() += slope * basis_part;
       }
       target.covariance_gradient[c] = workspace.squares + workspace.squares.transpose();
+      if (!data_->gaps.empty())
+        add_gap_slopes(data_->gaps, workspace.points * part.parameters.length_scales.asDiagonal(), static_cast<int>(k),
+                       target.covariance_gradient[c]);
     }
     rescale(*data_, target);
     if (single) return;

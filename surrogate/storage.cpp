@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::int64_t format = 2;
+constexpr std::int64_t format = 3;
 
 void write(const data::Hdf5Group& group, const std::string& name, const MatrixXd& matrix) {
   const RowMatrix rows = matrix;
@@ -65,11 +65,11 @@ void save(const data::Hdf5Group& group, const FitDiagnostics& diagnostics) {
   write(group, "start_from", from);
   write(group, "start_to", to);
   std::vector<std::string> names;
-  MatrixXd hits(static_cast<Index>(diagnostics.bound_hits.size()), 3);
+  MatrixXd hits(static_cast<Index>(diagnostics.bound_hits.size()), 5);
   for (Index i = 0; i < hits.rows(); ++i) {
     const BoundHit& hit = diagnostics.bound_hits[i];
     names.push_back(hit.parameter);
-    hits.row(i) << (hit.upper ? 1.0 : 0.0), hit.value, (hit.harmless ? 1.0 : 0.0);
+    hits.row(i) << (hit.upper ? 1.0 : 0.0), hit.value, (hit.harmless ? 1.0 : 0.0), hit.input, hit.effect;
   }
   group.write_texts("bound_names", names);
   write(group, "bound_hits", hits);
@@ -91,6 +91,11 @@ void save(const data::Hdf5Group& group, const GaussianProcess& process) {
   group.write<double>("high", numbers(data.high));
   group.write<std::int32_t>("point_of_run", data.point_of_run);
   group.write<std::int32_t>("active", data.active);
+
+  MatrixXd gaps(static_cast<Index>(data.gaps.size()), 4);
+  for (Index i = 0; i < gaps.rows(); ++i)
+    gaps.row(i) << data.gaps[i].input, data.gaps[i].low, data.gaps[i].high, data.gaps[i].sd;
+  write(group, "gaps", gaps);
 
   const std::vector<Conditioned>& parts = process.parts();
   MatrixXd lengths(static_cast<Index>(parts.size()), data.points.cols());
@@ -152,16 +157,17 @@ FitDiagnostics load_diagnostics(const data::Hdf5Group& group) {
                                   static_cast<int>(outcomes(i, 4)), outcomes(i, 5) != 0.0});
   const std::vector<std::string> names = group.read_texts("bound_names");
   const MatrixXd hits = read_matrix(group, "bound_hits");
-  require(hits.cols() == 3 && hits.rows() == static_cast<Index>(names.size()), group, "its bounds do not fit together");
+  require(hits.cols() == 5 && hits.rows() == static_cast<Index>(names.size()), group, "its bounds do not fit together");
   for (Index i = 0; i < hits.rows(); ++i)
-    diagnostics.bound_hits.push_back({names[i], hits(i, 0) != 0.0, hits(i, 1), hits(i, 2) != 0.0});
+    diagnostics.bound_hits.push_back(
+        {names[i], hits(i, 0) != 0.0, hits(i, 1), hits(i, 2) != 0.0, static_cast<int>(hits(i, 3)), hits(i, 4)});
   return diagnostics;
 }
 
 GaussianProcess load(const data::Hdf5Group& group) {
   const auto kernel = read_enum(group, "kernel", {Kernel::matern32, Kernel::matern52, Kernel::squared_exponential});
-  const auto mean =
-      read_enum(group, "mean", {MeanBasis::zero, MeanBasis::constant, MeanBasis::linear, MeanBasis::quadratic});
+  const auto mean = read_enum(
+      group, "mean", {MeanBasis::zero, MeanBasis::constant, MeanBasis::linear, MeanBasis::quadratic, MeanBasis::trend});
   const bool nugget = group.integer("nugget") != 0;
   Standardised data;
   data.scale = read_enum(group, "scale", {OutputScale::linear, OutputScale::log});
@@ -185,6 +191,13 @@ GaussianProcess load(const data::Hdf5Group& group) {
     ++data.runs_of_point[point];
   }
   for (const int k : data.active) require(k >= 0 && k < d, group, "an input is not there");
+  const MatrixXd gaps = read_matrix(group, "gaps");
+  require(gaps.cols() == 4, group, "its gaps are incomplete");
+  for (Index i = 0; i < gaps.rows(); ++i) {
+    require(gaps(i, 0) >= 0.0 && gaps(i, 0) < static_cast<double>(data.active.size()), group,
+            "a gap's input is not there");
+    data.gaps.push_back({static_cast<int>(gaps(i, 0)), gaps(i, 1), gaps(i, 2), gaps(i, 3)});
+  }
 
   const MatrixXd lengths = read_matrix(group, "length_scales");
   const VectorXd signal = read_vector(group, "signal_variance"), nuggets = read_vector(group, "nugget_variance"),

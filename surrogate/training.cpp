@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "data/error.hpp"
+#include "data/random.hpp"
 
 namespace surrogate {
 namespace {
@@ -97,6 +98,30 @@ Standardised standardise(const TrainingSet& training, OutputScale scale, Centre 
   result.points.resize(static_cast<Eigen::Index>(distinct.size()), static_cast<Eigen::Index>(result.active.size()));
   for (std::size_t j = 0; j < distinct.size(); ++j)
     for (std::size_t k = 0; k < distinct[j].size(); ++k) result.points(j, k) = distinct[j][k];
+  return result;
+}
+
+TrainingSet thinned(const TrainingSet& training, int most, std::uint64_t seed) {
+  const Eigen::Index n = training.y.size();
+  if (n <= most) return training;
+  std::map<std::vector<double>, std::vector<int>> points;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd row = training.x.row(i);
+    points[std::vector<double>(row.begin(), row.end())].push_back(static_cast<int>(i));
+  }
+  std::vector<const std::vector<int>*> order;
+  for (const auto& [point, runs] : points) order.push_back(&runs);
+  data::RandomStream random(seed, data::Purpose::optimiser_starts, 3);
+  for (std::size_t i = order.size(); i > 1; --i)
+    std::swap(order[i - 1], order[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
+  std::vector<int> kept;
+  for (const std::vector<int>* runs : order) {
+    if (!kept.empty() && kept.size() + runs->size() > static_cast<std::size_t>(most)) break;
+    kept.insert(kept.end(), runs->begin(), runs->end());
+  }
+  std::sort(kept.begin(), kept.end());
+  TrainingSet result{training.x(kept, Eigen::all), training.y(kept), {}};
+  if (training.noise_variance.size() == n) result.noise_variance = training.noise_variance(kept);
   return result;
 }
 

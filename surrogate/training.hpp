@@ -13,6 +13,7 @@
 //   E = 1/2 sum log w_i - 1/2 sum w_i (z_i - m)^2 + 1/2 log v - (r - 1)/2 log(2 pi).
 // A column of x that never changes is left out of the process (active lists the others).
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 namespace surrogate {
@@ -30,6 +31,13 @@ struct TrainingSet {
   Eigen::VectorXd noise_variance;  ///< n, unit^2 of y: known variance of each run's mean; empty: none
 };
 
+/// A stretch of one input without runs, in which the function may leave the fit (gaps.hpp).
+struct InputGap {
+  int input = 0;                 ///< among the active ones
+  double low = 0.0, high = 0.0;  ///< unit cube; -infinity, infinity: nothing beyond the outermost run
+  double sd = 0.0;               ///< of z, of the departure far from runs
+};
+
 struct Standardised {
   OutputScale scale = OutputScale::linear;
   double shift = 0.0;              ///< g(y) = shift + unit z
@@ -42,11 +50,16 @@ struct Standardised {
   Eigen::VectorXd low, high;       ///< d, range of every input over the runs
   std::vector<int> point_of_run;   ///< n, row of `points`
   std::vector<int> runs_of_point;  ///< how many runs each point has
+  std::vector<InputGap> gaps;      ///< none: the process speaks for itself between the runs, too
 };
 
 /// Throws data::InputError (65) where the data cannot be a training set: sizes that differ, values that are not finite,
 /// a negative variance, y <= 0 on the log scale, fewer than two runs.
 Standardised standardise(const TrainingSet& training, OutputScale scale, Centre centre = Centre::data_mean);
+
+/// At most `most` of the runs, whole points (replicates stay together), chosen at random; all of them where they are
+/// few enough. A fit costs the cube of their number and each prediction its square.
+TrainingSet thinned(const TrainingSet& training, int most, std::uint64_t seed);
 
 /// What pooling makes of the runs, for one nugget variance, with derivatives with respect to the nugget.
 struct Pooled {

@@ -9,6 +9,8 @@
 
 #include "surrogate/design.hpp"
 #include "surrogate/held_out.hpp"
+#include "surrogate/levels.hpp"
+#include "surrogate/noise_check.hpp"
 #include "surrogate/verdict.hpp"
 
 namespace surrogate {
@@ -35,7 +37,7 @@ HeldOutModel refitted(const TrainingSet& training, const FitOptions& options) {
     const TrainingSet part{training.x(kept, Eigen::all), training.y(kept), training.noise_variance(kept)};
     if (kept.size() < 2) return {};
     const Standardised data = standardise(part, options.scale);
-    const int coefficients = basis_size(options.mean, static_cast<int>(data.active.size()));
+    const int coefficients = flat_coefficients(options.mean, static_cast<int>(data.active.size()));
     if (data.points.rows() <= coefficients) return {};
     const GaussianProcess process = fit(part, options);
     HeldOutPrediction found{process.predict(training.x(left, Eigen::all)), coefficients,
@@ -161,6 +163,10 @@ Validation validate(const TrainingSet& given, const FitOptions& fit_options, con
   const int predicted = hold_out(result, {training, nugget * nugget}, folds, model);
   if (log_scale) result.held_out_mean = result.held_out_mean.array().exp();
 
+  result.levels = check_levels(training, model);
+  for (const std::string& note : level_notes(result.levels)) result.notes.push_back(note);
+  result.noise = check_noise(given, fit_options, process);
+  if (const std::string note = noise_note(result.noise); !note.empty()) result.notes.push_back(note);
   result.verdict = judge(result, predicted, process.diagnostics(), options.thresholds);
   if (options.suggestions > 0) result.next_points = least_known_points(process, options.suggestions, options.seed);
   explain(result, training, model, options.thresholds);

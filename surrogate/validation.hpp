@@ -62,6 +62,27 @@ struct HeldOutFold {
   bool converged = false;
 };
 
+/// Whole levels of one input left out (levels.hpp).
+struct LevelCheck {
+  int input = 0;            ///< column of x
+  int levels = 0;           ///< values that the input takes
+  int predicted = 0;        ///< runs of inner levels that were predicted from the other levels; 0: there are none
+  double q2 = 0.0;          ///< of these
+  double coverage95 = 0.0;  ///< of these
+};
+
+/// Stated errors against what the runs scatter by (noise_check.hpp).
+struct NoiseCheck {
+  double scatter_ratio = 0.0;   ///< nugget sd over the stated errors' root mean square
+  double log_ratio = 0.0;       ///< 2 log of the likelihood ratio of nugget and none
+  double residual_ratio = 1.0;  ///< of the residuals' squares, in units of the stated errors, to what they should be
+  double residual_z = 0.0;      ///< their difference in its own sd
+  bool replicated = false;      ///< five or more replicates show that the nugget is scatter, not structure
+
+  bool understated() const { return scatter_ratio > 0.7 && log_ratio > 7.0; }
+  bool overstated() const { return residual_z < -2.5 && residual_ratio < 0.6; }
+};
+
 struct Validation {
   int runs = 0;
   LeaveOneOut leave_one_out;
@@ -70,6 +91,8 @@ struct Validation {
   std::vector<HeldOutFold> folds;
   double q2_leave_one_out = 0.0, q2_held_out = 0.0, q2_attainable = 0.0, q2_function = 0.0;
   Coverage coverage_leave_one_out, coverage_held_out;
+  std::vector<LevelCheck> levels;  ///< inputs of few values
+  NoiseCheck noise;
   double mahalanobis_probability = 0.0;  ///< smallest of the folds times their number
   int large_errors = 0;                  ///< held-out standardised errors above 2 in size
   int large_pivoted_errors = 0;

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surrogate/levels.hpp"
+#include "surrogate/noise_check.hpp"
+
 namespace surrogate {
 namespace {
 
@@ -19,6 +22,11 @@ double coverage_probability(double inside, int count) {
   const double tail =
       inside < expected ? gsl_cdf_binomial_P(k, 0.95, n) : (k == 0 ? 1.0 : gsl_cdf_binomial_Q(k - 1, 0.95, n));
   return std::min(1.0, 2.0 * tail);
+}
+
+/// Stated errors that do not fit, unless replicates show that the nugget mends them.
+bool noise_doubtful(const Validation& v) {
+  return v.noise.overstated() || (v.noise.understated() && !v.noise.replicated);
 }
 
 bool noise_dominated(const Validation& v, const ValidationThresholds& t) {
@@ -75,10 +83,14 @@ std::vector<std::string> fit_notes(const FitDiagnostics& d) {
     notes.push_back(
         fmt::format("a jitter of {:.1e} of the output's variance was added to factorise the covariance", d.jitter));
   for (const BoundHit& hit : d.bound_hits) {
+    constexpr double hardly = 0.1;  // of the output's sd
     const char* meaning = "";
-    if (hit.harmless)
-      meaning = hit.parameter == "nugget" ? ": no run-to-run scatter beyond the stated errors"
-                                          : ": the output hardly depends on it";
+    if (hit.harmless && hit.parameter == "nugget")
+      meaning = ": no run-to-run scatter beyond the stated errors";
+    else if (hit.harmless && hit.effect < hardly)
+      meaning = ": the output hardly depends on it";
+    else if (hit.harmless)
+      meaning = ": the output varies along it as the simplest curve does";
     notes.push_back(fmt::format("{} is on its {} bound, {:.3g}{}", hit.parameter, hit.upper ? "upper" : "lower",
                                 hit.value, meaning));
   }
@@ -96,7 +108,9 @@ SurrogateVerdict judge(const Validation& v, int predicted, const FitDiagnostics&
   if (v.q2_function < t.q2_unusable) return SurrogateVerdict::unusable;
   const bool bad_bound = std::any_of(diagnostics.bound_hits.begin(), diagnostics.bound_hits.end(),
                                      [](const BoundHit& hit) { return !hit.harmless; });
-  if (v.q2_function < t.q2_good || !diagnostics.converged || bad_bound ||
+  const bool between =
+      std::any_of(v.levels.begin(), v.levels.end(), [&](const LevelCheck& check) { return doubtful(check, t); });
+  if (v.q2_function < t.q2_good || !diagnostics.converged || bad_bound || between || noise_doubtful(v) ||
       coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability ||
       v.mahalanobis_probability < t.mahalanobis_probability)
     return SurrogateVerdict::caution;
@@ -124,6 +138,14 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
   if (noise_dominated(v, t)) v.finding += fmt::format("; {:.0f} % of the runs' variance is their own noise", level);
   if (distance_wrong)
     v.finding += fmt::format("; the errors' Mahalanobis distance has probability {:.1e}", v.mahalanobis_probability);
+  const auto unknown =
+      std::find_if(v.levels.begin(), v.levels.end(), [&](const LevelCheck& check) { return doubtful(check, t); });
+  if (unknown != v.levels.end())
+    v.finding += unknown->levels == 2
+                     ? fmt::format("; nothing is known between the 2 levels of input {}", unknown->input + 1)
+                     : fmt::format("; whole levels of input {} left out are predicted with Q2 {:.3f}",
+                                   unknown->input + 1, unknown->q2);
+  if (noise_doubtful(v)) v.finding += "; " + noise_note(v.noise);
   v.finding += ".";
 
   if (v.verdict == SurrogateVerdict::good) {
@@ -135,10 +157,12 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
     v.consequence = "It does not stand for the model: no verdict that rests on it means anything.";
   } else if (noise_dominated(v, t) && coverage95 >= t.coverage95_unusable) {
     v.consequence = "The runs hardly tell the inputs apart: this output will identify little.";
-  } else if ((coverage_wrong && coverage_low) || distance_wrong) {
+  } else if ((coverage_wrong && coverage_low) || distance_wrong || noise_doubtful(v)) {
     v.consequence = "Its intervals may be too narrow or too wide: posteriors that rest on it may be, too.";
   } else if (coverage_wrong) {
     v.consequence = "Its intervals are wider than its errors: posteriors that rest on it are wider than need be.";
+  } else if (unknown != v.levels.end()) {
+    v.consequence = "What lies between the levels is assumed, not learnt: the posterior is as wide as that leaves it.";
   } else if (v.q2_function < t.q2_good) {
     v.consequence = "Its error is a large part of the response; it enters the likelihood and widens the posterior.";
   } else {
@@ -148,10 +172,15 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
     v.remedy = "Make the runs longer or replicate them, or use an output that responds more.";
     return;
   }
+  if (unknown != v.levels.end() && v.verdict == SurrogateVerdict::caution) {
+    v.more_runs = std::max(8, v.runs / 4);
+    v.remedy = fmt::format("Add about {} runs between the levels of input {}.", v.more_runs, unknown->input + 1);
+    return;
+  }
   if (v.q2_function < t.q2_good) {
     v.more_runs = runs_wanted(v, training, model, t.q2_good);
     v.remedy = fmt::format("Add about {} runs, the first of them where the surrogate knows least.", v.more_runs);
-  } else if (coverage_wrong || distance_wrong) {
+  } else if (coverage_wrong || distance_wrong || noise_doubtful(v)) {
     v.more_runs = std::max(8, v.runs / 4);
     v.remedy = fmt::format(
         "Look at the standardised errors above 2 (runs with a wrong standard error?); else add about {} runs, or try "

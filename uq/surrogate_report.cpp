@@ -76,13 +76,15 @@ void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const 
                     overstated_errors, found.scatter, 100.0 * typical));
 }
 
-/// "length scale of input 2" by the input's own name.
+/// "length scale of input 2" by the input's own name, wherever the judgement speaks of it.
 void name_inputs(SurrogateReport& report) {
-  for (std::string& note : report.notes)
-    for (std::size_t k = 0; k < report.inputs.size(); ++k) {
-      const std::string number = fmt::format("of input {} ", k + 1);
-      if (const std::size_t at = note.find(number); at != std::string::npos)
-        note.replace(at, number.size(), "of " + report.inputs[k] + " ");
+  std::vector<std::string*> texts{&report.finding, &report.consequence, &report.remedy};
+  for (std::string& note : report.notes) texts.push_back(&note);
+  for (std::string* text : texts)
+    for (std::size_t k = report.inputs.size(); k-- > 0;) {  // input 12 before input 1
+      const std::string number = fmt::format("of input {}", k + 1), name = "of " + report.inputs[k];
+      for (std::size_t at = text->find(number); at != std::string::npos; at = text->find(number, at + name.size()))
+        text->replace(at, number.size(), name);
     }
 }
 

@@ -33,15 +33,19 @@ SurrogateOptions read_surrogate_options(const data::StudyFile& file, const data:
                                {{"constant", MeanBasis::constant},
                                 {"zero", MeanBasis::zero},
                                 {"linear", MeanBasis::linear},
-                                {"quadratic", MeanBasis::quadratic}});
+                                {"quadratic", MeanBasis::quadratic},
+                                {"trend", MeanBasis::trend}});
   fit.estimate = choose<Estimate>(
       section, "estimate",
       {{"maximum a posteriori", Estimate::maximum_a_posteriori}, {"maximum likelihood", Estimate::maximum_likelihood}});
   fit.hyper_uncertainty = choose<HyperUncertainty>(
       section, "hyper_parameters",
       {{"plugged in", HyperUncertainty::plug_in}, {"integrated", HyperUncertainty::integrated}});
+  fit.between_runs = choose<BetweenRuns>(section, "between_runs",
+                                         {{"doubted", BetweenRuns::doubted}, {"trusted", BetweenRuns::trusted}});
   fit.nugget = section.flag("nugget", fit.nugget);
   fit.starts = static_cast<int>(section.integer("starts", {.low = 1, .high = 1000}, fit.starts));
+  options.runs_most = static_cast<int>(section.integer("runs_most", {.low = 20, .high = 100000}, options.runs_most));
   options.log_outputs = section.texts("log_outputs");
   for (const std::string& name : options.log_outputs) {
     if (std::none_of(study.outputs.begin(), study.outputs.end(), [&](const auto& o) { return o.name == name; }))

@@ -25,12 +25,20 @@ bool is_observed(const data::Study& study, const TrainingRows& rows) {
 FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const SurrogateOptions& options) {
   const surrogate::FitOptions fit_options = options_for(study, rows, options);
   FittedSurrogate fitted{.rows = std::move(rows), .process = {}, .two_level = {}, .report = {}};
+  const Eigen::Index all = fitted.rows.low ? fitted.rows.low->y.size() : fitted.rows.set.y.size();
+  surrogate::TrainingSet& many = fitted.rows.low ? *fitted.rows.low : fitted.rows.set;
+  many = surrogate::thinned(many, options.runs_most, options.fit.seed);
   const surrogate::TrainingSet& base = fitted.rows.low ? *fitted.rows.low : fitted.rows.set;
   fitted.process = std::make_shared<const surrogate::GaussianProcess>(surrogate::fit(base, fit_options));
   if (fitted.rows.low)
     fitted.two_level = std::make_shared<const surrogate::TwoLevelProcess>(
         surrogate::fit_two_level(*fitted.process, fitted.rows.set, {.seed = options.fit.seed}));
   fitted.report = report_of(study, fitted, options);
+  if (many.y.size() < all)
+    fitted.report.notes.push_back(fmt::format(
+        "{} of {} runs train, chosen at random: a fit takes the cube of their number; [surrogate] runs_most "
+        "raises it",
+        many.y.size(), all));
   return fitted;
 }
 

@@ -38,9 +38,11 @@ struct FittedSurrogate {
 };
 
 struct SurrogateOptions {
-  surrogate::FitOptions fit = {};
+  /// Matern 5/2 about a constant, plugged in, and between the runs doubted: surrogate/COVERAGE.md says why.
+  surrogate::FitOptions fit = {.between_runs = surrogate::BetweenRuns::doubted};
   std::vector<std::string> log_outputs = {};     ///< outputs that are learnt as logarithms, whatever fit.scale
   surrogate::ValidationOptions validation = {};  ///< its seed is that of the fit
+  int runs_most = 1000;                          ///< of a table with more, so many train, chosen at random
   bool observed_only = false;                    ///< leave out the outputs that no case observes
   std::optional<data::RunTable> low = {};        ///< runs of the cheaper level
   std::vector<FittedSurrogate> known = {};       ///< fitted before under the same options: not fitted again
