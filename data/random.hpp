@@ -42,6 +42,7 @@ enum class Purpose : std::uint32_t {
   shuffled_points = 29,       ///< beside which a cloud of points is thin
   repeated_data = 30,         ///< for the probabilities of words
   report_seed = 28,           ///< child_seed of what a case's report draws
+  thinned_runs = 31,          ///< those of many that a surrogate learns from
   simulation_case_seed = 27,  ///< child_seed of a case's simulation-based calibration
 };
 

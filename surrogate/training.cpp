@@ -101,17 +101,15 @@ Standardised standardise(const TrainingSet& training, OutputScale scale, Centre 
   return result;
 }
 
-TrainingSet thinned(const TrainingSet& training, int most, std::uint64_t seed) {
-  const Eigen::Index n = training.y.size();
-  if (n <= most) return training;
+std::vector<int> thin(const TrainingSet& training, int most, std::uint64_t seed) {
   std::map<std::vector<double>, std::vector<int>> points;
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < training.y.size(); ++i) {
     const Eigen::VectorXd row = training.x.row(i);
     points[std::vector<double>(row.begin(), row.end())].push_back(static_cast<int>(i));
   }
   std::vector<const std::vector<int>*> order;
   for (const auto& [point, runs] : points) order.push_back(&runs);
-  data::RandomStream random(seed, data::Purpose::optimiser_starts, 3);
+  data::RandomStream random(seed, data::Purpose::thinned_runs, 0);
   for (std::size_t i = order.size(); i > 1; --i)
     std::swap(order[i - 1], order[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
   std::vector<int> kept;
@@ -120,8 +118,12 @@ TrainingSet thinned(const TrainingSet& training, int most, std::uint64_t seed) {
     kept.insert(kept.end(), runs->begin(), runs->end());
   }
   std::sort(kept.begin(), kept.end());
-  TrainingSet result{training.x(kept, Eigen::all), training.y(kept), {}};
-  if (training.noise_variance.size() == n) result.noise_variance = training.noise_variance(kept);
+  return kept;
+}
+
+TrainingSet chosen(const TrainingSet& training, const std::vector<int>& runs) {
+  TrainingSet result{training.x(runs, Eigen::all), training.y(runs), {}};
+  if (training.noise_variance.size() == training.y.size()) result.noise_variance = training.noise_variance(runs);
   return result;
 }
 

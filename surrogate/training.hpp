@@ -57,9 +57,12 @@ struct Standardised {
 /// a negative variance, y <= 0 on the log scale, fewer than two runs.
 Standardised standardise(const TrainingSet& training, OutputScale scale, Centre centre = Centre::data_mean);
 
-/// At most `most` of the runs, whole points (replicates stay together), chosen at random; all of them where they are
-/// few enough. A fit costs the cube of their number and each prediction its square.
-TrainingSet thinned(const TrainingSet& training, int most, std::uint64_t seed);
+/// Which of the runs to learn from where they are more than `most`: whole points (replicates stay together), chosen at
+/// random, in order. A fit costs the cube of their number and each prediction its square.
+std::vector<int> thin(const TrainingSet& training, int most, std::uint64_t seed);
+
+/// The runs of these numbers.
+TrainingSet chosen(const TrainingSet& training, const std::vector<int>& runs);
 
 /// What pooling makes of the runs, for one nugget variance, with derivatives with respect to the nugget.
 struct Pooled {

@@ -25,9 +25,18 @@ bool is_observed(const data::Study& study, const TrainingRows& rows) {
 FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const SurrogateOptions& options) {
   const surrogate::FitOptions fit_options = options_for(study, rows, options);
   FittedSurrogate fitted{.rows = std::move(rows), .process = {}, .two_level = {}, .report = {}};
-  const Eigen::Index all = fitted.rows.low ? fitted.rows.low->y.size() : fitted.rows.set.y.size();
   surrogate::TrainingSet& many = fitted.rows.low ? *fitted.rows.low : fitted.rows.set;
-  many = surrogate::thinned(many, options.runs_most, options.fit.seed);
+  const Eigen::Index all = many.y.size();
+  if (all > options.runs_most) {
+    const std::vector<int> kept = surrogate::thin(many, options.runs_most, options.fit.seed);
+    many = surrogate::chosen(many, kept);
+    std::vector<std::string>& places = fitted.rows.places;
+    if (!fitted.rows.low && std::ssize(places) == all) {
+      std::vector<std::string> left;
+      for (const int run : kept) left.push_back(std::move(places[static_cast<std::size_t>(run)]));
+      places = std::move(left);
+    }
+  }
   const surrogate::TrainingSet& base = fitted.rows.low ? *fitted.rows.low : fitted.rows.set;
   fitted.process = std::make_shared<const surrogate::GaussianProcess>(surrogate::fit(base, fit_options));
   if (fitted.rows.low)
