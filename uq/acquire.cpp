@@ -29,7 +29,7 @@ double log_add(double a, double b) {
 }
 
 /// The emulator's inputs of a group's rows at u, without the shifted copies.
-Eigen::MatrixXd rows_at(const RowGroup& group, const Eigen::VectorXd& u) {
+Eigen::MatrixXd unshifted_rows(const RowGroup& group, const Eigen::VectorXd& u) {
   Eigen::MatrixXd points = group.base;
   for (Index k = 0; k < points.cols(); ++k)
     for (Index i = 0; i < points.rows(); ++i)
@@ -170,7 +170,7 @@ IntegratedVariance::IntegratedVariance(const CaseModel& model, const ReferencePo
       log_mean_square[j] += squares.mean;
       group.less.push_back(total);
       group.more.push_back(std::move(total));
-      stacked.middleRows(j * count, count) = rows_at(rows, u);
+      stacked.middleRows(j * count, count) = unshifted_rows(rows, u);
       for (Index i = 0; i < count; ++i)
         factor[j * count + i] = rows.measurement.plain() ? 1.0 : meter_at(rows.measurement, model.slots, u, i).factor;
     }

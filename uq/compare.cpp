@@ -20,10 +20,21 @@ const char* strength(double log_bayes_factor) {
   return twice < 6.0 ? "positive" : twice < 10.0 ? "strong" : "very strong";
 }
 
+/// Two digits at most, and no exponent.
+std::string plain_error(double error) {
+  return error < 10.0 ? fmt::format("{:.1g}", error) : fmt::format("{:.0f}", error);
+}
+
+/// The evidence on each side is the mean over the torques that the surrogate allows, so its doubt is in the Bayes
+/// factor, and the words follow from that. How far the factor of one of these torques alone lies from it is said
+/// beside.
 std::string in_words(const ModelComparison& found, const std::string& names) {
-  const std::string number = fmt::format("ln Bayes factor {:.1f} +- {:.1g}", found.log_bayes_factor, found.error);
+  std::string number =
+      fmt::format("ln Bayes factor {:.1f} +- {}", found.log_bayes_factor, plain_error(found.sampling_error));
+  if (found.surrogate_error > std::max(0.5, 0.1 * std::abs(found.log_bayes_factor)))
+    number += fmt::format(", with the torque known exactly another by about {}", plain_error(found.surrogate_error));
   constexpr const char* caveat = "a wider prior range of what is held would lower it";
-  if (std::abs(found.log_bayes_factor) < 1.0 + found.error)
+  if (std::abs(found.log_bayes_factor) < 1.0 + 2.0 * found.sampling_error)
     return fmt::format("The data do not decide between {} and {} free ({}; {}).", found.held, names, number, caveat);
   const bool free = found.log_bayes_factor > 0.0;
   return fmt::format("The data favour {} over {}: {} evidence ({}; {}).", free ? names + " free" : found.held,

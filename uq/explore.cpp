@@ -136,7 +136,7 @@ Eigen::MatrixXd line_maxima(const Target& target, const Scouts& scouts, const Ei
   return all(kept, Eigen::all);
 }
 
-bool same(const Mode& a, const Mode& b) {
+bool same(const Peak& a, const Peak& b) {
   const Eigen::VectorXd apart = a.x - b.x;
   const auto near = [&](const Eigen::MatrixXd& covariance) {
     const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
@@ -190,27 +190,27 @@ Search search_unknown(const Target& target, const Scouts& scouts, const Knowledg
     search.evaluations += found.evaluations;
     if (found.known || !(found.log_density > nowhere)) continue;
     // Of the same maximum as one before, within its two standard deviations?
-    const bool seen = std::any_of(search.modes.begin(), search.modes.end(), [&](const Mode& mode) {
+    const bool seen = std::any_of(search.modes.begin(), search.modes.end(), [&](const Peak& mode) {
       const Eigen::LLT<Eigen::MatrixXd> factor(mode.covariance);
       return factor.info() == Eigen::Success && factor.matrixL().solve(found.x - mode.x).squaredNorm() < 4.0;
     });
     if (seen) continue;
-    Mode mode = laplace(target, found.x, 0.25 * width);
+    Peak mode = laplace(target, found.x, 0.25 * width);
     const bool twice =
-        std::any_of(search.modes.begin(), search.modes.end(), [&](const Mode& other) { return same(mode, other); });
+        std::any_of(search.modes.begin(), search.modes.end(), [&](const Peak& other) { return same(mode, other); });
     if (!twice) search.modes.push_back(std::move(mode));
   }
   return search;
 }
 
-Mode laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width) {
+Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width) {
   const Eigen::Index d = x.size();
   const auto value = [&](const Eigen::VectorXd& at) {
     if (!target.contains(at)) return nowhere;
     const double found = target.log_density(at);
     return std::isnan(found) ? nowhere : found;
   };
-  Mode mode{.x = x, .log_density = value(x), .covariance = {}, .log_mass = 0.0};
+  Peak mode{.x = x, .log_density = value(x), .covariance = {}, .log_mass = 0.0};
   // Steps along which the log density falls by about a half: one conditional standard deviation.
   Eigen::VectorXd step = 0.1 * width;
   std::vector<bool> at_bound(static_cast<std::size_t>(d), false);

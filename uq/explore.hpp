@@ -9,12 +9,11 @@
 // 2. Scouts higher than all around them are starts: the best of its leaf in each of several trees that halve the scouts
 //    along random directions. Further starts are the maxima along lines through a known point: every axis, and every
 //    diagonal of the scouts' box. Mirror images and repeated modes lie on such lines in any dimension.
-// 3. From each start uphill, by a trust region with a BFGS model so that no step jumps into another basin, until p is
-// as
-//    high as in the bulk of the draws and q knows the place, p(x) <= level q(x), or a maximum is reached.
-// 4. The mass of an unknown maximum is Laplace's, p(m) (2 pi)^(d/2) |S|^(1/2), S the inverse of the curvature,
-// shortened
-//    along its axes to where p still is of the maximum's order: on a curved ridge it is the mass of a straight piece.
+// 3. From each start uphill, by a trust region with a BFGS model so that no step jumps into another basin. It ends
+//    where p is as high as in the bulk of the draws and q knows the place, p(x) <= level q(x), or at a maximum.
+// 4. The mass of an unknown maximum is Laplace's, p(m) (2 pi)^(d/2) |S|^(1/2). S is the inverse of the curvature,
+//    shortened along its axes to where p still is of the maximum's order: on a curved ridge it is the mass of a
+//    straight piece.
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -41,7 +40,7 @@ struct Scouts {
 };
 Scouts send_scouts(const Target& target, data::RandomStream& random, const ExploreOptions& options = {});
 
-struct Mode {
+struct Peak {
   Eigen::VectorXd x;
   double log_density = 0.0;
   Eigen::MatrixXd covariance;  ///< Laplace's
@@ -49,7 +48,7 @@ struct Mode {
 };
 
 /// Laplace's approximation at x; `width` bounds its standard deviations.
-Mode laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width);
+Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width);
 
 /// What is known: p(x) <= exp(log_level) q(x) for every mixture. In the far tails of q that holds of anything, so a way
 /// uphill goes on to where p is at least exp(log_bulk).
@@ -65,7 +64,7 @@ struct Knowledge {
 };
 
 struct Search {
-  std::vector<Mode> modes;  ///< unknown maxima, each once
+  std::vector<Peak> modes;  ///< unknown maxima, each once
   int starts = 0;           ///< that were followed
   std::int64_t evaluations = 0;
 };

@@ -93,23 +93,27 @@ std::string find_unknown(const Target& target, const Scouts& scouts, const Popul
     const Search search = search_unknown(target, scouts, knowledge, origins, options.explore);
     result.evaluations += search.evaluations;
     result.searched_starts += search.starts;
-    std::vector<Mode> matter;
+    std::vector<Peak> matter;
     double share = 0.0;
-    for (const Mode& mode : search.modes) {
+    for (const Peak& mode : search.modes) {
       const double mass = std::exp(std::min(mode.log_mass - log_evidence, 50.0));
       if (mass < options.unknown_mass) continue;
       matter.push_back(mode);
       share += mass;
     }
     if (matter.empty()) return "";
-    if (round == options.search_rounds)
-      return fmt::format("{} maxima with about {:.2g} % of the mass are outside the proposal", matter.size(),
-                         100.0 * share / (1.0 + share));
+    if (round == options.search_rounds) {
+      const double part = share / (1.0 + share);
+      if (part < options.missing_mass) return "";
+      return fmt::format("{} with about {:.2g} % of the mass {} outside the proposal",
+                         matter.size() == 1 ? "a maximum" : fmt::format("{} maxima", matter.size()), 100.0 * part,
+                         matter.size() == 1 ? "is" : "are");
+    }
     result.found_modes += static_cast<int>(matter.size());
     for (Half& half : halves) add_modes(half.proposal, matter, std::clamp(share / (1.0 + share), 0.2, 0.7));
     adapt_halves(target, halves, options);
     const auto top = std::max_element(matter.begin(), matter.end(),
-                                      [](const Mode& a, const Mode& b) { return a.log_mass < b.log_mass; });
+                                      [](const Peak& a, const Peak& b) { return a.log_mass < b.log_mass; });
     origins.through = top->x;
   }
 }

@@ -36,7 +36,8 @@ struct MixtureSamplerOptions {
   int burn_in = 64;             ///< draws of each chain that are left out
   double local_share = 0.2;     ///< chance that a move is a local one
   double unknown_ratio = 30.0;  ///< p / (Z q) from which a place is unknown to a proposal
-  double unknown_mass = 1e-4;   ///< of the whole, from which an unknown maximum matters
+  double unknown_mass = 1e-4;   ///< of the whole, from which an unknown maximum joins the proposal
+  double missing_mass = 2e-3;   ///< of the whole, that may stay unknown after the last search
   int search_rounds = 3;        ///< in which unknown maxima are added
   double apart_max = 4.5;       ///< standard errors by which the halves may differ
   TemperingOptions tempering = {};

@@ -79,9 +79,9 @@ void adapt(const Target& target, Adaptation& state, data::RandomStream& random, 
   }
 }
 
-void add_modes(Adaptation& state, const std::vector<Mode>& modes, double share) {
+void add_modes(Adaptation& state, const std::vector<Peak>& modes, double share) {
   std::vector<MixtureComponent> added;
-  for (const Mode& mode : modes)
+  for (const Peak& mode : modes)
     added.push_back({.weight = share / static_cast<double>(modes.size()),
                      .mean = mode.x,
                      .factor = factor_for_proposal(mode.covariance)});

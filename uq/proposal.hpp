@@ -31,6 +31,6 @@ Adaptation begin_proposal(const Eigen::MatrixXd& points, data::RandomStream& ran
 /// To its own weighted draws.
 void adapt(const Target& target, Adaptation& state, data::RandomStream& random, const ProposalOptions& options);
 /// Puts a component at each mode, `share` of the weight in all.
-void add_modes(Adaptation& state, const std::vector<Mode>& modes, double share);
+void add_modes(Adaptation& state, const std::vector<Peak>& modes, double share);
 
 }  // namespace uq

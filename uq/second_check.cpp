@@ -12,7 +12,7 @@ namespace uq {
 namespace {
 
 /// Draws within about two standard deviations of a maximum.
-Eigen::Index draws_near(const Mode& mode, const Eigen::MatrixXd& draws) {
+Eigen::Index draws_near(const Peak& mode, const Eigen::MatrixXd& draws) {
   const Eigen::MatrixXd root = factor_for_proposal(mode.covariance);
   const Eigen::MatrixXd away =
       root.triangularView<Eigen::Lower>().solve((draws.rowwise() - mode.x.transpose()).transpose());
@@ -46,7 +46,7 @@ std::string missed_maxima(const Target& target, Draws& draws, const SecondCheckO
   draws.evaluations += search.evaluations + scouts.x.rows();
   draws.scouts = static_cast<int>(scouts.x.rows());
   draws.searched_starts += search.starts;
-  for (const Mode& mode : search.modes) {
+  for (const Peak& mode : search.modes) {
     const double mass = std::exp(std::min(mode.log_mass - log_evidence, 50.0)), share = mass / (1.0 + mass);
     const auto near = static_cast<double>(draws_near(mode, all));
     if (share < options.mass || near > 0.05 * share * static_cast<double>(all.rows())) continue;

@@ -37,7 +37,7 @@ TEST_CASE("a normal's Laplace mass and covariance are its own, whatever its tilt
   };
   const Target target =
       adversaries::on_box(Tilted{precision, centre}, Eigen::VectorXd::Zero(3), Eigen::VectorXd::Ones(3));
-  const Mode mode = laplace(target, centre, Eigen::VectorXd::Constant(3, 0.25));
+  const Peak mode = laplace(target, centre, Eigen::VectorXd::Constant(3, 0.25));
   CHECK((mode.covariance - covariance).norm() < 1e-6 * covariance.norm());
   const double exact = 1.5 * std::log(2.0 * std::numbers::pi) + root.diagonal().array().log().sum();
   CHECK(mode.log_mass == Approx(exact).margin(1e-6));
