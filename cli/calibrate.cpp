@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <thread>
 
 #include "cli/calibration.hpp"
@@ -87,8 +88,8 @@ data::ExitStatus calibrate_and_verify(const Options& options) {
   make_out(workspace, rig ? "runs" : "");
   const auto results = hold_out(workspace, Writes::results, "calibrate --verify");
   const auto training = rig ? hold_out(workspace, Writes::training, "calibrate --verify") : nullptr;
-  const std::optional<double> limit =
-      options.time.empty() ? std::nullopt : std::optional(parse_duration(options.time, "--for"));
+  const double limit =
+      options.time.empty() ? std::numeric_limits<double>::infinity() : parse_duration(options.time, "--for");
   Rounds rounds(workspace.study.cases.size());
   std::vector<ListedRun> listed = read_verify_runs(workspace);
   for (int round = 1;; ++round) {
@@ -98,7 +99,7 @@ data::ExitStatus calibrate_and_verify(const Options& options) {
     unseen.table = held.others;
     uq::Calibration result = calibrate_once(options, workspace, unseen);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-    const bool last = round > options.rounds || (limit && elapsed.count() > *limit);
+    const bool last = round > options.rounds || elapsed.count() > limit;
     const bool agreed = round > 1 && all_agree([&] {
                           std::vector<uq::VerificationReport> latest;
                           for (const auto& one : rounds)

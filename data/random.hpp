@@ -37,7 +37,6 @@ enum class Purpose : std::uint32_t {
   error_scan_seed = 22,       ///< child_seed of the samplers of an error scan
   comparison_seed = 23,       ///< child_seed of the sampler of a held model
   simulation_seed = 24,       ///< child_seed of a replicate's sampler
-  surrogate_part = 25,        ///< surrogates drawn for the error of a Bayes factor
   second_check = 26,          ///< of draws by NUTS
   shuffled_points = 29,       ///< beside which a cloud of points is thin
   repeated_data = 30,         ///< for the probabilities of words

@@ -201,11 +201,17 @@ void check_inside(const Case& c, const BuiltRig& rig, Forecast& f) {
   for (std::size_t k = 0; k < meshes.size(); ++k) {
     const Extent own = extent_of(meshes[k].mesh);
     const bool in_another = std::any_of(meshes.begin(), meshes.end(), [&](const RigMesh& other) {
+      // Inside in two directions, and beside the other along at least half of itself in the third: a shaft through a
+      // wall.
       const Extent e = extent_of(other.mesh);
-      const auto inside = [](double low, double high, double a, double b) { return low > a && high < b; };
-      return inside(own.low.x, own.high.x, e.low.x, e.high.x) + inside(own.low.y, own.high.y, e.low.y, e.high.y) +
-                 inside(own.low.z, own.high.z, e.low.z, e.high.z) >=
-             2;
+      int inside = 0;
+      bool beside = true;
+      for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+        const double low = own.low.*axis, high = own.high.*axis, a = e.low.*axis, b = e.high.*axis;
+        inside += low > a && high < b;
+        beside = beside && std::min(high, b) - std::max(low, a) >= 0.5 * (high - low);
+      }
+      return inside >= 2 && beside;
     });
     if (!in_another) continue;
     std::size_t count = 0, asked = 0;

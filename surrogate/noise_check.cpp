@@ -41,6 +41,7 @@ NoiseCheck check_noise(const TrainingSet& training, const FitOptions& options, c
   const VectorXd root = stated.variance.cwiseSqrt();
   const double variance = 2.0 * (root.asDiagonal() * precision * root.asDiagonal()).squaredNorm();
   check.residual_ratio = found / expected;
+  check.noise_share = expected / static_cast<double>(data.points.rows());
   check.residual_z = (found - expected) / std::sqrt(variance);
   return check;
 }

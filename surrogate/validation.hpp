@@ -77,10 +77,12 @@ struct NoiseCheck {
   double log_ratio = 0.0;       ///< 2 log of the likelihood ratio of nugget and none
   double residual_ratio = 1.0;  ///< of the residuals' squares, in units of the stated errors, to what they should be
   double residual_z = 0.0;      ///< their difference in its own sd
+  double noise_share = 0.0;     ///< tr(D P) / points: the part of what single runs tell that is their noise
   bool replicated = false;      ///< five or more replicates show that the nugget is scatter, not structure
 
   bool understated() const { return scatter_ratio > 0.7 && log_ratio > 7.0; }
-  bool overstated() const { return residual_z < -2.5 && residual_ratio < 0.6; }
+  /// Where the noise is small, the residuals say how smooth the output is, and not how large the noise.
+  bool overstated() const { return residual_z < -2.5 && residual_ratio < 0.6 && noise_share > 0.5; }
 };
 
 struct Validation {

@@ -20,6 +20,13 @@ const char* strength(double log_bayes_factor) {
   return twice < 6.0 ? "positive" : twice < 10.0 ? "strong" : "very strong";
 }
 
+/// The draw of the largest density.
+Eigen::VectorXd highest(const Draws& draws) {
+  Eigen::Index at = 0;
+  draws.pooled_log_density().maxCoeff(&at);
+  return draws.pooled().row(at).transpose();
+}
+
 /// Two digits at most, and no exponent.
 std::string plain_error(double error) {
   return error < 10.0 ? fmt::format("{:.1g}", error) : fmt::format("{:.0f}", error);
@@ -73,8 +80,10 @@ std::vector<ModelComparison> compare_models(const data::Study& study, const Samp
   }
   found.log_bayes_factor = sampled.draws.log_evidence - beside.log_evidence;
   found.sampling_error = std::hypot(sampled.draws.log_evidence_error, beside.log_evidence_error);
-  found.surrogate_error =
-      surrogate_part(*sampled.model, sampled.draws.pooled(), with_held(beside.pooled(), held), seed);
+  const int unknowns = sampled.model->dimension();
+  const Eigen::VectorXd best = with_held(highest(beside).transpose(), held).row(0).transpose();
+  found.surrogate_error = surrogate_part(*sampled.model, {highest(sampled.draws), unknowns_left(unknowns, {})},
+                                         {best, unknowns_left(unknowns, held)});
   found.error = std::hypot(found.sampling_error, found.surrogate_error);
   found.sentence = in_words(found, names);
   if (!beside.converged)

@@ -3,12 +3,71 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uq/acquire.hpp"
+#include "uq/distinct.hpp"
 #include "uq/factor.hpp"
 #include "uq/posterior.hpp"
-#include "uq/predictive.hpp"
 
 namespace uq {
 namespace {
+
+/// A side's quadratic form in the surrogate's error of one group's rows.
+struct Side {
+  Eigen::MatrixXd rows;       ///< of the emulator
+  Eigen::MatrixXd jacobian;   ///< of the readings, columns of the free unknowns
+  Eigen::MatrixXd precision;  ///< S^-1
+  Eigen::VectorXd residual;   ///< y - mean
+};
+
+Side side_at(const CaseModel& exact, const RowGroup& group, const ComparedSide& at) {
+  constexpr double step = 1e-3;  // unit cube
+  const GroupLaw law = group_law(exact, group, at.best);
+  Side side{.rows = rows_at(group, at.best).topRows(group.base.rows()),
+            .jacobian = Eigen::MatrixXd(law.mean.size(), static_cast<Eigen::Index>(at.free.size())),
+            .precision = {},
+            .residual = group.observed - law.mean};
+  for (std::size_t k = 0; k < at.free.size(); ++k) {
+    Eigen::VectorXd up = at.best, down = at.best;
+    up[at.free[k]] += step;
+    down[at.free[k]] -= step;
+    side.jacobian.col(static_cast<Eigen::Index>(k)) =
+        (group_law(exact, group, up).mean - group_law(exact, group, down).mean) / (2.0 * step);
+  }
+  Eigen::MatrixXd covariance = law.covariance;
+  covariance.diagonal() += law.noise;
+  const Factor root = factor(covariance, "the measurement at a compared point");
+  side.precision = root.llt.solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
+  return side;
+}
+
+/// M and M r of a side over all groups, rows in their order.
+struct Form {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd linear;
+};
+
+Form form_of(const std::vector<Side>& groups) {
+  Eigen::Index rows = 0;
+  for (const Side& one : groups) rows += one.residual.size();
+  const Eigen::Index unknowns = groups.front().jacobian.cols();
+  Form form{.matrix = Eigen::MatrixXd::Zero(rows, rows), .linear = {}};
+  Eigen::MatrixXd weighted(rows, unknowns), information = Eigen::MatrixXd::Identity(unknowns, unknowns);
+  Eigen::VectorXd residual(rows);
+  Eigen::Index at = 0;
+  for (const Side& one : groups) {
+    const Eigen::Index n = one.residual.size();
+    form.matrix.block(at, at, n, n) = one.precision;
+    weighted.middleRows(at, n) = one.precision * one.jacobian;
+    information += one.jacobian.transpose() * weighted.middleRows(at, n);
+    residual.segment(at, n) = one.residual;
+    at += n;
+  }
+  form.matrix -= weighted * information.llt().solve(weighted.transpose());
+  form.linear = form.matrix * residual;
+  return form;
+}
+
+}  // namespace
 
 std::vector<int> unknowns_left(int dimension, const std::vector<Held>& held) {
   std::vector<int> left;
@@ -16,18 +75,6 @@ std::vector<int> unknowns_left(int dimension, const std::vector<Held>& held) {
     if (std::none_of(held.begin(), held.end(), [&](const Held& one) { return one.coordinate == k; })) left.push_back(k);
   return left;
 }
-
-/// Log of the mean of exponentials of each column.
-Eigen::VectorXd log_mean_exp(const Eigen::MatrixXd& values) {
-  Eigen::VectorXd found(values.cols());
-  for (Eigen::Index j = 0; j < values.cols(); ++j) {
-    const double top = values.col(j).maxCoeff();
-    found[j] = top + std::log((values.col(j).array() - top).exp().mean());
-  }
-  return found;
-}
-
-}  // namespace
 
 Eigen::MatrixXd with_held(const Eigen::MatrixXd& rest, const std::vector<Held>& held) {
   const auto dimension = static_cast<int>(rest.cols() + static_cast<Eigen::Index>(held.size()));
@@ -67,48 +114,37 @@ Target held_target(std::shared_ptr<const CaseModel> model, const std::vector<Hel
   return target;
 }
 
-double surrogate_part(const CaseModel& full, const Eigen::MatrixXd& first, const Eigen::MatrixXd& second,
-                      std::uint64_t seed) {
-  constexpr int functions = 200;
-  constexpr Eigen::Index rows_max = 900;
+double surrogate_part(const CaseModel& full, const ComparedSide& first, const ComparedSide& second) {
   const CaseModel& model = distinct_rows(full);
-  Eigen::Index largest = 1;
-  for (const RowGroup& group : model.groups) largest = std::max(largest, rows_asked(group));
-  const Eigen::Index each = std::clamp<Eigen::Index>(rows_max / (2 * largest), 4, 60);
-  const Eigen::MatrixXd one = thinned(first, each), other = thinned(second, each);
-  Eigen::MatrixXd points(one.rows() + other.rows(), first.cols());
-  points << one, other;
-  // log N(y | f_j(u_i)) - log L(u_i): points x functions, summed over the groups.
-  Eigen::MatrixXd ratio = Eigen::MatrixXd::Zero(points.rows(), functions);
-  data::RandomStream random(seed, data::Purpose::surrogate_part);
-  for (const RowGroup& group : model.groups) {
-    const Eigen::Index rows = rows_asked(group);
-    Eigen::MatrixXd stacked(points.rows() * rows, group.base.cols());
-    for (Eigen::Index i = 0; i < points.rows(); ++i)
-      stacked.middleRows(i * rows, rows) = rows_at(group, points.row(i).transpose());
-    const surrogate::Prediction joint = group.emulator.predict(stacked);
-    if (!(joint.covariance.diagonal().maxCoeff() > 0.0)) continue;
-    const Factor root = factor(joint.covariance, "the surrogate at the posterior's draws");
-    Eigen::MatrixXd normal(stacked.rows(), functions);
-    for (double& value : normal.reshaped()) value = random.normal();
-    Eigen::MatrixXd f = root.llt.matrixL() * normal;
-    f.colwise() += joint.mean;
-    for (Eigen::Index i = 0; i < points.rows(); ++i) {
-      const Eigen::VectorXd u = points.row(i).transpose();
-      const surrogate::Prediction here{.mean = joint.mean.segment(i * rows, rows),
-                                       .covariance = joint.covariance.block(i * rows, i * rows, rows, rows)};
-      const double level = log_group_density(model, group, here, u);
-      for (Eigen::Index j = 0; j < functions; ++j)
-        ratio(i, j) +=
-            log_group_density(
-                model, group,
-                {.mean = f.col(j).segment(i * rows, rows), .covariance = Eigen::MatrixXd::Zero(rows, rows)}, u) -
-            level;
-    }
+  const CaseModel exact = without_surrogate_error(model);
+  std::vector<Side> one, other;
+  for (const RowGroup& group : exact.groups) {
+    one.push_back(side_at(exact, group, first));
+    other.push_back(side_at(exact, group, second));
   }
-  const Eigen::VectorXd difference =
-      log_mean_exp(ratio.topRows(one.rows())) - log_mean_exp(ratio.bottomRows(other.rows()));
-  return std::sqrt((difference.array() - difference.mean()).square().mean());
+  const Form a = form_of(one), b = form_of(other);
+  // C of the first side's rows, then of the second's.
+  const Eigen::Index rows = a.linear.size();
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(2 * rows, 2 * rows);
+  Eigen::Index at = 0;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    const Eigen::Index n = one[g].residual.size();
+    Eigen::MatrixXd stacked(2 * n, one[g].rows.cols());
+    stacked << one[g].rows, other[g].rows;
+    const Eigen::MatrixXd joint = model.groups[g].emulator.predict(stacked).covariance;
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        covariance.block(i * rows + at, j * rows + at, n, n) = joint.block(i * n, j * n, n, n);
+    at += n;
+  }
+  Eigen::MatrixXd form = Eigen::MatrixXd::Zero(2 * rows, 2 * rows);  // A
+  form.topLeftCorner(rows, rows) = -0.5 * a.matrix;
+  form.bottomRightCorner(rows, rows) = 0.5 * b.matrix;
+  Eigen::VectorXd slope(2 * rows);
+  slope << a.linear, -b.linear;
+  const Eigen::MatrixXd spread = form * covariance;
+  const double variance = slope.dot(covariance * slope) + 2.0 * spread.cwiseProduct(spread.transpose()).sum();
+  return std::sqrt(std::max(0.0, variance));
 }
 
 }  // namespace uq

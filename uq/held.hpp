@@ -4,11 +4,14 @@
 //   log p(rest | held, y) = sum over the rest of log prior + log L(held, rest) + const,   evidence = integral over the
 //   rest
 //
-// What a surrogate's error makes of a Bayes factor. Both evidences integrate the surrogate's functions f out. With f
-// known they would be
-//   Z(f) = integral L(u; f) prior(u) du = Z E[ N(y | f(u)) / L(u) ],   u from the posterior
-// so ln Z_free(f) - ln Z_held(f) over draws of f, the same on both sides, spreads as the factor would if more runs told
-// which f it is.
+// What a surrogate's error makes of a Bayes factor. Both evidences integrate the surrogate's functions f out; with f
+// known the factor would be another. With f = mean + delta, delta ~ N(0, C) jointly at the rows of both sides' most
+// likely points, and the response linear around each of them (J, columns of the free unknowns), a side's log evidence
+// is
+//   ln Z(delta) = -1/2 (r - delta)' M (r - delta) + const,   r = y - mean,
+//   M = S^-1 - S^-1 J (J' S^-1 J + I)^-1 J' S^-1,            S: the measurement's covariance,
+// I for the priors, which are about as wide as the unit cube. The difference of two such forms, delta' A delta + g'
+// delta + const, has the variance g' C g + 2 tr(A C A C).
 #include <memory>
 #include <vector>
 
@@ -24,9 +27,16 @@ Target held_target(std::shared_ptr<const CaseModel> model, const std::vector<Hel
 /// Points of all unknowns from points of the rest.
 Eigen::MatrixXd with_held(const Eigen::MatrixXd& rest, const std::vector<Held>& held);
 
-/// Standard deviation of the log Bayes factor over the surrogates' functions; `first`, `second`: posterior draws of the
-/// two sides (rows, all unknowns). Zero for an emulator without error.
-double surrogate_part(const CaseModel& model, const Eigen::MatrixXd& first, const Eigen::MatrixXd& second,
-                      std::uint64_t seed);
+/// One side of a comparison.
+struct ComparedSide {
+  Eigen::VectorXd best;  ///< most likely point, all unknowns, u
+  std::vector<int> free;
+};
+
+/// Standard deviation of the log Bayes factor over the surrogates' functions; zero for an emulator without error.
+double surrogate_part(const CaseModel& model, const ComparedSide& first, const ComparedSide& second);
+
+/// Unknowns that are not held.
+std::vector<int> unknowns_left(int dimension, const std::vector<Held>& held);
 
 }  // namespace uq

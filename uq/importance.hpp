@@ -44,8 +44,9 @@ struct Evidence {
   double error = std::numeric_limits<double>::quiet_NaN();         ///< standard error of log_value
   double pareto_shape = std::numeric_limits<double>::quiet_NaN();  ///< k-hat
   double largest_share = 0.0;                                      ///< of the largest weight in the sum of all
-  /// A heavy tail, and a draw of it that counts: without one the tail's shape is a guess about rounding.
-  bool doubtful() const { return pareto_shape > pareto_shape_max && largest_share > 0.01; }
+  /// A heavy tail, and a draw of it that counts. Without one the tail's shape is a guess, and k-hat alone exceeds its
+  /// bound in one of a hundred posteriors that are sampled rightly.
+  bool doubtful() const { return pareto_shape > pareto_shape_max && largest_share > 0.03; }
 };
 Evidence evidence_of(const WeightRecord& record);
 

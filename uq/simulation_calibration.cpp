@@ -62,6 +62,7 @@ class Binomials {
 /// What one replicate gives for every unknown.
 struct Replicate {
   bool converged = false;
+  std::string reason;  ///< why not
   std::vector<int> ranks;
   std::vector<bool> covered;
 };
@@ -82,7 +83,7 @@ Replicate replicate(const CaseModel& model, const SimulationOptions& options, in
   sampler.threads = 1;
   sampler.seed = data::child_seed(options.seed, data::Purpose::simulation_seed, static_cast<std::uint32_t>(index));
   const Draws draws = sample_mixture(posterior_target(simulated), sampler);
-  Replicate found{.converged = draws.converged, .ranks = {}, .covered = {}};
+  Replicate found{.converged = draws.converged, .reason = draws.reason, .ranks = {}, .covered = {}};
   if (!draws.converged) return found;
   const Eigen::MatrixXd all = draws.pooled();
   for (Eigen::Index s = 0; s < truth.size(); ++s) {
@@ -153,6 +154,7 @@ SimulationCalibration simulate_calibration(const CaseModel& model, const Simulat
   for (const Replicate& one : replicates) {
     if (!one.converged) {
       ++found.failed;
+      found.reasons.push_back(one.reason);
       continue;
     }
     for (std::size_t s = 0; s < found.unknowns.size(); ++s) {
@@ -181,6 +183,7 @@ std::string to_json_text(const SimulationCalibration& found) {
                                  {"calibrated", found.calibrated()},
                                  {"replicates", found.replicates},
                                  {"not_converged", found.failed},
+                                 {"not_converged_why", found.reasons},
                                  {"rank_max", found.rank_max},
                                  {"interval", found.interval},
                                  {"unknowns", nlohmann::ordered_json::array()},

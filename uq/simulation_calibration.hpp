@@ -43,7 +43,8 @@ struct RankCheck {
 struct SimulationCalibration {
   std::string case_name;
   int replicates = 0;
-  int failed = 0;  ///< that did not converge: left out
+  int failed = 0;                         ///< that did not converge: left out
+  std::vector<std::string> reasons = {};  ///< of each of them
   int rank_max = 0;
   double interval = 0.0;
   std::vector<double> z, band_low, band_high;  ///< bands of the empirical distribution function

@@ -316,7 +316,7 @@ TEST_CASE("the Bayes factor of a parameter held is that of the density ratio of 
     REQUIRE(found.report.cases[0].comparisons.size() == 1);
     const ModelComparison& comparison = found.report.cases[0].comparisons[0];
     CHECK(comparison.log_bayes_factor == Approx(-std::log(density)).margin(0.03 + 3.0 / std::sqrt(inside)));
-    CHECK(comparison.error < 0.1);
+    CHECK(comparison.sampling_error < 0.1);
     CHECK_FALSE(comparison.sentence.empty());
   }
 }

@@ -58,20 +58,28 @@ TEST_CASE("a climb ends on the maximum of the basin that it began in", "[uq]") {
 }
 
 TEST_CASE("a search finds the mode that the proposal lacks and nothing where it lacks none", "[uq]") {
+  // Off every line through the known mode the scouts alone find the narrow one: about 20 of them lie in its basin in two
+  // dimensions, three in three dimensions.
   for (const int d : {1, 2, 3}) {
     const adversaries::Adversary two = d == 1 ? adversaries::narrow_and_wide(1) : adversaries::askew(d);
-    data::RandomStream random(9, data::Purpose::test, static_cast<std::uint32_t>(d));
-    const Scouts scouts = send_scouts(two.target, random);
     const Eigen::VectorXd wide = Eigen::VectorXd::Constant(d, d == 1 ? 0.7 : 0.6);
-    // The wide mode alone is known; it holds half.
-    const Knowledge knowledge{.mixtures = {knowing(wide, 0.05)}, .log_levels = {std::log(0.5 * 30.0)}};
-    const Search found = search_unknown(two.target, scouts, knowledge, {.through = wide});
-    CAPTURE(d, found.starts, found.evaluations);
-    REQUIRE(found.modes.size() == 1);
-    CHECK(found.modes[0].log_mass == Approx(std::log(0.5)).margin(1e-3));
-    const adversaries::Adversary one = adversaries::normals("one", {.centre = {wide}, .sd = {0.05}, .weight = {1.0}});
-    const Knowledge all{.mixtures = {knowing(wide, 0.05)}, .log_levels = {std::log(30.0)}};
-    CHECK(search_unknown(one.target, send_scouts(one.target, random), all, {.through = wide}).modes.empty());
+    int missed = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      data::RandomStream random(seed, data::Purpose::test, static_cast<std::uint32_t>(d));
+      const Scouts scouts = send_scouts(two.target, random);
+      // The wide mode alone is known; it holds half.
+      const Knowledge knowledge{.mixtures = {knowing(wide, 0.05)}, .log_levels = {std::log(0.5 * 30.0)}};
+      const Search found = search_unknown(two.target, scouts, knowledge, {.through = wide});
+      CAPTURE(d, seed, found.starts, found.evaluations);
+      CHECK(found.modes.size() <= 1);
+      if (found.modes.empty()) ++missed;
+      for (const Peak& peak : found.modes) CHECK(peak.log_mass == Approx(std::log(0.5)).margin(1e-3));
+      const adversaries::Adversary one = adversaries::normals("one", {.centre = {wide}, .sd = {0.05}, .weight = {1.0}});
+      const Knowledge all{.mixtures = {knowing(wide, 0.05)}, .log_levels = {std::log(30.0)}};
+      CHECK(search_unknown(one.target, send_scouts(one.target, random), all, {.through = wide}).modes.empty());
+    }
+    CAPTURE(d);
+    CHECK(missed <= (d == 1 ? 0 : d == 2 ? 4 : 12));
   }
 }
 

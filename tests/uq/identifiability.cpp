@@ -18,9 +18,9 @@ namespace {
 
 const Eigen::VectorXd six = Eigen::VectorXd::LinSpaced(6, 0.0, 1.0);
 
-uq::Identification identified(const uq::CaseModel& model, std::uint64_t seed = 1) {
-  const uq::Draws draws =
-      uq::sample_mixture(uq::posterior_target(std::make_shared<const uq::CaseModel>(model)), {.seed = seed});
+uq::Identification identified(const uq::CaseModel& model, std::uint64_t seed = 1, const uq::StopRule& stop = {}) {
+  const uq::Draws draws = uq::sample_mixture(uq::posterior_target(std::make_shared<const uq::CaseModel>(model)),
+                                             {.stop = stop, .seed = seed});
   INFO(draws.reason);
   REQUIRE(draws.converged);
   return uq::identify(model, draws.pooled());
@@ -145,15 +145,18 @@ TEST_CASE("a model that fits nowhere is said not to fit, and nothing is identifi
 }
 
 TEST_CASE("verdicts follow when parameters are renamed, reordered and given in other units", "[uq][slow]") {
-  // Structural pair (a, b), and c told apart from both.
+  // Structural pair (a, b), and c told apart from both. Draws enough to know contractions to 0.01.
+  const uq::StopRule stop{.ess_per_chain = 2000.0, .ess_bulk = 8000.0};
   const Formula formula = [](const Eigen::VectorXd& p, double x) { return p[0] * p[1] + p[2] * x; };
   const uq::Identification first = identified(
-      make_synthetic({{"a", 0.1, 1.0}, {"b", 0.1, 1.0}, {"c"}}, formula, six, Eigen::Vector3d(0.5, 0.5, 0.5), 0.02, 7));
+      make_synthetic({{"a", 0.1, 1.0}, {"b", 0.1, 1.0}, {"c"}}, formula, six, Eigen::Vector3d(0.5, 0.5, 0.5), 0.02, 7),
+      1, stop);
   // The same data; the third parameter first, the others renamed, in units a thousand times smaller and larger.
   const Formula reordered = [](const Eigen::VectorXd& p, double x) { return p[2] * 1e3 * p[1] * 1e-18 + p[0] * x; };
   const uq::Identification second =
       identified(make_synthetic({{"zeta"}, {"eta", 0.1e18, 1e18, {}, 1e15}, {"theta", 0.1e-3, 1e-3, {}, 1e-9}},
-                                reordered, six, Eigen::Vector3d(0.5, 0.5e18, 0.5e-3), 0.02, 7));
+                                reordered, six, Eigen::Vector3d(0.5, 0.5e18, 0.5e-3), 0.02, 7),
+                 1, stop);
   const std::vector<std::size_t> same = {2, 1, 0};  // a is theta, b is eta, c is zeta
   for (std::size_t k = 0; k < 3; ++k) {
     INFO(first.parameters[k].sentence << '\n' << second.parameters[same[k]].sentence);

@@ -75,6 +75,7 @@ TEST_CASE("the surrogate's posterior is calibrated when torque functions are dra
   const Calibrated input = other_code();
   const uq::CaseModel model = uq::build_case(input.study, input.emulators, 0);
   const uq::SimulationCalibration found = uq::simulate_calibration(model, {.replicates = 100, .seed = 11});
+  CAPTURE(found.reasons);
   CHECK(found.failed == 0);
   CHECK(found.calibrated());
 }
