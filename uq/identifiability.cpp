@@ -40,7 +40,9 @@ std::vector<ValueRange> ranges_of(const Slot& slot, const Eigen::VectorXd& u, co
     range.weight = static_cast<double>(members[i].size()) / static_cast<double>(u.size());
     range.mean = shown(slot, profile.u[part.best]);
     if (members[i].size() > 1) {
-      const Eigen::Map<const Eigen::ArrayXd> values(members[i].data(), static_cast<Eigen::Index>(members[i].size()));
+      // A copy is aligned; sums over a map would depend on where its memory happens to lie.
+      const Eigen::ArrayXd values =
+          Eigen::Map<const Eigen::ArrayXd>(members[i].data(), static_cast<Eigen::Index>(members[i].size()));
       range.mean = values.mean();
       range.sd = std::sqrt((values - range.mean).square().mean());
     }

@@ -97,7 +97,7 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
       influence.some = influence.shown = model.slots[static_cast<std::size_t>(k)].nuisance != Acts::none;
       continue;
     }
-    double effect = 0.0, doubt = 0.0;
+    double effect = 0.0, doubt = 0.0, ends_effect = 0.0, ends_doubt = 0.0;
     for (const Eigen::VectorXd& base : bases) {
       std::array<double, shares.size()> moved = {};
       for (std::size_t g = 0; g < model.groups.size(); ++g) {
@@ -122,6 +122,10 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
             for (Eigen::Index s = 0; s < levels; ++s) shared += at.covariance(t * n + i, s * n + i);
           }
           doubt += w * std::max(own - shared / static_cast<double>(levels), 0.0);
+          const Eigen::Index last = (levels - 1) * n + i;
+          ends_effect += w * std::pow(at.mean[last] - at.mean[i], 2);
+          ends_doubt +=
+              w * std::max(at.covariance(i, i) + at.covariance(last, last) - 2.0 * at.covariance(i, last), 0.0);
           for (Eigen::Index t = 0; t < levels; ++t) {
             const double d = at.mean[t * n + i] - mean;
             effect += w * d * d;
@@ -132,7 +136,9 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
       influence.deviance = std::max(influence.deviance, *std::max_element(moved.begin(), moved.end()));
     }
     influence.doubt = doubt / static_cast<double>(bases.size() * shares.size());
-    influence.shown = effect > thresholds.told_apart_sd * thresholds.told_apart_sd * doubt;
+    // Runs at a few levels may leave all between these in doubt, and yet tell the ends of the range apart.
+    const double least = thresholds.told_apart_sd * thresholds.told_apart_sd;
+    influence.shown = effect > least * doubt || ends_effect > least * ends_doubt;
     influence.some = influence.shown && influence.deviance >= thresholds.silent_deviance;
   }
   return found;

@@ -26,7 +26,9 @@ std::vector<Cluster> clusters(const Eigen::VectorXd& draws, double low, double h
   std::vector<double> members;
   const auto close = [&] {
     if (static_cast<double>(members.size()) >= std::max(3.0, least_share * static_cast<double>(draws.size()))) {
-      const Eigen::Map<const Eigen::ArrayXd> values(members.data(), static_cast<Eigen::Index>(members.size()));
+      // A copy is aligned; sums over a map would depend on where its memory happens to lie.
+      const Eigen::ArrayXd values =
+          Eigen::Map<const Eigen::ArrayXd>(members.data(), static_cast<Eigen::Index>(members.size()));
       found.push_back({values.mean(), std::sqrt((values - values.mean()).square().mean())});
     }
     members.clear();

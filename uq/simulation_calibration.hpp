@@ -49,7 +49,7 @@ struct SimulationCalibration {
   double interval = 0.0;
   std::vector<double> z, band_low, band_high;  ///< bands of the empirical distribution function
   std::vector<RankCheck> unknowns;
-  bool calibrated() const;
+  bool calibrated() const;  ///< all ranks inside their bands, and at most one replicate in 100 failed
 };
 
 SimulationCalibration simulate_calibration(const CaseModel& model, const SimulationOptions& options = {});

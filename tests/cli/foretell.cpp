@@ -58,7 +58,7 @@ TEST_CASE("check says how many spheres, their fill, gaps, Bond number, time step
   const Folder folder;
   const auto outcome = folder.demcal({"check", quick, "--json"});
   INFO(outcome.err);
-  for (const char* word : {"420 spheres", "fill: ", "gap between blade and trough: 2.4 mm, 3 of the largest sphere",
+  for (const char* word : {"420 spheres", "fill: ", "gap between blade and trough: 2.4 mm, 2.7 of the largest sphere",
                            "Bond number", "time step", "MB", "24 runs are missing", "measured on this machine"})
     CHECK_THAT(outcome.err, Contains(word));
   const nlohmann::json one = nlohmann::json::parse(outcome.out)["materials"][0];
@@ -86,7 +86,7 @@ TEST_CASE("a slice's nonsense is refused or warned of") {
   const auto narrow = check(folder, quick, {"rig.trough_radius=\"4 mm\"", "rig.fill=200"});
   INFO(narrow.err);
   CHECK(narrow.status == 2);
-  CHECK_THAT(narrow.err, Contains("the gap between blade and trough is 0.4 mm, 0.5 of the largest sphere"));
+  CHECK_THAT(narrow.err, Contains("the gap between blade and trough is 0.4 mm, 0.45 of the largest sphere"));
   const auto light = check(folder, quick, {"materials.powder.density=\"2.5 kg/m3\""});
   CHECK(light.status == 2);
   CHECK_THAT(light.err, Contains("2.5 g/cm3"));
@@ -108,7 +108,8 @@ TEST_CASE("a problem of the whole case stands at its key's line, and a value tha
 TEST_CASE("simulate says where the study has no runs, keeps another point's file, and goes back to it") {
   const Folder folder;
   const std::vector<std::string> few{"--set", "run.start_up=\"0.004 s\"", "--set", "run.shortest=\"0.008 s\"",
-                                     "--set", "run.shortest_turns=0",     "--set", "run.longest=\"0.01 s\""};
+                                     "--set", "run.shortest_turns=0",     "--set", "run.longest=\"0.01 s\"",
+                                     "--set", "run.window=\"0.5 ms\"",    "--set", "run.sample_interval=\"0.1 ms\""};
   const auto simulate = [&](const std::string& at) {
     std::vector<std::string> words{"simulate", quick, "--out", "out", "--json", "--at", at};
     words.insert(words.end(), few.begin(), few.end());
@@ -138,7 +139,8 @@ TEST_CASE("a torque that is exactly 0 is said, with status 2") {
   // none.
   const auto outcome = folder.demcal({"simulate", quick, "--set", "rig.fill=130", "--set", "run.settle=\"0.02 s\"",
                                       "--set", "run.start_up=\"1 ms\"", "--set", "run.shortest=\"2 ms\"", "--set",
-                                      "run.shortest_turns=0", "--set", "run.longest=\"4 ms\""});
+                                      "run.shortest_turns=0", "--set", "run.longest=\"4 ms\"", "--set",
+                                      "run.window=\"0.3 ms\"", "--set", "run.sample_interval=\"0.1 ms\""});
   INFO(outcome.err);
   CHECK(outcome.status == 2);
   CHECK_THAT(outcome.err, Contains("warning: the torque is exactly 0: no sphere ever touched mixer"));

@@ -300,7 +300,7 @@ TEST_CASE("an --out that cannot be written is found at the start") {
 TEST_CASE("rows of other settings stay in the table, and runs of other points stay beside run.h5", "[slow]") {
   const Folder folder;
   const auto train = [&](const std::string& restitution, const char* runs) {
-    return folder.demcal({"train", DEMCAL_SOURCE_DIR "/data/quick", "--runs", runs, "--set", "rig.fill=60", "--set",
+    return folder.demcal({"train", DEMCAL_SOURCE_DIR "/data/quick", "--runs", runs, "--set", "rig.fill=200", "--set",
                           "run.longest=\"0.3 s\"", "--set", "training.unsteady=\"use\"", "--set",
                           "contact.restitution=" + restitution, "--out", "o"});
   };
@@ -325,7 +325,7 @@ TEST_CASE("rows of other settings stay in the table, and runs of other points st
   CHECK(rows().size() == 5);
 
   const auto simulate = [&](const char* rpm) {
-    return folder.demcal({"simulate", DEMCAL_SOURCE_DIR "/data/quick", "--set", "rig.fill=60", "--set",
+    return folder.demcal({"simulate", DEMCAL_SOURCE_DIR "/data/quick", "--set", "rig.fill=200", "--set",
                           "run.longest=\"0.3 s\"", "--at", std::string("rpm=") + rpm, "--out", "s"});
   };
   simulate("100");
@@ -339,10 +339,17 @@ TEST_CASE("names of a study lead to no file outside the results folder") {
   folder.study("quick");
   folder.replace("study/study.toml", "[materials.powder]", "[materials.\"../../../EVIL\"]");
   folder.replace("study/study.toml", "material = \"powder\"", "material = \"../../../EVIL\"");
-  const auto outcome =
-      folder.demcal({"train", "study", "--runs", "1", "--set", "rig.fill=20", "--set", "run.settle=\"0.002 s\"",
-                     "--set", "run.start_up=\"0.002 s\"", "--set", "run.shortest=\"0.002 s\"", "--set",
-                     "run.longest=\"0.004 s\"", "--set", "run.shortest_turns=0", "--out", "a/b/c/o"});
+  const auto outcome = folder.demcal({"train",  "study",
+                                      "--runs", "1",
+                                      "--set",  "rig.fill=200",
+                                      "--set",  "run.settle=\"0.002 s\"",
+                                      "--set",  "run.start_up=\"0.002 s\"",
+                                      "--set",  "run.shortest=\"0.002 s\"",
+                                      "--set",  "run.longest=\"0.004 s\"",
+                                      "--set",  "run.shortest_turns=0",
+                                      "--set",  "run.window=\"0.2 ms\"",
+                                      "--set",  "run.sample_interval=\"0.1 ms\"",
+                                      "--out",  "a/b/c/o"});
   INFO(outcome.err);
   for (const auto& entry : fs::recursive_directory_iterator(folder.path)) {
     const std::string inside = entry.path().lexically_relative(folder.path).string();
