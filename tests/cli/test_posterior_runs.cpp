@@ -124,8 +124,9 @@ TEST_CASE("training around the posterior is interrupted, goes on, and makes the 
                                            "--until", "posterior",
                                            "--runs",  "18",
                                            "--jobs",  "2",
-                                           "--set",   "rig.fill=60",
-                                           "--set",   "run.longest=\"0.3 s\"",
+                                           "--set",   "rig.fill=200",
+                                           "--set",   "run.longest=\"0.4 s\"",
+                                           "--set",   "training.unsteady=\"use\"",
                                            "--set",   "run.shortest=\"0.1 s\""};
   const auto all = whole.demcal(arguments);
   INFO(all.err);
