@@ -53,6 +53,13 @@ void check_target(const data::Section& section, const std::string& target_name, 
   outside("high", high);
 }
 
+/// ./STUDY-NAME, or ./STUDY-NAME-results where the study itself lies there.
+std::string default_out(const data::Study& study) {
+  std::error_code failure;
+  const bool own = fs::weakly_canonical(study.name, failure) == fs::weakly_canonical(study.folder, failure);
+  return fs::absolute(own ? study.name + "-results" : study.name).lexically_normal().string();
+}
+
 /// Lines of [training] leave_out at which no row stands.
 void tell_unknown_rows(const data::Study& study, TrainingRows& rows) {
   const auto stands = [&](const std::string& label) {
@@ -89,7 +96,7 @@ CLI::App* add_study_command(CLI::App& program, const std::string& name, const st
                             const std::string& example, Common& common) {
   CLI::App* command = program.add_subcommand(name, purpose);
   command->add_option("STUDY", common.study, "study file, or folder that holds study.toml")->required();
-  command->add_option("--out", common.out, "results folder (default: ./STUDY-NAME)");
+  command->add_option("--out", common.out, "results folder (default: ./STUDY-NAME, or ./STUDY-NAME-results beside the study)");
   command
       ->add_option_function<std::string>(
           "--seed",
@@ -150,7 +157,7 @@ Workspace open_workspace(const Common& common) {
   if (const std::string& table = study.training.table;
       !table.empty() && fs::path(table).extension() == ".csv" && fs::exists(table))
     if (const std::string how = data::read_csv(table).took_line(); !how.empty()) say(common, how);
-  workspace.out = fs::absolute(common.out.empty() ? study.name : common.out).lexically_normal().string();
+  workspace.out = common.out.empty() ? default_out(study) : fs::absolute(common.out).lexically_normal().string();
   return workspace;
 }
 

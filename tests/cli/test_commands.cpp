@@ -89,6 +89,9 @@ TEST_CASE("a new study passes its own check") {
   INFO(outcome.err);
   CHECK(outcome.status == 0);
   CHECK(folder.demcal({"new", "my-mixer"}).status == 73);
+  // Beside the study the results have a folder of their own.
+  CHECK(folder.demcal({"design", "my-mixer"}).status == 0);
+  CHECK(fs::exists(folder.path / "my-mixer-results" / "design.csv"));
 }
 
 TEST_CASE("training runs are interrupted, go on where they were, and give the table of an uninterrupted campaign",
