@@ -142,8 +142,14 @@ double surrogate_part(const CaseModel& full, const ComparedSide& first, const Co
   form.bottomRightCorner(rows, rows) = 0.5 * b.matrix;
   Eigen::VectorXd slope(2 * rows);
   slope << a.linear, -b.linear;
-  const Eigen::MatrixXd spread = form * covariance;
-  const double variance = slope.dot(covariance * slope) + 2.0 * spread.cwiseProduct(spread.transpose()).sum();
+  // Of delta given the data: covariance (C^-1 + E)^-1, E the first side's form; mean that times E r.
+  Eigen::MatrixXd seen = Eigen::MatrixXd::Identity(2 * rows, 2 * rows);
+  seen.leftCols(rows) += covariance.leftCols(rows) * a.matrix;
+  const Eigen::MatrixXd left = seen.partialPivLu().solve(covariance);
+  const Eigen::VectorXd mean = left.leftCols(rows) * a.linear;
+  slope += 2.0 * form * mean;
+  const Eigen::MatrixXd spread = form * left;
+  const double variance = slope.dot(left * slope) + 2.0 * spread.cwiseProduct(spread.transpose()).sum();
   return std::sqrt(std::max(0.0, variance));
 }
 

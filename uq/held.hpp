@@ -10,8 +10,9 @@
 // is
 //   ln Z(delta) = -1/2 (r - delta)' M (r - delta) + const,   r = y - mean,
 //   M = S^-1 - S^-1 J (J' S^-1 J + I)^-1 J' S^-1,            S: the measurement's covariance,
-// I for the priors, which are about as wide as the unit cube. The difference of two such forms, delta' A delta + g'
-// delta + const, has the variance g' C g + 2 tr(A C A C).
+// I for the priors, which are about as wide as the unit cube. The data say something of delta, too: given them and the
+// first side it is normal with covariance C' = (C^-1 + M)^-1 and mean m = C' M r. The difference of two such forms,
+// delta' A delta + g' delta + const, has the variance h' C' h + 2 tr(A C' A C'), h = g + 2 A m.
 #include <memory>
 #include <vector>
 
