@@ -96,7 +96,8 @@ CLI::App* add_study_command(CLI::App& program, const std::string& name, const st
                             const std::string& example, Common& common) {
   CLI::App* command = program.add_subcommand(name, purpose);
   command->add_option("STUDY", common.study, "study file, or folder that holds study.toml")->required();
-  command->add_option("--out", common.out, "results folder (default: ./STUDY-NAME, or ./STUDY-NAME-results beside the study)");
+  command->add_option("--out", common.out,
+                      "results folder (default: ./STUDY-NAME, or ./STUDY-NAME-results beside the study)");
   command
       ->add_option_function<std::string>(
           "--seed",
