@@ -153,10 +153,12 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
 std::string surrogate_remedy(const CaseFacts& facts) {
   return std::isfinite(facts.surrogate_share)
              ? fmt::format(
-                   "Make more training runs where the posterior lies: the surrogate's error is {:.0f} % of the "
+                   "Make more training runs where the posterior lies (demcal train STUDY --until posterior): the "
+                   "surrogate's error is {:.0f} % of the "
                    "measurement's.",
                    100.0 * facts.surrogate_share)
-             : "Make more training runs where the posterior lies: the surrogate's error decides the widths.";
+             : "Make more training runs where the posterior lies (demcal train STUDY --until posterior): the "
+               "surrogate's error decides the widths.";
 }
 
 /// Sets of traded parameters with one in `names`, as "friction and hamaker"; of those names alone where there are none.
@@ -195,7 +197,8 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
   if (hidden && (surrogate >= notable || !sorted.surrogate.empty())) {
     const bool first = surrogate >= mostly || !sorted.surrogate.empty();
     remedies.push_back({first ? std::max(sorted.of_surrogate, sorted.of_measurement + 1e-9) : 1e-9,
-                        surrogate < notable ? "Make more training runs where the posterior lies: only a sharper "
+                        surrogate < notable ? "Make more training runs where the posterior lies (demcal train STUDY "
+                                              "--until posterior): only a sharper "
                                               "surrogate shows whether a better measurement would help."
                         : first
                             ? surrogate_remedy(facts)

@@ -91,7 +91,7 @@ TEST_CASE("with gain, offset, noise and discrepancy unknown the posterior is sti
   input.study.observations[0].common_errors = {{0, {.absolute = 0.0, .relative = 0.02}}};
   const uq::CaseModel model = uq::build_case(input.study, input.emulators, 0);
   REQUIRE(model.dimension() == 4);
-  const uq::SimulationCalibration found = uq::simulate_calibration(model, {.replicates = 60, .seed = 12});
+  const uq::SimulationCalibration found = uq::simulate_calibration(model, {.replicates = 300, .seed = 100});
   CHECK(found.failed <= 1);
   for (const auto& one : found.unknowns) {
     INFO(one.name << " coverage " << one.coverage);
