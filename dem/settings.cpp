@@ -18,7 +18,7 @@ std::vector<std::string> corrections(const Case& c) {
   std::vector<std::string> names;
   if (k.restitution_at) names.push_back("restitution_at");  // damping by Brent's method
   if (k.true_young_modulus && k.normal != NormalLaw::linear && c.components.size() > 1)
-    names.push_back("true_young_modulus");  // of unlike materials the same in either order
+    names.push_back("true_young_modulus");                      // of unlike materials the same in either order
   if (k.normal == NormalLaw::jkr) names.push_back("jkr_root");  // exact near break-off
   if (drive_sign_corrected(c)) names.push_back("torque_sign");
   return names;
