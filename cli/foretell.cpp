@@ -6,23 +6,6 @@
 #include "dem/target.hpp"
 
 namespace cli {
-namespace {
-
-/// Name, unit and range of each input, in the point's order.
-struct Input {
-  std::string name, target;
-  data::Unit unit;
-  double low, high;
-};
-std::vector<Input> inputs_of(const data::Study& study) {
-  std::vector<Input> inputs;
-  for (const data::Parameter& p : study.parameters) inputs.push_back({p.name, p.target, p.unit, p.low, p.high});
-  for (const data::Control& c : study.controls) inputs.push_back({c.name, c.target, c.unit, c.low, c.high});
-  return inputs;
-}
-
-}  // namespace
-
 Foretold foretell(const Workspace& workspace, const Point& point) {
   const dem::Case c = case_at(workspace, point);
   if (auto found = dem::problems(c); !found.empty())

@@ -9,25 +9,18 @@
 #include "dem/target.hpp"
 
 namespace cli {
-namespace {
-
-data::InputError usage(std::string place, std::string what, std::string remedy) {
-  return {data::ExitStatus::usage, data::Problem{std::move(place), std::move(what), std::move(remedy)}};
-}
-
-/// An input of the study, parameter or control, as the point sees it.
-struct Input {
-  const std::string& name;
-  const std::string& target;
-  const data::Unit& unit;
-  double low, high;
-};
 
 std::vector<Input> inputs_of(const data::Study& study) {
   std::vector<Input> inputs;
   for (const data::Parameter& p : study.parameters) inputs.push_back({p.name, p.target, p.unit, p.low, p.high});
   for (const data::Control& c : study.controls) inputs.push_back({c.name, c.target, c.unit, c.low, c.high});
   return inputs;
+}
+
+namespace {
+
+data::InputError usage(std::string place, std::string what, std::string remedy) {
+  return {data::ExitStatus::usage, data::Problem{std::move(place), std::move(what), std::move(remedy)}};
 }
 
 std::string names_of(const std::vector<Input>& inputs) {

@@ -59,7 +59,8 @@ TEST_CASE("a climb ends on the maximum of the basin that it began in", "[uq]") {
 
 TEST_CASE("a search finds the mode that the proposal lacks and nothing where it lacks none", "[uq]") {
   // Off every line through the known mode the scouts alone find the narrow one: about 20 of them lie in its basin in
-  // two dimensions, three in three dimensions.
+  // two dimensions, three in three dimensions. Measured: 2 and 8 of 20 searches miss it, as a scout in the basin must
+  // also stand out among its neighbours to be followed.
   for (const int d : {1, 2, 3}) {
     const adversaries::Adversary two = d == 1 ? adversaries::narrow_and_wide(1) : adversaries::askew(d);
     const Eigen::VectorXd wide = Eigen::VectorXd::Constant(d, d == 1 ? 0.7 : 0.6);
