@@ -7,8 +7,8 @@
 // A difference whose size is below three times its doubt cannot be told from none.
 //
 // A parameter has influence when moving it through its range, or from end to end of it, the others held at the best fit
-// or at a draw, changes the predictions by more than that, and by enough for the data to see it. One that has none may be anything: what the
-// surrogate's mean makes of it is the noise of the runs.
+// or at a draw, changes the predictions by more than that, and by enough for the data to see it. One that has none may
+// be anything: what the surrogate's mean makes of it is the noise of the runs.
 #include <Eigen/Dense>
 #include <vector>
 
