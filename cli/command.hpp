@@ -13,6 +13,7 @@
 #include "data/error.hpp"
 #include "data/finding.hpp"
 #include "data/folder_lock.hpp"
+#include "data/plan.hpp"
 #include "data/run_table.hpp"
 #include "data/study.hpp"
 #include "data/study_file.hpp"
@@ -58,6 +59,7 @@ struct Workspace {
   std::shared_ptr<const uq::SurrogateOptions> surrogates;
   std::string out;  ///< results folder, absolute; made by the first write
   Unsteady unsteady = Unsteady::leave_out;
+  data::PlanSection plan = {};
 };
 
 /// Reads the study and, where it has a rig, the DEM case of each material. Throws InputError with every problem.
@@ -102,6 +104,7 @@ Action add_train(CLI::App& program);
 Action add_fit(CLI::App& program);
 Action add_sample(CLI::App& program);
 Action add_calibrate(CLI::App& program);
+Action add_plan(CLI::App& program);
 Action add_report(CLI::App& program);
 Action add_observe(CLI::App& program);
 

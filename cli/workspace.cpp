@@ -131,7 +131,7 @@ void add_isa_option(CLI::App& command) {
 
 Workspace open_workspace(const Common& common) {
   const data::StudyFile file = data::StudyFile::open(common.study, common.set);
-  Workspace workspace{.study = data::read_study(file), .cases = {}, .surrogates = {}, .out = {}};
+  Workspace workspace{.study = data::read_study(file), .cases = {}, .surrogates = {}, .out = {}, .plan = {}};
   workspace.surrogates =
       std::make_shared<const uq::SurrogateOptions>(uq::read_surrogate_options(file, workspace.study));
   data::Study& study = workspace.study;
@@ -151,6 +151,7 @@ Workspace open_workspace(const Common& common) {
   workspace.unsteady = file.root().child("training").choice("unsteady", {"leave_out", "use"}, "leave_out") == "use"
                            ? Unsteady::use
                            : Unsteady::leave_out;
+  workspace.plan = data::read_plan(file, study);
   file.finish();
   // How tables were read that are not plain CSV; what is wrong with them was said before.
   for (const data::ObservationSet& set : study.observations)
@@ -194,7 +195,7 @@ std::unique_ptr<data::FolderLock> hold_out(const Workspace& workspace, Writes fi
   std::vector<std::string> written;
   if (files == Writes::training) written = {"training.h5", "training.csv", "design.csv"};
   if (files == Writes::results) {
-    written = {"surrogate.h5", "results.json", "report.json", "report.html"};
+    written = {"surrogate.h5", "results.json", "report.json", "report.html", "plan.json"};
     for (const data::CalibrationCase& one : workspace.study.cases) written.push_back("posterior-" + one.name + ".nc");
   }
   for (const std::string& file : written) data::require_replaceable((fs::path(workspace.out) / file).string());

@@ -42,6 +42,9 @@ enum class Purpose : std::uint32_t {
   repeated_data = 30,         ///< for the probabilities of words
   report_seed = 28,           ///< child_seed of what a case's report draws
   thinned_runs = 31,          ///< those of many that a surrogate learns from
+  planned_noise = 32,         ///< of readings that a plan thinks of
+  planned_words = 33,         ///< readings for which a plan asks the words
+  planned_prior = 34,         ///< truths of a plan before any measurement
   simulation_case_seed = 27,  ///< child_seed of a case's simulation-based calibration
 };
 

@@ -17,6 +17,10 @@
 namespace data {
 namespace {
 
+bool is_percent(const Section& section, std::string_view key) {
+  return section.kind(key) == ValueKind::text && section.text(key).find('%') != std::string::npos;
+}
+
 constexpr double noise_sd = 0.5, noise_low = 0.1, noise_high = 10.0;
 constexpr double discrepancy_scale = 0.1, discrepancy_length = 0.5, discrepancy_length_sd = 0.7;
 
@@ -89,29 +93,6 @@ std::optional<std::size_t> read_output(const Section& section, const Study& stud
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), chosen) - names.begin());
 }
 
-bool is_percent(const Section& section, std::string_view key) {
-  return section.kind(key) == ValueKind::text && section.text(key).find('%') != std::string::npos;
-}
-
-/// What a number without a unit is.
-enum class BareNumber { share, value };
-
-/// "2 %", or a value with its unit, which a bare number may have from `section_unit`.
-Spread read_spread(const Section& section, std::string_view key, const Unit& unit, BareNumber bare,
-                   const Unit* section_unit = nullptr) {
-  Spread spread;
-  const bool number = section.kind(key) == ValueKind::number;
-  if (is_percent(section, key) || (number && bare == BareNumber::share)) {
-    spread.relative = section.quantity(key, "1", {.low = 0.0, .high = 1.0, .open_low = true});
-    return spread;
-  }
-  Unit difference = section_unit != nullptr ? *section_unit : Unit{};
-  difference.offset = 0.0;
-  spread.absolute =
-      section.quantity(key, unit.si_symbol, positive, {}, section_unit != nullptr ? &difference : nullptr);
-  return spread;
-}
-
 Nuisance noise_of(const Section& section, const Study& study) {
   Parameter parameter{.name = "noise", .target = "noise", .low = noise_low, .high = noise_high, .scale = Scale::log};
   parameter.prior = {.kind = PriorKind::log_normal, .low = noise_low, .high = noise_high, .mean = 1.0, .sd = noise_sd};
@@ -155,6 +136,21 @@ std::vector<Nuisance> discrepancy_of(const Section& section, const Study& study)
 }
 
 }  // namespace
+
+Spread read_spread(const Section& section, std::string_view key, const Unit& unit, BareNumber bare,
+                   const Unit* section_unit) {
+  Spread spread;
+  const bool number = section.kind(key) == ValueKind::number;
+  if (is_percent(section, key) || (number && bare == BareNumber::share)) {
+    spread.relative = section.quantity(key, "1", {.low = 0.0, .high = 1.0, .open_low = true});
+    return spread;
+  }
+  Unit difference = section_unit != nullptr ? *section_unit : Unit{};
+  difference.offset = 0.0;
+  spread.absolute =
+      section.quantity(key, unit.si_symbol, positive, {}, section_unit != nullptr ? &difference : nullptr);
+  return spread;
+}
 
 void read_rig_scale(const Section& root, Study& study) {
   if (!root.has("rig")) return;

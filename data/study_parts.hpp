@@ -30,6 +30,11 @@ std::map<std::string, double> read_fixed(const Section& section, const Study& st
 
 /// [rig] scale, and of each [[observe]]: what is known of its meter and its settings (study_measurement.cpp).
 void read_rig_scale(const Section& root, Study& study);
+/// What a number without a unit is.
+enum class BareNumber { share, value };
+/// "2 %", or a value with its unit, which a bare number may have from `section_unit`.
+Spread read_spread(const Section& section, std::string_view key, const Unit& unit, BareNumber bare,
+                   const Unit* section_unit = nullptr);
 std::optional<SettingError> read_uncertainty(const Section& section, std::string_view key, const Control& control,
                                              const Unit* section_unit);
 void read_measurement(const Section& root, const Section& section, const Study& study, ObservationSet& set);

@@ -182,6 +182,7 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
     one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);
     words.push_back(word_of(one.facts, thresholds));
     facts.push_back({one.facts, &found.profiles[k]});
+    found.facts.push_back(one.facts);
     evidence.push_back(std::move(one));
     found.parameters.push_back(std::move(report));
   }

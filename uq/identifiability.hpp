@@ -30,6 +30,7 @@ struct IdentifyOptions {
 struct Identification {
   std::vector<ParameterReport> parameters;  ///< the case's own, in its order; all but the chains' diagnostics filled
   std::vector<Profile> profiles;            ///< of the same
+  std::vector<WordFacts> facts;             ///< of the same: what decided their words
   std::vector<Influence> influence;         ///< of all unknowns
   Maximum best_fit;                         ///< largest likelihood
   FisherSpectrum fisher;                    ///< at the best fit

@@ -32,6 +32,55 @@ struct FoundFacts {
   const Profile* profile = nullptr;
 };
 
+/// The model about one point of a profile's path: the law of its rows, and how the other unknowns move it.
+struct PathPoint {
+  double u = 0.0;
+  double doubt = 0.0;  ///< of the surrogate, against the best fit, in data errors
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;  ///< without the noise
+  Eigen::VectorXd noise;       ///< variances
+  Eigen::MatrixXd slopes;      ///< rows x the unknowns that can move
+  Eigen::VectorXd precision;   ///< of their priors
+};
+
+/// Points that may matter: near enough to the best or beside such a point, and the two ends; all of them when `all`.
+/// `judged`: the model whose data the doubt is measured in.
+std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judged, const Profile& profile,
+                                   const Eigen::VectorXd& best, bool all = false);
+
+/// Deviances and words along a path, for any data of some of the model's rows.
+class PathWords {
+ public:
+  /// `noise_share`: of each row's noise variance: 1 / n for a mean of n readings.
+  PathWords(const std::vector<PathPoint>& points, const std::vector<Eigen::Index>& rows,
+            const Eigen::VectorXd& noise_share);
+  bool usable() const { return points_.size() >= 3; }
+  /// Less their least; at the points that a covariance could be factored at.
+  Eigen::VectorXd deviances(const Eigen::VectorXd& y) const;
+  /// Facts as found, with what hangs on the data's noise taken from `deviance`; `before`, `found_deviance`: those of
+  /// the data as they were found.
+  WordFacts facts(const FoundFacts& found, const PathWords& before, const Eigen::VectorXd& found_deviance,
+                  const Eigen::VectorXd& deviance, double drop) const;
+
+ private:
+  struct Local {
+    double u = 0.0, doubt = 0.0;
+    Eigen::VectorXd mean;
+    Eigen::LLT<Eigen::MatrixXd> covariance;
+    double log_determinant = 0.0;
+    Eigen::MatrixXd slopes;            ///< whitened
+    Eigen::LLT<Eigen::MatrixXd> bent;  ///< A' A + P
+  };
+  struct Parts {
+    int count = 0;
+    std::vector<std::size_t> of;  ///< for each point the part nearest to it
+  };
+  Parts parts(const Eigen::VectorXd& deviance, double drop) const;
+  double variance(const Eigen::VectorXd& deviance, const Parts& parts, bool within) const;
+
+  std::vector<Local> points_;
+};
+
 /// Per parameter, by falling probability; empty where there are too many rows.
 std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, const std::vector<FoundFacts>& found,
                                                        const Eigen::MatrixXd& draws, const Eigen::VectorXd& best,

@@ -295,8 +295,9 @@ std::string case_section(const CaseReport& result, std::size_t index, const Cont
   const std::string id = case_id(index, result);
   return fmt::format("<section id=\"{}\">\n<h2>Case {}</h2>\n", id, text(result.name)) + verdict_words(result) +
          parameter_table(result) + (result.doubt.empty() ? mode_table(result) : "") + support_part(result) +
-         verification_part(result, id, context) + comparison_part(result) + nuisance_table(result) +
-         fit_and_data(result) + predictive_part(result, id, context) + discrepancy_part(result, id, context) +
+         verification_part(result, id, context) + plan_part(result, id, context) + comparison_part(result) +
+         nuisance_table(result) + fit_and_data(result) + predictive_part(result, id, context) +
+         discrepancy_part(result, id, context) +
          (result.unusable ? "" : joint_part(result, id, context) + profile_part(result, id, context)) + "</section>\n";
 }
 

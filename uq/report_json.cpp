@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "data/atomic_file.hpp"
+#include "uq/report_results.hpp"
 #include "uq/report_text.hpp"
 
 namespace uq {
@@ -334,6 +335,17 @@ Json scan_json(const ErrorScan& scan) {
 
 }  // namespace
 
+nlohmann::ordered_json plans_json(const std::vector<CaseReport>& cases) {
+  Json plans = Json::array();
+  for (const CaseReport& one : cases)
+    if (one.plan) {
+      Json plan = {{"case", one.name}};
+      plan.update(Json::parse(to_text(*one.plan)));
+      plans.push_back(std::move(plan));
+    }
+  return plans;
+}
+
 nlohmann::ordered_json report_json(const CalibrationReport& report) {
   Json json = {{"format", 1},
                {"demcal", program_version(report)},
@@ -341,7 +353,7 @@ nlohmann::ordered_json report_json(const CalibrationReport& report) {
                {"study", report.study_name},
                {"surrogates", Json::array()},
                {"cases", Json::array()},
-               {"plan", Json::array()},
+               {"plan", plans_json(report.cases)},
                {"provenance", pairs(report.provenance)},
                {"warnings", first_lines(report)},
                {"error_scan", Json::array()},

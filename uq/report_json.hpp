@@ -9,6 +9,9 @@ namespace uq {
 
 nlohmann::ordered_json report_json(const CalibrationReport& report);
 
+/// The plans of the cases that have one: {"case", "about", "sentence", "candidates": [...], ...}.
+nlohmann::ordered_json plans_json(const std::vector<CaseReport>& cases);
+
 /// Throws data::InputError (73).
 void write_report_json(const CalibrationReport& report, const std::string& path);
 

@@ -45,6 +45,8 @@ std::string case_id(std::size_t index, const CaseReport& result);
 std::string joint_part(const CaseReport& result, const std::string& id, const Context& context);
 /// Runs of the simulation at points of the posterior beside the surrogate; nothing where there are none.
 std::string verification_part(const CaseReport& result, const std::string& id, const Context& context);
+/// What to measure next; nothing where no plan was made.
+std::string plan_part(const CaseReport& result, const std::string& id, const Context& context);
 std::string case_section(const CaseReport& result, std::size_t index, const Context& context);
 std::string surrogate_section(const std::vector<SurrogateReport>& surrogates, const Context& context);
 

@@ -193,6 +193,8 @@ CalibrationReport load_results(const std::string& path) {
   }
 }
 
+std::string to_text(const PlanReport& plan) { return save(plan).dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 std::string to_text(const SurrogateReport& report) {
   return save(report).dump(-1, ' ', false, Json::error_handler_t::replace);
 }

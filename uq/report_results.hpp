@@ -17,6 +17,9 @@ void save_results(const CalibrationReport& report, const std::string& path);
 /// 65 not a results file, or damaged, with the place.
 CalibrationReport load_results(const std::string& path);
 
+/// A plan alone, as text of JSON.
+std::string to_text(const PlanReport& plan);
+
 /// One surrogate's part alone, as text, and back; `place` is where the text was found.
 std::string to_text(const SurrogateReport& report);
 SurrogateReport surrogate_report_from(const std::string& text, const std::string& place);

@@ -77,6 +77,69 @@ struct WordProbability {
   double probability = 0.0;
 };
 
+/// What a candidate measurement is expected to teach of one parameter (uq/plan).
+struct PlannedParameter {
+  std::string name, unit;
+  double information = 0.0, information_error = 0.0;  ///< nats; the error is that of a 95 % interval
+  double sd_now = 0.0, sd_after = 0.0;                ///< posterior sd, and what it is expected to be
+  std::vector<WordProbability> words;                 ///< of the verdict afterwards; empty: not asked
+  std::optional<int> repeats_needed;                  ///< readings for "identified" with 90 % probability
+  std::string floor;  ///< why no number of readings is enough; empty: some is, or not asked
+};
+
+/// A measurement that could be made next.
+struct PlanCandidate {
+  std::string name;  ///< as the terminal shows it: "torque at 300 rpm"
+  std::string kind;  ///< "setting", "repeat", "output"
+  std::string material;
+  std::vector<std::string> outputs;
+  std::vector<std::map<std::string, double>> settings;  ///< controls of each of its points, their units
+  double cost = 1.0;
+  bool model_only = false;                            ///< the output need not mean the same in the real powder
+  bool assumed_error = false;                         ///< nobody stated an error of this output
+  std::string error;                                  ///< "2 %"
+  double information = 0.0, information_error = 0.0;  ///< about all parameters together, nats
+  std::vector<PlannedParameter> parameters;
+  bool teaches = true;  ///< about the parameter asked for
+};
+
+/// Several candidates together.
+struct PlanBatch {
+  std::vector<std::string> candidates;
+  double information = 0.0, information_error = 0.0;  ///< about the parameter asked for, nats
+  double greedy = 0.0;                                ///< of the batch that picks one after the other
+  double sd_after = 0.0;
+  double cost = 0.0;
+};
+
+/// Training runs instead of a measurement.
+struct PlannedRuns {
+  std::vector<std::string> points;                     ///< "carrier friction 0.4, hamaker 9e-18 J, rpm 50 rpm"
+  double seconds = 0.0;                                ///< of processor time, where the rows tell
+  double variance_before = 0.0, variance_after = 0.0;  ///< of the posterior density, shares of its mean square
+  std::vector<PlannedParameter> parameters;            ///< with a surrogate that is exact: the most that runs can do
+};
+
+/// How an output changes over half of a parameter's range about the posterior's mean, in measurement errors.
+struct PlanArrow {
+  std::string output, parameter;
+  std::map<std::string, double> setting;
+  double change = 0.0;
+};
+
+struct PlanReport {
+  std::string about;      ///< parameter that it ranks by
+  bool prior = false;     ///< made before any measurement counts
+  std::string sentence;   ///< the answer
+  std::string cost_unit;  ///< "" where costs are plain numbers
+  std::optional<double> budget;
+  std::vector<PlanCandidate> candidates;  ///< best first: information about `about` per cost
+  std::vector<PlanBatch> batches;         ///< of two, three, ... candidates
+  PlannedRuns runs;
+  std::vector<PlanArrow> arrows;
+  std::vector<std::string> notes;
+};
+
 struct ParameterReport {
   std::string name, unit;
   double prior_low = 0.0, prior_high = 0.0, prior_mean = 0.0, prior_sd = 0.0;
@@ -260,6 +323,7 @@ struct CaseReport {
   std::vector<ModeReport> modes;  ///< separate regions of the posterior, by falling weight; none where there is one
   std::string modes_parted_by;    ///< the measurement that would tell the modes apart
   std::vector<VerificationReport> verification;  ///< round by round, the last one decides; empty: not asked for
+  std::optional<PlanReport> plan = {};           ///< what to measure next, where it was asked
 };
 
 /// How the verdict changes when the measurement error is another one.

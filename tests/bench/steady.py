@@ -62,12 +62,18 @@ def main():
     equal = [f"materials.{name}.sizes=[{{ diameter = \"0.8 mm\", mass_fraction = 1.0 }}]"
              for name in ("zirconia-800", "zirconia-100", "carrier")]
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        runs = {point: [pool.submit(simulate, options, point, 1000 + k, "run", []) for k in range(options.seeds)]
-                for point in POINTS}
-        long = {point: [pool.submit(simulate, options, point, 5000 + k, "reference", reference) for k in range(3)]
-                for point in POINTS}
-        same = {point: [pool.submit(simulate, options, point, 1000 + k, "equal", equal) for k in range(options.equal)]
-                for point in POINTS}
+        runs, long, same = ({point: [] for point in POINTS} for _ in range(3))
+
+        def submit(into, seeds, kind, settings):
+            """Seed by seed over all points, so that what is there early tells of all of them."""
+            for seed in seeds:
+                for point in POINTS:
+                    into[point].append(pool.submit(simulate, options, point, seed, kind, settings))
+
+        submit(runs, range(1000, 1000 + options.seeds // 3), "run", [])
+        submit(long, range(5000, 5003), "reference", reference)
+        submit(same, range(1000, 1000 + options.equal), "equal", equal)
+        submit(runs, range(1000 + options.seeds // 3, 1000 + options.seeds), "run", [])
     print("| point | seeds | torque | error of a run | spread | bias | steady / drifting / short | equal: noticed |")
     print("|---|---|---|---|---|---|---|---|")
     together = []

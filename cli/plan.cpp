@@ -1,0 +1,172 @@
+// demcal plan: which measurement to make next, or which training runs, for the parameter that is known least.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/calibration.hpp"
+#include "cli/posterior_runs.hpp"
+#include "data/atomic_file.hpp"
+#include "data/provenance.hpp"
+#include "uq/plan/plan.hpp"
+#include "uq/report_html.hpp"
+#include "uq/report_json.hpp"
+#include "uq/report_plan.hpp"
+#include "uq/report_results.hpp"
+
+namespace cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int runs_listed = 4;  // training runs shown beside the measurements
+
+struct Options {
+  Common common;
+  std::string about, only;
+  double budget = 0.0;
+  int batch = 1;
+  bool prior = false;
+};
+
+/// Indices of the cases that are asked for.
+std::vector<std::size_t> chosen_cases(const Options& options, const Workspace& workspace) {
+  data::require_cases(workspace.study);
+  std::vector<std::size_t> chosen;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < workspace.study.cases.size(); ++i) {
+    names.push_back(workspace.study.cases[i].name);
+    if (options.only.empty() || options.only == names.back()) chosen.push_back(i);
+  }
+  if (chosen.empty())
+    throw data::InputError(data::ExitStatus::usage, {"--case", fmt::format("the study has no case '{}'", options.only),
+                                                     fmt::format("choose one of: {}", fmt::join(names, ", "))});
+  // A parameter is free in some cases only: those that do not know it have nothing to plan.
+  const std::string& about = options.about.empty() ? workspace.plan.about : options.about;
+  if (about.empty() || !options.only.empty()) return chosen;
+  std::vector<std::size_t> knowing;
+  for (const std::size_t i : chosen) {
+    const std::vector<std::string>& free = workspace.study.cases[i].free;
+    if (std::find(free.begin(), free.end(), about) != free.end()) knowing.push_back(i);
+  }
+  if (!knowing.empty()) return knowing;
+  std::vector<std::string> parameters;
+  for (const data::Parameter& one : workspace.study.parameters) parameters.push_back(one.name);
+  throw data::InputError(data::ExitStatus::usage, {"--about", fmt::format("no case frees a parameter '{}'", about),
+                                                   fmt::format("choose one of: {}", fmt::join(parameters, ", "))});
+}
+
+std::string text_of(const Workspace& workspace, const Point& point) {
+  const data::Study& study = workspace.study;
+  std::vector<std::string> inputs;
+  for (std::size_t p = 0; p < study.parameters.size(); ++p)
+    inputs.push_back(study.parameters[p].name + " " + with_unit(point.inputs[p], study.parameters[p].unit));
+  for (std::size_t c = 0; c < study.controls.size(); ++c)
+    inputs.push_back(study.controls[c].name + " " +
+                     with_unit(point.inputs[study.parameters.size() + c], study.controls[c].unit));
+  return fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", fmt::join(inputs, ", "));
+}
+
+/// The training runs that would sharpen the posterior most, and their cost, beside the measurements.
+void add_runs(const Workspace& workspace, const TrainingRows& rows, const Assessment& of_case, uq::PlanReport& plan) {
+  const ChosenRuns runs = choose_runs(workspace, rows, of_case, runs_listed);
+  for (const PlannedRun& run : runs.runs) plan.runs.points.push_back(text_of(workspace, run.point));
+  plan.runs.seconds = median_run_time(rows.all) * static_cast<double>(runs.runs.size());
+  plan.runs.variance_before = runs.variance_before;
+  plan.runs.variance_after = runs.variance_after_expected;
+}
+
+/// Puts the plans into the report of the last calibration, where there is one of this study.
+void add_to_report(const Workspace& workspace, const std::vector<uq::CaseReport>& planned) {
+  const fs::path out = workspace.out;
+  if (!fs::exists(out / "results.json")) return;
+  uq::CalibrationReport report = uq::load_results((out / "results.json").string());
+  bool any = false;
+  for (const uq::CaseReport& plan : planned)
+    for (uq::CaseReport& one : report.cases)
+      if (one.name == plan.name) {
+        one.plan = plan.plan;
+        any = true;
+      }
+  if (!any) return;
+  uq::save_results(report, (out / "results.json").string());
+  uq::write_report_json(report, (out / "report.json").string());
+  uq::write_report_html(report, workspace.out);
+}
+
+data::ExitStatus plan(const Options& options) {
+  const Common& common = options.common;
+  const Workspace workspace = open_workspace(common);
+  const std::vector<std::size_t> cases = chosen_cases(options, workspace);
+  const TrainingRows rows = rows_to_learn_from(common, workspace);
+  const auto held = hold_out(workspace, Writes::results, "plan");
+  const data::Study& study = workspace.study;
+  const uq::CalibrateOptions calibrate{.surrogates = surrogate_options(common, workspace, rows), .seed = study.seed};
+  Assessment assessment;
+  std::vector<uq::CaseReport> planned;
+  std::vector<std::string> refused;
+  {
+    JobProgress progress(common, "planning");
+    assessment.surrogates = uq::fit_surrogates(study, rows.table, calibrate.surrogates);
+    keep_surrogates(workspace, rows, calibrate.surrogates, assessment.surrogates);
+    progress("", 0.2);
+    const std::vector<uq::Emulator> emulators = uq::emulators_of(assessment.surrogates);
+    uq::plan::PlanOptions how{.about = options.about,
+                              .budget = options.budget > 0.0 ? std::optional(options.budget) : std::nullopt,
+                              .batch = options.batch,
+                              .prior = options.prior,
+                              .seed = study.seed};
+    for (const auto& [material, item] : workspace.cases)
+      if (item.material.coarse_graining > 1.0) how.candidates.coarse_grained.push_back(material);
+    for (std::size_t n = 0; n < cases.size(); ++n) {
+      const double from = 0.2 + 0.8 * static_cast<double>(n) / static_cast<double>(cases.size());
+      const double span = 0.8 / static_cast<double>(cases.size());
+      const uq::SampledCase sampled = uq::sample_case(study, emulators, cases[n], calibrate);
+      assessment.cases = {sampled};
+      how.progress = [&](double share) { progress("", from + span * (0.3 + 0.7 * share)); };
+      uq::CaseReport one;
+      one.name = study.cases[cases[n]].name;
+      try {
+        one.plan = uq::plan::make_plan(study, emulators, cases[n], sampled, workspace.plan, how);
+        if (!options.prior) add_runs(workspace, rows, assessment, *one.plan);
+        planned.push_back(std::move(one));
+      } catch (const data::InputError& error) {
+        if (error.status != data::ExitStatus::bad_data || cases.size() == 1) throw;
+        refused.push_back(data::describe(error.problems));
+      }
+    }
+  }
+  if (planned.empty())
+    throw data::InputError(data::ExitStatus::bad_data,
+                           {study.file, "no case can be planned on: " + refused.front(), "see demcal calibrate"});
+  const nlohmann::ordered_json json = {
+      {"format", 1}, {"demcal", data::program_version()}, {"study", study.name}, {"plans", uq::plans_json(planned)}};
+  const std::string path = (fs::path(workspace.out) / "plan.json").string();
+  data::write_atomically(path, json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  add_to_report(workspace, planned);
+  const std::vector<std::string> warnings = say_warnings(common, rows, assessment.surrogates, refused);
+  for (const uq::CaseReport& one : planned) say(common, uq::plan_text(one.name, *one.plan));
+  say(common, "Plan: " + path);
+  print_json(common, nlohmann::json::parse(json.dump()));
+  return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
+}
+
+}  // namespace
+
+Action add_plan(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      add_study_command(program, "plan", "what to measure next: which reading teaches most of a parameter, per cost",
+                        "demcal plan data/developer --about friction --batch 2", options->common);
+  command->add_option("--about", options->about, "parameter to learn of (default: the one that is known least)");
+  command->add_option("--case", options->only, "this case alone");
+  command->add_option("--budget", options->budget, "total cost at most, as [plan] counts it")
+      ->check(number_in(1e-300, 1e300, "a cost above 0"));
+  command->add_option("--batch", options->batch, "the best sets of up to so many readings, too")
+      ->check(CLI::Range(1, 4));
+  command->add_flag("--prior", options->prior, "as if nothing had been measured yet");
+  return [options] { return plan(*options); };
+}
+
+}  // namespace cli

@@ -1,0 +1,126 @@
+// The information of a reading against closed forms, quadrature and published examples, and its stated error.
+#include "uq/plan/information.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "data/random.hpp"
+#include "tests/uq/plan/known_information.hpp"
+
+using uq::plan::Estimate;
+using uq::plan::Information;
+
+namespace {
+
+/// From quasi-random draws with several scramblings.
+Information estimate(const known::Problem& problem, int draws, int repeats, std::uint64_t seed) {
+  std::vector<Information> all;
+  for (int r = 0; r < repeats; ++r) {
+    const auto [ensemble, noise] = known::ensemble_of(problem, draws, 100 * seed + static_cast<std::uint64_t>(r));
+    all.push_back(uq::plan::information(ensemble, {.noise = noise}));
+  }
+  return uq::plan::combined(all);
+}
+
+/// From independent draws, as a posterior gives them.
+Information estimate_independent(const known::Problem& problem, int draws, std::uint32_t seed) {
+  auto [ensemble, noise] = known::ensemble_of(problem, draws, 1);
+  data::RandomStream random(20261126, data::Purpose::test, seed);
+  for (int i = 0; i < draws; ++i) {
+    Eigen::VectorXd z(problem.unknowns);
+    for (double& value : z) value = problem.normal_prior ? random.normal() : random.uniform();
+    const Eigen::VectorXd theta = problem.value(z);
+    ensemble.values.row(i) = theta.transpose();
+    ensemble.mean.row(i) = problem.mean(theta).transpose();
+    for (int r = 0; r < problem.readings; ++r) noise(i, r) = random.normal();
+  }
+  return uq::plan::information(ensemble, {.noise = noise});
+}
+
+}  // namespace
+
+TEST_CASE("the information of all unknowns and of one is that of closed forms and of published examples", "[plan]") {
+  for (const known::Problem& problem : known::problems()) {
+    INFO(problem.name);
+    const Information found = estimate(problem, 1024, 8, 3);
+    // Student's interval for one seed of many problems, with room for the largest of them.
+    CHECK(std::abs(found.total.value - problem.total) < 2.0 * found.total.error + 2e-4);
+    CHECK(found.total.error < 0.01);
+    for (const auto& [unknown, truth] : problem.about) {
+      const Estimate about = found.about[static_cast<std::size_t>(unknown)].information;
+      CHECK(std::abs(about.value - truth) < 2.0 * about.error + 1e-3);
+      CHECK(about.error < 0.01);
+    }
+  }
+}
+
+TEST_CASE("the stated error holds the truth of every known problem in 95 of 100 seeds, within a thousandth of a nat",
+          "[plan][weekly]") {
+  int inside = 0, all = 0;
+  for (const known::Problem& problem : known::problems()) {
+    double largest = 0.0, sum = 0.0;
+    int held = 0;
+    constexpr int seeds = 200;
+    for (int seed = 0; seed < seeds; ++seed) {
+      const Information found = estimate(problem, 1024, 8, static_cast<std::uint64_t>(seed));
+      const double away = found.total.value - problem.total;
+      held += std::abs(away) <= found.total.error ? 1 : 0;
+      largest = std::max(largest, std::abs(away));
+      sum += away;
+    }
+    WARN(problem.name << ": held " << held << " of " << seeds << ", mean " << sum / seeds << ", largest " << largest);
+    CHECK(std::abs(sum / seeds) < 1e-3);
+    inside += held;
+    all += seeds;
+  }
+  CHECK(inside >= 0.95 * all);
+}
+
+TEST_CASE("with independent draws the stated error holds the truth", "[plan][slow]") {
+  int inside = 0, all = 0;
+  for (const known::Problem& problem : known::problems())
+    for (std::uint32_t seed = 0; seed < 20; ++seed) {
+      const Information found = estimate_independent(problem, 800, seed);
+      inside += std::abs(found.total.value - problem.total) <= found.total.error ? 1 : 0;
+      ++all;
+      for (const auto& [unknown, truth] : problem.about) {
+        const Estimate about = found.about[static_cast<std::size_t>(unknown)].information;
+        inside += std::abs(about.value - truth) <= about.error ? 1 : 0;
+        ++all;
+      }
+    }
+  INFO(inside << " of " << all);
+  // Problems at one seed share their draws, so the count scatters by more than a binomial one.
+  CHECK(inside >= 0.90 * all);
+}
+
+TEST_CASE("readings that say nothing of an unknown give no information about it", "[plan]") {
+  known::Problem blind = known::linear("the first of two", (Eigen::MatrixXd(1, 2) << 1, 0).finished(),
+                                       Eigen::Vector2d(1.0, 1.0), 0.1, 2.307560);
+  const Information found = estimate(blind, 1024, 8, 5);
+  CHECK(found.about[0].information.value == Approx(2.307560).margin(0.01));
+  CHECK(found.about[1].information.value < 0.005);
+  CHECK(found.about[1].sd_after.value == Approx(1.0).epsilon(0.03));
+}
+
+TEST_CASE("the expected width after a reading is that of the normal law", "[plan]") {
+  const Information found = estimate(known::problems()[3], 2048, 4, 1);  // prior sd 1, noise 0.1
+  CHECK(found.about[0].sd_after.value == Approx(0.1 / std::sqrt(1.01)).epsilon(0.01));
+}
+
+TEST_CASE("a reading for which the draws are too few says so in its error, and never exceeds what they can tell",
+          "[plan]") {
+  known::Problem sharp =
+      known::linear("scalar, noise 1e-5", Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Ones(1), 1e-5, 11.5129);
+  const Information found = estimate_independent(sharp, 400, 1);
+  CHECK(found.total.value < 2.0 * std::log(400.0));
+  CHECK(found.total.error > 0.1);
+}
+
+TEST_CASE("information of finite unknowns and readings is exact", "[plan]") {
+  // Pyro's tests of finite spaces: theta ~ Bernoulli(0.4), y ~ Bernoulli((d + theta) / 2) at d = 1/2.
+  const Eigen::Vector2d prior(0.6, 0.4);
+  Eigen::MatrixXd likelihood(2, 2);
+  likelihood << 0.75, 0.25, 0.25, 0.75;
+  CHECK(uq::plan::finite_information(prior, likelihood) == Approx(0.12580366909478014).epsilon(1e-12));
+}

@@ -1,0 +1,236 @@
+// Plans on cases whose model is a formula: what teaches, what does not, what comes true.
+#include "uq/plan/plan.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "data/error.hpp"
+#include "data/random.hpp"
+#include "tests/uq/plan/formula_study.hpp"
+#include "uq/plan/outlook.hpp"
+
+using uq::PlanCandidate;
+using uq::PlanReport;
+
+namespace {
+
+data::Study measured(double a, double b, double sd, std::uint32_t index) {
+  data::RandomStream random(20261126, data::Purpose::test, index);
+  const std::vector<double> speeds = {0.0, 0.5, 1.0};
+  std::vector<double> values;
+  for (const double x : speeds) values.push_back(formula::torque(a, b, x) + sd * random.normal());
+  return formula::study(speeds, values, sd);
+}
+
+PlanReport plan_of(const data::Study& study, const std::vector<uq::Emulator>& emulators,
+                   const data::PlanSection& section, uq::plan::PlanOptions options) {
+  options.draws = std::min(options.draws, 1000);
+  const uq::SampledCase sampled = uq::sample_case(study, emulators, 0, {.seed = 1});
+  return uq::plan::make_plan(study, emulators, 0, sampled, section, options);
+}
+
+const PlanCandidate& named(const PlanReport& plan, const std::string& name) {
+  const auto found = std::find_if(plan.candidates.begin(), plan.candidates.end(),
+                                  [&](const PlanCandidate& one) { return one.name == name; });
+  INFO(name);
+  REQUIRE(found != plan.candidates.end());
+  return *found;
+}
+
+double chance(const PlanCandidate& one, std::size_t parameter, const std::string& word) {
+  for (const uq::WordProbability& each : one.parameters[parameter].words)
+    if (each.verdict == word) return each.probability;
+  return 0.0;
+}
+
+}  // namespace
+
+TEST_CASE("what parts two traded parameters is ranked above more of the same", "[plan]") {
+  const data::Study study = measured(0.5, 0.5, 0.1, 1);
+  const PlanReport plan = plan_of(study, formula::emulators(), {}, {.about = "a"});
+  CHECK(plan.candidates.front().outputs == std::vector<std::string>{"angle"});
+  CHECK(plan.candidates.front().assumed_error);
+  const PlanCandidate &best = plan.candidates.front(), &again = named(plan, "torque at 0");
+  CHECK(again.kind == "repeat");
+  CHECK(best.parameters[0].information > 5.0 * again.parameters[0].information);
+  CHECK(best.parameters[0].sd_after < best.parameters[0].sd_now);
+  CHECK_THAT(plan.sentence, Catch::Contains("Measure angle"));
+}
+
+TEST_CASE("a reading made again teaches less where the surrogate's error is what is not known", "[plan]") {
+  // One unknown a with prior sd s, one reading with the surrogate's error t and noise e: given it, a repeat knows what
+  // t was. Information from the covariance of (a, first, second), all normal.
+  const double t = 0.5, e = 0.1;
+  data::Study study = formula::study({0.5}, {formula::torque(0.5, 0.5, 0.5)}, e);
+  study.cases[0].free = {"a"};
+  study.cases[0].fixed = {{"b", 0.5}};
+  for (data::Parameter& one : study.parameters)
+    one.prior = {.kind = data::PriorKind::normal, .low = 0.0, .high = 1.0, .mean = 0.5, .sd = 0.1};
+  const double slope = 5.0 + 0.3 * 0.5, s = 0.1;
+  const auto left = [&](double readings) {  // variance of a after a mean of so many readings
+    const double noise = t * t + e * e / readings;
+    return 1.0 / (1.0 / (s * s) + slope * slope / noise);
+  };
+  const data::PlanSection section{.about = {},
+                                  .cost_unit = {},
+                                  .candidates = {{.name = "again",
+                                                  .material = {},
+                                                  .outputs = {0},
+                                                  .settings = {{0.5}},
+                                                  .error = {},
+                                                  .common_error = {},
+                                                  .place = {}},
+                                                 {.name = "new meter",
+                                                  .material = {},
+                                                  .outputs = {0},
+                                                  .settings = {{0.5}},
+                                                  .error = data::Spread{.absolute = e},
+                                                  .common_error = {},
+                                                  .place = {}}}};
+  const PlanReport plan = plan_of(study, formula::emulators(t), section, {.about = "a", .draws = 1000});
+  const auto& about = named(plan, "again").parameters[0];
+  const double truth = 0.5 * std::log(left(1.0) / left(2.0));
+  CHECK(truth < 0.01);
+  CHECK(std::abs(about.information - truth) <= about.information_error + 0.005);
+}
+
+TEST_CASE("before any measurement the information is that of the prior", "[plan]") {
+  const data::Study study = measured(0.5, 0.5, 0.1, 2);
+  const PlanReport plan = plan_of(study, formula::emulators(), {}, {.about = "a", .prior = true});
+  CHECK(plan.prior);
+  const PlanCandidate& torque = named(plan, "torque at 0.5");
+  // y = 5.15 a + 3.85 b + e: by quadrature of the sum of two uniforms and a normal.
+  const double sd = 0.1, wide = 5.15, narrow = 3.85;
+  const auto entropy = [&](auto density, double low, double high) {
+    double sum = 0.0;
+    const int cells = 20000;
+    for (int i = 0; i < cells; ++i) {
+      const double p = density(low + (high - low) * (i + 0.5) / cells);
+      if (p > 0.0) sum -= p * std::log(p) * (high - low) / cells;
+    }
+    return sum;
+  };
+  const auto below = [](double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); };
+  const auto of_narrow = [&](double y) { return (below(y / sd) - below((y - narrow) / sd)) / narrow; };
+  const auto of_both = [&](double y) {
+    double sum = 0.0;
+    const int cells = 400;
+    for (int i = 0; i < cells; ++i) sum += of_narrow(y - wide * (i + 0.5) / cells) / cells;
+    return sum;
+  };
+  const double truth = entropy(of_both, -1.0, 10.0) - entropy(of_narrow, -1.0, 5.0);
+  // The error of a reading is stated in per cent of the torque at the prior's mean, 14.5, from a median reading.
+  CHECK(torque.parameters[0].information == Approx(truth).margin(0.03));
+}
+
+TEST_CASE("two readings together are worth at least the better of them, and no less than picked one by one", "[plan]") {
+  const data::Study study = measured(0.5, 0.5, 0.1, 3);
+  const PlanReport plan = plan_of(study, formula::emulators(), {}, {.about = "a", .batch = 2, .draws = 600});
+  REQUIRE(plan.batches.size() == 1);
+  const uq::PlanBatch& batch = plan.batches.front();
+  CHECK(batch.candidates.size() == 2);
+  CHECK(batch.information + batch.information_error > plan.candidates.front().parameters[0].information);
+  CHECK(batch.information >= batch.greedy);
+}
+
+TEST_CASE("candidates cost what the study says, and none is above the budget", "[plan]") {
+  const data::Study study = measured(0.5, 0.5, 0.1, 4);
+  const data::PlanSection section{.about = "a",
+                                  .cost_unit = "h",
+                                  .candidates = {{.name = "dear",
+                                                  .material = {},
+                                                  .outputs = {1},
+                                                  .settings = {{0.5}},
+                                                  .error = data::Spread{.relative = 0.02},
+                                                  .common_error = {},
+                                                  .cost = 100.0,
+                                                  .place = {}},
+                                                 {.name = "cheap",
+                                                  .material = {},
+                                                  .outputs = {1},
+                                                  .settings = {{0.5}},
+                                                  .error = data::Spread{.relative = 0.03},
+                                                  .common_error = {},
+                                                  .cost = 1.0,
+                                                  .place = {}}}};
+  const PlanReport both = plan_of(study, formula::emulators(), section, {.draws = 600});
+  CHECK(both.candidates.front().name == "cheap");
+  CHECK(named(both, "dear").parameters[0].information > both.candidates.front().parameters[0].information);
+  const PlanReport poor = plan_of(study, formula::emulators(), section, {.budget = 10.0, .draws = 600});
+  CHECK(poor.candidates.size() == 1);
+}
+
+TEST_CASE("a plan that cannot be is refused with its place and remedy", "[plan]") {
+  const data::Study study = measured(0.5, 0.5, 0.1, 5);
+  const auto entry = [](std::size_t output, double speed, std::optional<data::Spread> error) {
+    return data::PlanSection{.about = {},
+                             .cost_unit = {},
+                             .candidates = {{.name = {},
+                                             .material = {},
+                                             .outputs = {output},
+                                             .settings = {{speed}},
+                                             .error = error,
+                                             .common_error = {},
+                                             .place = "study.toml:40: plan.candidates"}}};
+  };
+  CHECK_THROWS_WITH(plan_of(study, formula::emulators(), entry(1, 0.5, {}), {}), Catch::Contains("no error of angle"));
+  CHECK_THROWS_WITH(plan_of(study, formula::emulators(), entry(0, 1.5, {}), {}), Catch::Contains("outside the runs"));
+  CHECK_THROWS_WITH(plan_of(study, {formula::emulators()[0]}, entry(1, 0.5, data::Spread{.relative = 0.1}), {}),
+                    Catch::Contains("there are no runs"));
+  CHECK_THROWS_WITH(plan_of(study, formula::emulators(), {}, {.about = "c"}), Catch::Contains("no free parameter 'c'"));
+  data::Study misfit = study;
+  misfit.observations[0].points[0].values[0] += 10.0;
+  CHECK_THROWS_WITH(plan_of(misfit, formula::emulators(), {}, {}), Catch::Contains("does not fit"));
+}
+
+TEST_CASE("widths and words that a plan forecasts come true", "[plan][slow]") {
+  // Closed loops: a truth from the prior, three torques, a plan, its first choice read at the truth, and all again.
+  constexpr int loops = 60;
+  double expected = 0.0, found = 0.0, brier = 0.0, base = 0.0;
+  std::vector<double> chances, outcomes;
+  for (int loop = 0; loop < loops; ++loop) {
+    data::RandomStream random(20261127, data::Purpose::test, static_cast<std::uint32_t>(loop));
+    const double a = random.uniform(), b = random.uniform();
+    data::Study study = measured(a, b, 0.15, 1000 + static_cast<std::uint32_t>(loop));
+    const data::PlanSection section{.about = "a",
+                                    .cost_unit = {},
+                                    .candidates = {{.name = "angle",
+                                                    .material = {},
+                                                    .outputs = {1},
+                                                    .settings = {{0.5}},
+                                                    .error = data::Spread{.absolute = 0.8},
+                                                    .common_error = {},
+                                                    .place = {}}}};
+    const PlanReport plan = plan_of(study, formula::emulators(), section, {.draws = 500});
+    const PlanCandidate& first = plan.candidates.front();
+    data::ObservationSet more{.name = "more", .file = "more.csv", .outputs = {1}};
+    more.points.push_back({.controls = {0.5},
+                           .values = {formula::angle(a, b, 0.5) + 0.8 * random.normal()},
+                           .standard_errors = {0.8},
+                           .line = 2});
+    study.observations.push_back(more);
+    study.cases[0].observe.push_back("more");
+    const uq::SampledCase after = uq::sample_case(study, formula::emulators(), 0, {.seed = 1});
+    const uq::Identification told = uq::identify(*after.model, after.draws.pooled());
+    expected += first.parameters[0].sd_after;
+    found += told.parameters[0].sd;
+    chances.push_back(chance(first, 0, "identified") + chance(first, 0, "weakly identified"));
+    outcomes.push_back(told.parameters[0].verdict == uq::Verdict::identified ||
+                               told.parameters[0].verdict == uq::Verdict::weakly_identified
+                           ? 1.0
+                           : 0.0);
+  }
+  double rate = 0.0, mean_chance = 0.0;
+  for (const double outcome : outcomes) rate += outcome / loops;
+  for (std::size_t i = 0; i < chances.size(); ++i) {
+    brier += std::pow(chances[i] - outcomes[i], 2) / loops;
+    base += std::pow(rate - outcomes[i], 2) / loops;
+    mean_chance += chances[i] / loops;
+  }
+  WARN("sd expected " << expected / loops << ", found " << found / loops << "; a word forecast with " << mean_chance
+                      << " came in " << rate << "; Brier " << brier << ", of the base rate " << base);
+  CHECK(found == Approx(expected).epsilon(0.1));
+  CHECK(mean_chance == Approx(rate).margin(0.12));
+  CHECK(brier < base + 0.02);
+}

@@ -1,0 +1,432 @@
+#include "uq/plan/candidates.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "data/error.hpp"
+#include "uq/posterior.hpp"
+
+namespace uq::plan {
+namespace {
+
+using data::Study;
+using Eigen::Index;
+
+constexpr std::size_t rows_most = 120;  // of the data in the model of what they leave open
+
+const Emulator* emulator_of(const std::vector<Emulator>& emulators, const std::string& material, std::size_t output) {
+  for (const Emulator& one : emulators)
+    if (one.material == material && one.output == output) return &one;
+  return nullptr;
+}
+
+/// Own sets of the case, as indices into Study::observations.
+std::vector<std::size_t> own_sets(const Study& study, std::size_t case_index) {
+  std::vector<std::size_t> sets;
+  for (const std::string& name : study.cases[case_index].observe) sets.push_back(study.observation_index(name).value());
+  return sets;
+}
+
+/// The relative error of the case's readings of an output: their median; none where it reads none.
+std::optional<double> stated_error(const Study& study, const std::vector<std::size_t>& sets, std::size_t output) {
+  std::vector<double> shares;
+  for (const std::size_t index : sets) {
+    const data::ObservationSet& set = study.observations[index];
+    const auto column = std::find(set.outputs.begin(), set.outputs.end(), output);
+    if (column == set.outputs.end()) continue;
+    const auto c = static_cast<std::size_t>(column - set.outputs.begin());
+    for (const data::Observation& point : set.points)
+      if (point.values[c] != 0.0) shares.push_back(std::abs(point.standard_errors[c] / point.values[c]));
+  }
+  if (shares.empty()) return {};
+  std::nth_element(shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2), shares.end());
+  return shares[shares.size() / 2];
+}
+
+/// Range of a control that the runs of a material cover.
+std::pair<double, double> range_of(const Study& study, const Emulator& emulator, std::size_t control) {
+  const auto known = emulator.control_range.find(control);
+  if (known != emulator.control_range.end()) return known->second;
+  return {study.controls[control].low, study.controls[control].high};
+}
+
+bool varied(const Emulator& emulator, std::size_t control) {
+  return std::any_of(emulator.inputs.begin(), emulator.inputs.end(), [&](const EmulatorInput& input) {
+    return input.kind == InputKind::control && input.index == control;
+  });
+}
+
+/// A value with two significant digits in the control's unit.
+double rounded(double si, const data::Unit& unit) {
+  return unit.to_si(std::stod(fmt::format("{:.2g}", unit.from_si(si))));
+}
+
+std::string name_of(const Study& study, const Candidate& candidate, bool of_several_materials) {
+  std::vector<std::string> outputs, settings;
+  for (const std::size_t output : candidate.outputs) outputs.push_back(study.outputs[output].name);
+  for (std::size_t c = 0; c < study.controls.size(); ++c) {
+    std::set<double> values;
+    for (const auto& point : candidate.settings) values.insert(point[c]);
+    const data::Unit& unit = study.controls[c].unit;
+    std::vector<std::string> texts;
+    for (const double value : values) texts.push_back(fmt::format("{:.4g}", unit.from_si(value)));
+    settings.push_back(fmt::format("{}{}{}", study.controls.size() > 1 ? study.controls[c].name + " " : "",
+                                   fmt::join(texts, ", "), unit.symbol.empty() ? "" : " " + unit.symbol));
+  }
+  std::string name = fmt::format("{} at {}", fmt::join(outputs, " and "), fmt::join(settings, ", "));
+  if (of_several_materials) name += " of " + candidate.material;
+  if (candidate.readings > 1) name += fmt::format(", {} readings", candidate.readings);
+  return name;
+}
+
+/// The output means what it does in the powder: the drive's torque does by how the grains are enlarged, others need
+/// not.
+bool only_of_model(const Study& study, const std::vector<std::size_t>& sets, std::size_t output,
+                   const std::string& material, const CandidateOptions& options) {
+  if (std::find(options.coarse_grained.begin(), options.coarse_grained.end(), material) == options.coarse_grained.end())
+    return false;
+  return !stated_error(study, sets, output) && study.outputs[output].name != "torque";
+}
+
+class Usual {
+ public:
+  Usual(const Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
+        const CandidateOptions& options)
+      : study_(study), emulators_(emulators), sets_(own_sets(study, case_index)), options_(options) {}
+
+  std::vector<Candidate> all() {
+    std::set<std::string> materials;
+    for (const std::size_t index : sets_) materials.insert(study_.observations[index].material);
+    for (const std::string& material : materials) {
+      std::set<std::vector<double>> observed;
+      std::set<std::size_t> measured;
+      for (const std::size_t index : sets_) {
+        const data::ObservationSet& set = study_.observations[index];
+        if (set.material != material) continue;
+        measured.insert(set.outputs.begin(), set.outputs.end());
+        for (const data::Observation& point : set.points) observed.insert(point.controls);
+      }
+      if (observed.empty()) continue;
+      for (std::size_t output = 0; output < study_.outputs.size(); ++output) {
+        const Emulator* emulator = emulator_of(emulators_, material, output);
+        if (emulator == nullptr) continue;
+        const bool known = measured.contains(output);
+        add_output(material, output, *emulator, observed, known);
+      }
+    }
+    for (Candidate& one : found_) one.name = name_of(study_, one, materials.size() > 1);
+    return found_;
+  }
+
+ private:
+  void add_output(const std::string& material, std::size_t output, const Emulator& emulator,
+                  const std::set<std::vector<double>>& observed, bool known) {
+    const std::optional<double> stated = stated_error(study_, sets_, output);
+    std::set<std::vector<double>> taken;
+    const auto add = [&](const std::vector<double>& controls, CandidateKind kind) {
+      if (!taken.insert(controls).second) return;
+      Candidate one{.kind = kind, .material = material, .outputs = {output}, .settings = {controls}};
+      one.error = {{.relative = stated.value_or(options_.assumed_error)}};
+      one.assumed_error = !stated;
+      one.model_only = only_of_model(study_, sets_, output, material, options_);
+      found_.push_back(std::move(one));
+    };
+    if (known)
+      for (const auto& controls : few(observed)) add(controls, CandidateKind::repeat);
+    // One control at a time, the others as they were measured.
+    const std::vector<double> centre = *std::next(observed.begin(), static_cast<std::ptrdiff_t>(observed.size() / 2));
+    const int count = known ? options_.settings : options_.settings_other;
+    bool any = false;
+    for (std::size_t c = 0; c < study_.controls.size(); ++c) {
+      if (!varied(emulator, c)) continue;
+      any = true;
+      const auto [low, high] = range_of(study_, emulator, c);
+      for (int i = 0; i < count; ++i) {
+        std::vector<double> controls = centre;
+        const double value = low + (high - low) * i / (count - 1.0);
+        controls[c] =
+            std::clamp(rounded(value, study_.controls[c].unit), study_.controls[c].low, study_.controls[c].high);
+        if (known && near_observed(observed, controls)) continue;
+        add(controls, known ? CandidateKind::setting : CandidateKind::output);
+      }
+    }
+    if (!known && !any) add(centre, CandidateKind::output);
+  }
+
+  /// Within a hundredth of every control's range of a setting that is there.
+  bool near_observed(const std::set<std::vector<double>>& observed, const std::vector<double>& controls) const {
+    return std::any_of(observed.begin(), observed.end(), [&](const std::vector<double>& other) {
+      for (std::size_t c = 0; c < controls.size(); ++c)
+        if (std::abs(other[c] - controls[c]) > 0.01 * (study_.controls[c].high - study_.controls[c].low)) return false;
+      return true;
+    });
+  }
+
+  /// Of many settings, a dozen.
+  static std::vector<std::vector<double>> few(const std::set<std::vector<double>>& observed) {
+    const std::vector<std::vector<double>> all(observed.begin(), observed.end());
+    constexpr std::size_t most = 12;
+    if (all.size() <= most) return all;
+    std::vector<std::vector<double>> some;
+    for (std::size_t i = 0; i < most; ++i) some.push_back(all[i * (all.size() - 1) / (most - 1)]);
+    return some;
+  }
+
+  const Study& study_;
+  const std::vector<Emulator>& emulators_;
+  std::vector<std::size_t> sets_;
+  const CandidateOptions& options_;
+  std::vector<Candidate> found_;
+};
+
+/// The candidates of one entry of [plan] for a case.
+class Entry {
+ public:
+  Entry(const Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
+        const data::PlanEntry& entry, const CandidateOptions& options, std::vector<data::Problem>& problems)
+      : study_(study),
+        emulators_(emulators),
+        sets_(own_sets(study, case_index)),
+        entry_(entry),
+        options_(options),
+        problems_(problems) {}
+
+  std::vector<Candidate> all() {
+    Candidate base{.kind = CandidateKind::setting, .material = entry_.material, .outputs = entry_.outputs};
+    if (base.material.empty() && !sets_.empty()) base.material = study_.observations[sets_.front()].material;
+    base.cost = entry_.cost;
+    base.readings = entry_.readings;
+    base.common_error = entry_.common_error;
+    bool measured = false;
+    for (const std::size_t output : base.outputs) {
+      const std::optional<double> stated = stated_error(study_, sets_, output);
+      measured = measured || stated;
+      if (!entry_.error && !stated)
+        problem(fmt::format("no error of {} is known: the case does not measure it", study_.outputs[output].name),
+                "state error = \"3 %\", or a value with its unit");
+      base.error.push_back(entry_.error.value_or(data::Spread{.relative = stated.value_or(options_.assumed_error)}));
+      base.model_only = base.model_only || only_of_model(study_, sets_, output, base.material, options_);
+      if (emulator_of(emulators_, base.material, output) == nullptr)
+        problem(fmt::format("there are no runs of material '{}' with {}", base.material, study_.outputs[output].name),
+                "simulate it, or leave the output out");
+    }
+    if (!measured) base.kind = CandidateKind::output;
+    const std::vector<std::vector<double>> points = grid(base);
+    std::vector<Candidate> found;
+    for (const auto& controls : points) {
+      if (entry_.together && !found.empty()) {
+        found.back().settings.push_back(controls);
+        continue;
+      }
+      base.settings = {controls};
+      found.push_back(base);
+    }
+    for (Candidate& one : found) {
+      const bool repeat =
+          one.kind == CandidateKind::setting &&
+          std::all_of(one.settings.begin(), one.settings.end(), [&](const auto& p) { return is_observed(p); });
+      if (repeat) one.kind = CandidateKind::repeat;
+      one.name = name_of(study_, one, false);
+      if (!entry_.name.empty()) one.name = found.size() == 1 ? entry_.name : entry_.name + ": " + one.name;
+    }
+    return found;
+  }
+
+ private:
+  void problem(std::string what, std::string remedy) {
+    problems_.push_back({entry_.place, std::move(what), std::move(remedy)});
+  }
+
+  bool is_observed(const std::vector<double>& controls) const {
+    for (const std::size_t index : sets_)
+      for (const data::Observation& point : study_.observations[index].points)
+        if (point.controls == controls) return true;
+    return false;
+  }
+
+  /// All combinations of the values stated; a control without any has the one value that the case's data have.
+  std::vector<std::vector<double>> grid(const Candidate& base) {
+    std::vector<std::vector<double>> points = {{}};
+    const Emulator* emulator = emulator_of(emulators_, base.material, base.outputs.front());
+    for (std::size_t c = 0; c < study_.controls.size(); ++c) {
+      std::vector<double> values = entry_.settings[c];
+      if (values.empty()) {
+        std::set<double> observed;
+        for (const std::size_t index : sets_)
+          for (const data::Observation& point : study_.observations[index].points) observed.insert(point.controls[c]);
+        if (observed.size() != 1) {
+          problem(fmt::format("settings.{} is missing, and the data have {} values of it", study_.controls[c].name,
+                              observed.size()),
+                  fmt::format("state settings = {{ {} = ... }}", study_.controls[c].name));
+          return {};
+        }
+        values.assign(observed.begin(), observed.end());
+      }
+      if (emulator != nullptr) {
+        const auto [low, high] = range_of(study_, *emulator, c);
+        const double slack = 0.1 * (study_.controls[c].high - study_.controls[c].low);
+        const data::Unit& unit = study_.controls[c].unit;
+        for (const double value : values)
+          if (value < low - slack || value > high + slack)
+            problem(fmt::format("{} {:g} {} is outside the runs of this material, which reach from {:g} to {:g} {}",
+                                study_.controls[c].name, unit.from_si(value), unit.symbol, unit.from_si(low),
+                                unit.from_si(high), unit.symbol),
+                    "choose a setting inside, or train in a wider range");
+      }
+      std::vector<std::vector<double>> next;
+      for (const auto& point : points)
+        for (const double value : values) {
+          next.push_back(point);
+          next.back().push_back(value);
+        }
+      points = std::move(next);
+    }
+    return points;
+  }
+
+  const Study& study_;
+  const std::vector<Emulator>& emulators_;
+  std::vector<std::size_t> sets_;
+  const data::PlanEntry& entry_;
+  const CandidateOptions& options_;
+  std::vector<data::Problem>& problems_;
+};
+
+/// Points measured again at the same controls become one, and of very many some stand for all.
+void condense(data::ObservationSet& set) {
+  std::map<std::vector<double>, std::vector<const data::Observation*>> at;
+  for (const data::Observation& point : set.points) at[point.controls].push_back(&point);
+  std::vector<data::Observation> points;
+  for (const auto& [controls, same] : at) {
+    data::Observation one = *same.front();
+    for (std::size_t c = 0; c < one.values.size(); ++c) {
+      double weight = 0.0, sum = 0.0;
+      for (const auto* point : same) {
+        const double w = 1.0 / std::pow(point->standard_errors[c], 2);
+        weight += w;
+        sum += w * point->values[c];
+      }
+      one.values[c] = sum / weight;
+      one.standard_errors[c] = 1.0 / std::sqrt(weight);
+    }
+    points.push_back(std::move(one));
+  }
+  if (points.size() > rows_most) {
+    std::vector<data::Observation> some;
+    for (std::size_t i = 0; i < rows_most; ++i) some.push_back(points[i * (points.size() - 1) / (rows_most - 1)]);
+    points = std::move(some);
+  }
+  set.points = std::move(points);
+}
+
+/// A set of the case that reads this output alone with the candidate's meter, so that its errors are shared.
+std::optional<std::size_t> host_of(const Study& study, const std::vector<std::size_t>& sets, const Candidate& candidate,
+                                   std::size_t output) {
+  if (candidate.common_error) return {};
+  for (const std::size_t index : sets) {
+    const data::ObservationSet& set = study.observations[index];
+    const bool unknown_setting = std::any_of(set.setting_errors.begin(), set.setting_errors.end(),
+                                             [](const data::SettingError& error) { return error.unknown; });
+    if (set.material == candidate.material && set.outputs == std::vector{output} && !unknown_setting) return index;
+  }
+  return {};
+}
+
+}  // namespace
+
+const char* to_text(CandidateKind kind) {
+  switch (kind) {
+    case CandidateKind::repeat:
+      return "repeat";
+    case CandidateKind::setting:
+      return "setting";
+    case CandidateKind::output:
+      return "output";
+  }
+  return "";
+}
+
+std::vector<Candidate> candidates_of(const Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
+                                     const data::PlanSection& plan, const CandidateOptions& options) {
+  if (plan.candidates.empty()) return Usual(study, emulators, case_index, options).all();
+  std::vector<data::Problem> problems;
+  std::vector<Candidate> found;
+  for (const data::PlanEntry& entry : plan.candidates) {
+    const std::vector<Candidate> more = Entry(study, emulators, case_index, entry, options, problems).all();
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  if (!problems.empty()) throw data::InputError(data::ExitStatus::bad_study, problems);
+  return found;
+}
+
+ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
+                    const CaseModel& sampled, const std::vector<Candidate>& candidates, const Eigen::VectorXd& u) {
+  Study wider = study;
+  for (data::ObservationSet& set : wider.observations) condense(set);
+  const std::vector<std::size_t> sets = own_sets(study, case_index);
+  struct Home {
+    std::size_t candidate = 0, column = 0;
+  };
+  std::map<std::pair<std::size_t, std::size_t>, Home> home;  // of a planned point, by set and point
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
+    for (std::size_t column = 0; column < candidate.outputs.size(); ++column) {
+      const std::size_t output = candidate.outputs[column];
+      std::size_t index = 0;
+      if (const auto host = host_of(wider, sets, candidate, output)) {
+        index = *host;
+      } else {
+        data::ObservationSet set{
+            .name = fmt::format("planned {}.{}", i, column), .material = candidate.material, .outputs = {output}};
+        for (const std::size_t own : sets)
+          if (study.observations[own].material == candidate.material) {
+            set.of_machine = study.observations[own].of_machine && output == 0;
+            if (!candidate.common_error) set.common_errors = study.observations[own].common_errors;
+          }
+        if (candidate.common_error) set.common_errors = {{output, *candidate.common_error}};
+        index = wider.observations.size();
+        wider.cases[case_index].observe.push_back(set.name);
+        wider.observations.push_back(std::move(set));
+      }
+      data::ObservationSet& set = wider.observations[index];
+      for (const auto& controls : candidate.settings) {
+        home[{index, set.points.size()}] = {i, column};
+        // Any value, but never that of a measured row.
+        set.points.push_back(
+            {.controls = controls, .values = {1.0 + static_cast<double>(home.size())}, .standard_errors = {1.0}});
+      }
+    }
+  }
+  ExtendedCase found{.model = build_case(wider, emulators, case_index), .measured = {}, .planned = {}};
+  CaseModel& model = found.model;
+  model.slots = sampled.slots;  // with the laws of unknowns that were cut from another case
+  model.distinct.reset();
+  for (RowGroup& group : model.groups)
+    for (const RowGroup& other : sampled.groups)
+      if (other.emulator.material == group.emulator.material && other.emulator.output == group.emulator.output)
+        for (std::size_t k = 0; k < other.measurement.discrepancies.size(); ++k)
+          group.measurement.discrepancies.at(k).magnitude = other.measurement.discrepancies[k].magnitude;
+
+  const StackedPrediction prediction = predict(model, u);
+  found.planned.resize(candidates.size());
+  Index row = 0;
+  for (RowGroup& group : model.groups)
+    for (std::size_t r = 0; r < group.origin.size(); ++r, ++row) {
+      const auto planned = home.find({group.origin[r].set, group.origin[r].point});
+      if (planned == home.end()) {
+        found.measured.push_back(row);
+        continue;
+      }
+      const Candidate& candidate = candidates[planned->second.candidate];
+      const data::Spread& error = candidate.error[planned->second.column];
+      const double sd = std::hypot(error.absolute, error.relative * prediction.mean[row]);
+      group.variance[static_cast<Index>(r)] = std::max(sd * sd, 1e-300) / candidate.readings;
+      found.planned[planned->second.candidate].push_back(row);
+    }
+  return found;
+}
+
+}  // namespace uq::plan

@@ -1,0 +1,55 @@
+#pragma once
+// Measurements that could be made next, for one case of a study: those of [plan], or the usual ones: every observed
+// setting again, the observed outputs over the range of every control, and every other output of the run table.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "data/plan.hpp"
+#include "data/study.hpp"
+#include "uq/case_model.hpp"
+
+namespace uq::plan {
+
+enum class CandidateKind { repeat, setting, output };
+/// "repeat", "setting", "output"
+const char* to_text(CandidateKind kind);
+
+struct Candidate {
+  std::string name;  ///< "torque at 300 rpm"
+  CandidateKind kind = CandidateKind::setting;
+  std::string material;
+  std::vector<std::size_t> outputs;           ///< indices into Study::outputs
+  std::vector<std::vector<double>> settings;  ///< points x controls, SI
+  std::vector<data::Spread> error;            ///< of one reading, per output
+  std::optional<data::Spread> common_error;   ///< of a meter of its own
+  bool assumed_error = false;                 ///< nobody stated one
+  bool model_only = false;                    ///< the output need not mean the same in the real powder
+  int readings = 1;
+  double cost = 1.0;
+};
+
+struct CandidateOptions {
+  int settings = 9;                              ///< of each control over its range
+  int settings_other = 5;                        ///< of outputs that the case has not measured
+  double assumed_error = 0.05;                   ///< relative, of those outputs
+  std::vector<std::string> coarse_grained = {};  ///< materials simulated with larger grains than the powder's
+};
+
+/// Throws data::InputError (78): a candidate outside the runs, an output without an emulator or without error.
+std::vector<Candidate> candidates_of(const data::Study& study, const std::vector<Emulator>& emulators,
+                                     std::size_t case_index, const data::PlanSection& plan,
+                                     const CandidateOptions& options = {});
+
+/// The case's model with one row more per point and output of the candidates.
+struct ExtendedCase {
+  CaseModel model;
+  std::vector<Eigen::Index> measured;              ///< rows of the data, pooled and thinned where there are many
+  std::vector<std::vector<Eigen::Index>> planned;  ///< per candidate, its rows
+};
+
+/// `sampled`: the case as it was sampled. The planned rows' variances are those of a reading at `u`.
+ExtendedCase extend(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
+                    const CaseModel& sampled, const std::vector<Candidate>& candidates, const Eigen::VectorXd& u);
+
+}  // namespace uq::plan

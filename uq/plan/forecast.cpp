@@ -1,0 +1,151 @@
+#include "uq/plan/forecast.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "data/random.hpp"
+#include "uq/acquire.hpp"
+#include "uq/posterior.hpp"
+
+namespace uq::plan {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int readings_drawn = 200;
+constexpr double sure = 0.9;
+constexpr int readings_most = 1024;
+constexpr std::array all_words = {Verdict::identified, Verdict::weakly_identified, Verdict::several_values,
+                                  Verdict::not_identified};
+
+}  // namespace
+
+const char* to_text(Floor floor) {
+  switch (floor) {
+    case Floor::none:
+      return "";
+    case Floor::surrogate:
+      return "the surrogate's error is the floor: more training runs lower it";
+    case Floor::meter:
+      return "what all readings share is the floor (the meter's common error, a setting's error, the model's "
+             "discrepancy): another meter or a better calibration lowers it";
+    case Floor::structural:
+      return "readings of this kind do not part what is traded, however many there are";
+  }
+  return "";
+}
+
+Forecast::Forecast(const ExtendedCase& extended, const CaseModel& judged, const Identification& found,
+                   const Outlook& outlook, const VerdictThresholds& thresholds, std::uint64_t seed)
+    : extended_(extended),
+      outlook_(outlook),
+      thresholds_(thresholds),
+      seed_(seed),
+      profiles_(found.profiles),
+      pinned_(found.profiles) {
+  const CaseModel exact = without_surrogate_error(extended.model);
+  for (std::size_t k = 0; k < profiles_.size(); ++k) {
+    profiles_[k].low_pinned.reset();
+    profiles_[k].high_pinned.reset();
+    WordFacts facts = found.facts[k];
+    facts.influences = true;  // asked again of the deviances
+    found_.push_back({facts, &profiles_[k]});
+    paths_.push_back(path_points(extended.model, judged, profiles_[k], found.best_fit.x, true));
+    paths_of_exact_.push_back(path_points(exact, judged, profiles_[k], found.best_fit.x, true));
+  }
+  data_ = observed(extended.model)(extended.measured);
+}
+
+std::vector<std::vector<Verdict>> Forecast::words_of_draws(const std::vector<Index>& rows, double readings,
+                                                           Uncertain uncertain) const {
+  const auto measured = static_cast<Index>(extended_.measured.size()), planned = static_cast<Index>(rows.size());
+  std::vector<Index> both = extended_.measured;
+  both.insert(both.end(), rows.begin(), rows.end());
+  VectorXd share = VectorXd::Ones(measured + planned);
+  share.tail(planned).setConstant(1.0 / readings);
+  std::vector<PathWords> before, after;
+  std::vector<VectorXd> found_deviance;
+  for (std::size_t k = 0; k < paths_.size(); ++k) {
+    std::vector<PathPoint> path = uncertain == Uncertain::all ? paths_[k] : paths_of_exact_[k];
+    if (uncertain == Uncertain::nothing)
+      for (PathPoint& point : path) point.covariance.setZero();
+    before.emplace_back(path, extended_.measured, VectorXd::Ones(measured));
+    after.emplace_back(path, both, share);
+    found_deviance.push_back(before.back().usable() ? before.back().deviances(data_) : VectorXd());
+  }
+  data::RandomStream random(seed_, data::Purpose::planned_words);
+  const auto draws = static_cast<int>(std::min<Index>(readings_drawn, outlook_.draws()));
+  std::vector<std::vector<Verdict>> words(paths_.size());
+  for (int b = 0; b < draws; ++b) {
+    ReadingLaw law = outlook_.law(b * outlook_.draws() / draws, rows);
+    if (uncertain == Uncertain::all) {
+      law.shared.diagonal() += law.noise / readings;
+      const Eigen::LLT<MatrixXd> factor(law.shared);
+      VectorXd z(planned);
+      for (double& value : z) value = random.normal();
+      law.mean += factor.matrixL() * z;
+    }
+    VectorXd y(measured + planned);
+    y << data_, law.mean;
+    std::vector<WordFacts> facts(paths_.size());
+    for (std::size_t k = 0; k < paths_.size(); ++k) {
+      if (!before[k].usable() || !after[k].usable()) continue;
+      const VectorXd deviance = after[k].deviances(y);
+      facts[k] = after[k].facts(found_[k], before[k], found_deviance[k], deviance, thresholds_.profile_drop);
+      facts[k].influences = deviance.maxCoeff() > thresholds_.silent_deviance;
+    }
+    for (std::size_t k = 0; k < paths_.size(); ++k) {
+      WordFacts one = facts[k];
+      const auto still_open = [&](const std::optional<int>& by) {
+        if (!by || *by >= static_cast<int>(facts.size())) return by.has_value();
+        const WordFacts& other = facts[static_cast<std::size_t>(*by)];
+        return other.open_low || other.open_high;
+      };
+      one.open_low = one.open_low || still_open(pinned_[k].low_pinned);
+      one.open_high = one.open_high || still_open(pinned_[k].high_pinned);
+      words[k].push_back(word_of(one, thresholds_));
+    }
+  }
+  return words;
+}
+
+std::vector<std::vector<WordProbability>> Forecast::words(const std::vector<Index>& rows, double readings) const {
+  std::vector<std::vector<WordProbability>> found;
+  for (const std::vector<Verdict>& drawn : words_of_draws(rows, readings, Uncertain::all)) {
+    std::vector<WordProbability> words;
+    for (const Verdict word : all_words)
+      if (const auto count = std::count(drawn.begin(), drawn.end(), word); count > 0)
+        words.push_back({uq::to_text(word), static_cast<double>(count) / static_cast<double>(drawn.size())});
+    std::stable_sort(words.begin(), words.end(),
+                     [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    found.push_back(std::move(words));
+  }
+  return found;
+}
+
+double Forecast::identified(const std::vector<Index>& rows, double readings, int parameter, Uncertain uncertain) const {
+  const std::vector<Verdict> drawn = words_of_draws(rows, readings, uncertain)[static_cast<std::size_t>(parameter)];
+  return static_cast<double>(std::count(drawn.begin(), drawn.end(), Verdict::identified)) /
+         std::max(1.0, static_cast<double>(drawn.size()));
+}
+
+ReadingsNeeded Forecast::readings_needed(const std::vector<Index>& rows, int parameter) const {
+  if (identified(rows, readings_most, parameter, Uncertain::all) < sure) {
+    if (identified(rows, readings_most, parameter, Uncertain::not_surrogate) >= sure)
+      return {.count = {}, .floor = Floor::surrogate};
+    if (identified(rows, readings_most, parameter, Uncertain::nothing) >= sure)
+      return {.count = {}, .floor = Floor::meter};
+    return {.count = {}, .floor = Floor::structural};
+  }
+  int enough = readings_most, few = 0;
+  while (enough > few + 1) {
+    const int middle = few < enough / 4 ? std::max(few + 1, enough / 4) : (few + enough) / 2;
+    (identified(rows, middle, parameter, Uncertain::all) >= sure ? enough : few) = middle;
+  }
+  return {.count = enough, .floor = Floor::none};
+}
+
+}  // namespace uq::plan

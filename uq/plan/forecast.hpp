@@ -1,0 +1,62 @@
+#pragma once
+// The words of the verdict after a reading that has not been made: their probabilities over what it may be, and how
+// many readings a word needs.
+//
+// A reading is drawn from its law given a draw of the posterior and the data (outlook.hpp), and joins the data; along
+// the profiles' paths the deviances of both together, and from them the words, follow as in uq/repeats.hpp, without
+// another search. A side that ended with another parameter's range (pinned) is open as long as that parameter's is.
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "uq/identifiability.hpp"
+#include "uq/plan/outlook.hpp"
+
+namespace uq::plan {
+
+/// Why no number of readings is enough.
+enum class Floor { none, surrogate, meter, structural };
+/// A clause for the user; empty for none.
+const char* to_text(Floor floor);
+
+struct ReadingsNeeded {
+  std::optional<int> count;
+  Floor floor = Floor::none;
+};
+
+class Forecast {
+ public:
+  /// `judged`: the case as it was sampled; `found` is of it.
+  Forecast(const ExtendedCase& extended, const CaseModel& judged, const Identification& found, const Outlook& outlook,
+           const VerdictThresholds& thresholds, std::uint64_t seed);
+
+  /// Per own parameter, by falling probability, after the rows were read `readings` times each and averaged.
+  std::vector<std::vector<WordProbability>> words(const std::vector<Eigen::Index>& rows, double readings = 1.0) const;
+
+  /// Readings for "identified" with 90 % probability, at most a thousand.
+  ReadingsNeeded readings_needed(const std::vector<Eigen::Index>& rows, int parameter) const;
+
+ private:
+  /// What is uncertain of the law of data, beside their noise.
+  enum class Uncertain { all, not_surrogate, nothing };
+  struct Draw {
+    Eigen::Index draw = 0;
+    std::uint32_t stream = 0;
+  };
+  std::vector<std::vector<Verdict>> words_of_draws(const std::vector<Eigen::Index>& rows, double readings,
+                                                   Uncertain uncertain) const;
+  double identified(const std::vector<Eigen::Index>& rows, double readings, int parameter, Uncertain uncertain) const;
+
+  const ExtendedCase& extended_;
+  const Outlook& outlook_;
+  VerdictThresholds thresholds_;
+  std::uint64_t seed_;
+  std::vector<Profile> profiles_;  ///< as found, but nothing pinned
+  std::vector<Profile> pinned_;    ///< as found
+  std::vector<FoundFacts> found_;
+  std::vector<std::vector<PathPoint>> paths_, paths_of_exact_;  ///< per parameter; with the surrogate taken as exact
+  Eigen::VectorXd data_;
+};
+
+}  // namespace uq::plan

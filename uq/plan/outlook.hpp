@@ -1,0 +1,49 @@
+#pragma once
+// What planned readings would be. For draws of a posterior the law of a reading is that given the draw *and* the data:
+// the surrogate's error, the meter's common errors and the discrepancy are the same in a reading to come as in those
+// that are there, so that a setting read again teaches less than one read for the first time. With rows m measured, p
+// planned, S their covariance given the unknowns u, noise included,
+//   p | u, y  ~  N( mean_p + S_pm S_mm^-1 (y - mean_m),  S_pp - S_pm S_mm^-1 S_mp ).
+#include <Eigen/Dense>
+#include <vector>
+
+#include "uq/plan/candidates.hpp"
+#include "uq/plan/information.hpp"
+
+namespace uq::plan {
+
+/// Of the planned rows, in their order in the model, given one draw.
+struct ReadingLaw {
+  Eigen::VectorXd mean;    ///< SI
+  Eigen::MatrixXd shared;  ///< SI^2, what a reading made again shares
+  Eigen::VectorXd noise;   ///< SI^2, variances of each reading's own
+};
+
+class Outlook {
+ public:
+  enum class Given { data, nothing };
+  /// `draws`: rows in u.
+  Outlook(const ExtendedCase& extended, const Eigen::MatrixXd& draws, Given given, int threads);
+
+  /// The rows (of the extended model) read `readings` times each and averaged; values of the case's own parameters in
+  /// the study's units.
+  Ensemble ensemble(const std::vector<Eigen::Index>& rows, double readings = 1.0) const;
+  Eigen::Index draws() const { return values_.rows(); }
+  const Eigen::MatrixXd& values() const { return values_; }
+  /// Their law given one draw.
+  ReadingLaw law(Eigen::Index draw, const std::vector<Eigen::Index>& rows) const;
+
+ private:
+  Eigen::MatrixXd values_;
+  std::vector<ReadingLaw> laws_;
+  std::vector<Eigen::Index> place_;  ///< of a model's row among the planned ones; -1: measured
+};
+
+/// Draws from the priors: scrambled Sobol points; rows in u, and standard normal numbers of
+/// `readings` readings (none where the sequence has too few dimensions).
+struct PriorDraws {
+  Eigen::MatrixXd u, noise;
+};
+PriorDraws prior_draws(const CaseModel& model, int count, int readings, std::uint64_t seed);
+
+}  // namespace uq::plan
