@@ -26,17 +26,16 @@ std::optional<std::size_t> index_of(const Section& section, std::string_view key
   return {};
 }
 
-/// One value or a list of them, inside the control's range.
+/// One value or a list of them.
 std::vector<double> values_of(const Section& settings, const Control& control) {
   std::vector<double> values;
   if (!settings.has(control.name)) return values;
-  const Range range{.low = control.low, .high = control.high};
   const ValueKind kind = settings.kind(control.name);
   if (kind == ValueKind::number || kind == ValueKind::text)
     values.push_back(
-        settings.quantity(control.name, control.unit.si_symbol, range, control.low, bare_unit(control.unit)));
+        settings.quantity(control.name, control.unit.si_symbol, any_number, control.low, bare_unit(control.unit)));
   else
-    values = settings.quantities(control.name, control.unit.si_symbol, range, bare_unit(control.unit));
+    values = settings.quantities(control.name, control.unit.si_symbol, any_number, bare_unit(control.unit));
   return values;
 }
 

@@ -135,29 +135,6 @@ std::optional<Finding> exchanged_output(const data::Study& study, const data::Ru
   return {};
 }
 
-/// Rows without a logarithm where the scale asks for one.
-void check_logarithms(const data::Study& study, const data::RunTable& table, std::vector<Finding>& findings) {
-  for (std::size_t p = 0; p < study.parameters.size(); ++p) {
-    const data::Parameter& parameter = study.parameters[p];
-    if (parameter.scale != data::Scale::log) continue;
-    std::vector<std::string> places;
-    double example = 0.0;
-    for (const data::RunRow& row : table.rows) {
-      const double value = row.inputs[input_column(table, parameter.name)];
-      if (!row.left_out.empty() || value > 0.0 || is_held(study, row, parameter.name)) continue;
-      if (places.empty()) example = value;
-      places.push_back(row.place);
-    }
-    if (places.empty()) continue;
-    Finding finding = about("no logarithm", Severity::refusal, places);
-    finding.what = fmt::format("{} is {:.4g}, which has no logarithm, and its scale is \"log\"", parameter.name,
-                               parameter.unit.from_si(example));
-    finding.remedy = fmt::format("leave the rows out ([training] leave_out), or set parameters.{}.scale = \"linear\"",
-                                 parameter.name);
-    findings.push_back(std::move(finding));
-  }
-}
-
 }  // namespace
 
 const std::vector<UnitFactor>& unit_factors() {
@@ -191,7 +168,6 @@ std::optional<UnitFactor> known_factor(double typical, double expected, double s
 
 std::vector<Finding> check_ranges(const data::Study& study, data::RunTable& table, const DataCheckThresholds& t) {
   std::vector<Finding> findings;
-  check_logarithms(study, table, findings);
   std::vector<Column> columns = input_columns(study, table);
   std::erase_if(columns, [](const Column& column) { return column.values.empty(); });
   std::vector<bool> told(columns.size(), false);

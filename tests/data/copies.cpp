@@ -30,7 +30,7 @@ TEST_CASE("replicates differ, and readings of another point are no copies whatev
         std::vector<std::optional<std::size_t>>(2, std::nullopt));
 }
 
-TEST_CASE("coarse readings that agree now and then are chance; the same readings pasted ten times are not") {
+TEST_CASE("coarse readings that agree now and then are chance, and the same readings pasted ten times are not") {
   // To 0.1 with an error of 0.2 two readings agree with probability 0.14.
   std::vector<RepeatableRow> rows{{{50.0}, {9.9}, {0.2}}, {{50.0}, {9.9}, {0.2}}, {{50.0}, {9.7}, {0.2}}};
   CHECK_FALSE(copies_of(rows)[1]);

@@ -131,7 +131,7 @@ TEST_CASE("a value of the wrong type is an error that says what is wanted") {
         "study.toml:8: b: a table is not a list of tables (write [[b]], with two brackets, above each)");
 }
 
-TEST_CASE("a syntax error names file, line and column; a missing file is missing input") {
+TEST_CASE("a syntax error names file, line and column, and a missing file is missing input") {
   const TemporaryFolder folder;
   const std::string syntax = failure_of(folder, [&] { open_text(folder, "[study]\nname = = 3\n"); });
   CHECK(syntax.find("78: study.toml:2:8: ") == 0);

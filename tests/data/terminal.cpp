@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-TEST_CASE("control characters of a text are shown and do nothing; other characters stay") {
+TEST_CASE("control characters of a text are shown and do nothing, and other characters stay") {
   CHECK(data::printable("plain, \xc2\xb5N\xc2\xb7m, \xe6\xbc\xa2\n\ttab") ==
         "plain, \xc2\xb5N\xc2\xb7m, \xe6\xbc\xa2\n\ttab");
   CHECK(data::printable("\x1b]0;title\x07") == "\\x1b]0;title\\x07");

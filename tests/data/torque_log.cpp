@@ -48,7 +48,7 @@ std::string refusal(const std::string& text, const data::LogColumns& columns = {
 
 }  // namespace
 
-TEST_CASE("each constant speed of a log is one plateau; ramps, start-up and dropouts of the speed do not count") {
+TEST_CASE("each constant speed of a log is one plateau, and ramps, start-up and dropouts of the speed do not count") {
   const Made made;
   const std::vector<data::Plateau> plateaus = reduced(made, 1);
   REQUIRE(plateaus.size() == made.speeds.size());
@@ -83,7 +83,7 @@ TEST_CASE("dead time is dropped from the front, and a window leaves out what lie
   CHECK(reduced(made, 2, {.shortest = 41.0}).empty());
 }
 
-TEST_CASE("headers carry units in brackets, parentheses or after a slash; an option overrides them") {
+TEST_CASE("headers carry units in brackets, parentheses or after a slash, and an option overrides them") {
   for (const std::string head :
        {"time [s],torque [mN m],rpm", "Time,TORQUE (mN m),rpm", "time,torque / mN m,rpm [rpm]"}) {
     const TemporaryFolder folder;

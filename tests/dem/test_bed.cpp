@@ -60,7 +60,7 @@ TEST_CASE("a pair's own coefficient holds between its two materials, in either o
   for (const dem::PairCoefficients& wall : bed.wall) CHECK(wall.friction == 0.3);
 }
 
-TEST_CASE("a pair names a body by its name, by its material, or every body as wall; the last word wins") {
+TEST_CASE("a pair names a body by its name, by its material, or every body as wall, and the last word wins") {
   dem::Case c = sand_and_steel();
   const std::vector<dem::BodyLabel> bodies{{"tool", "brass"}, {"drum", "wall"}};
   const auto friction = [&](std::string with, double mu) {

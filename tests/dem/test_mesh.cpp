@@ -178,7 +178,7 @@ TEST_CASE("triangles without area and triangles given twice are left out with th
   CHECK_THROWS_AS(dem::check_mesh(mesh, "part"), data::InputError);
 }
 
-TEST_CASE("inverted surfaces and single triangles are turned outwards; a cavity stays a cavity") {
+TEST_CASE("inverted surfaces and single triangles are turned outwards, and a cavity stays a cavity") {
   const auto inverted = [](dem::TriangleMesh mesh, std::size_t count) {
     for (std::size_t t = 0; t < count; ++t) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
     return mesh;

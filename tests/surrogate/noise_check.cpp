@@ -41,7 +41,8 @@ Alarms alarms(double noise_sd, double stated_sd, double wave) {
 }  // namespace
 
 TEST_CASE(
-    "errors of the runs that are stated half or double, and a wave finer than the runs, are noticed; true ones not") {
+    "errors of the runs that are stated half or double, and a wave finer than the runs, are noticed, and true ones "
+    "not") {
   const Alarms none = alarms(0.06, 0.06, 0.0), half = alarms(0.06, 0.03, 0.0), twice = alarms(0.06, 0.12, 0.0),
                wave = alarms(0.03, 0.03, 0.12);
   CAPTURE(none.small, none.large, half.small, twice.large, wave.small);

@@ -240,8 +240,9 @@ TEST_CASE("an unknown noise scale finds the scatter that the data have, and wide
   CHECK(widened / stated == Approx(scale.mean()).epsilon(0.1));
 }
 
-TEST_CASE("a gain known to 2 % leaves its 2 % in a parameter that multiplies; a gain of no prior would leave nothing",
-          "[uq]") {
+TEST_CASE(
+    "a gain known to 2 % leaves its 2 % in a parameter that multiplies, and a gain of no prior would leave nothing",
+    "[uq]") {
   const Formula product = [](const Eigen::VectorXd& p, double x) { return p[0] * (1.0 + x); };
   for (const double sd : {0.02, 0.5}) {
     uq::CaseModel model = make_synthetic({{"a", 0.0, 4.0}}, product, five, Eigen::VectorXd::Constant(1, 1.0), 0.03, 1);

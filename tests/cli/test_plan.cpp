@@ -1,0 +1,76 @@
+// demcal plan: what it says and writes, and what it refuses.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+using Catch::Contains;
+using test::Folder;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string study = DEMCAL_SOURCE_DIR "/data/other-code";
+
+}  // namespace
+
+TEST_CASE("a plan ranks readings, says what they are expected to give, and stands in the report") {
+  const Folder folder;
+  REQUIRE(folder.demcal({"calibrate", study, "--out", "o"}).status != 70);
+  const auto outcome = folder.demcal({"plan", study, "--out", "o", "--about", "cohesion", "--json"});
+  INFO(outcome.err);
+  REQUIRE((outcome.status == 0 || outcome.status == 2));
+  const nlohmann::json told = nlohmann::json::parse(outcome.out), plan = told["plans"][0];
+  CHECK(plan["about"] == "cohesion");
+  CHECK(plan["candidates"].size() >= 9);
+  double last = 1e300;
+  for (const auto& candidate : plan["candidates"])
+    for (const auto& parameter : candidate["parameters"])
+      if (parameter["name"] == "cohesion") {
+        CHECK(parameter["information"].get<double>() <= last);
+        last = parameter["information"].get<double>();
+        CHECK(parameter["sd_after"].get<double>() <= 1.05 * parameter["sd_now"].get<double>());
+      }
+  CHECK(fs::exists(folder.path / "o" / "plan.json"));
+  CHECK_THAT(folder.read("o/report.html"), Contains("What to measure next"));
+  CHECK(nlohmann::json::parse(folder.read("o/report.json"))["plan"].size() == 1);
+  CHECK_THAT(outcome.err, Contains("nats about cohesion"));
+}
+
+TEST_CASE("a plan takes candidates, errors and costs from the study") {
+  const Folder folder;
+  const std::string place = folder.study("other-code").string(), toml = "study/study.toml";
+  folder.write(
+      toml,
+      folder.read(toml) +
+          "\n[plan]\nabout = \"friction\"\ncost_unit = \"h\"\n[[plan.candidates]]\nname = \"fast\"\n"
+          "settings = { speed = [\"250 rpm\", \"290 rpm\"] }\nerror = \"1 %\"\ncost = 2\n"
+          "[[plan.candidates]]\nname = \"both\"\nsettings = { speed = [\"60 rpm\", \"290 rpm\"] }\ntogether = true\n");
+  const auto outcome = folder.demcal({"plan", place, "--out", "o", "--json"});
+  INFO(outcome.err);
+  REQUIRE((outcome.status == 0 || outcome.status == 2));
+  const nlohmann::json plan = nlohmann::json::parse(outcome.out)["plans"][0];
+  CHECK(plan["about"] == "friction");
+  REQUIRE(plan["candidates"].size() == 3);
+  int of_two = 0;
+  for (const auto& candidate : plan["candidates"]) of_two += candidate["settings"].size() == 2 ? 1 : 0;
+  CHECK(of_two == 1);
+}
+
+TEST_CASE("a plan refuses what cannot be planned, with place and remedy") {
+  const Folder folder;
+  CHECK(folder.demcal({"plan", study, "--about", "no-such"}).status == 64);
+  CHECK(folder.demcal({"plan", study, "--case", "no-such"}).status == 64);
+  CHECK(folder.demcal({"plan", study, "--budget", "nan"}).status == 64);
+  const std::string place = folder.study("other-code").string(), file = "study/study.toml",
+                    toml = folder.read(file);
+  for (const auto& [entry, what] : std::vector<std::pair<std::string, std::string>>{
+           {"settings = { speed = \"900 rpm\" }", "speed"}, {"outputs = [\"angle\"]", "angle"}, {"cots = 1", "cots"}}) {
+    folder.write(file, toml + "\n[plan]\n[[plan.candidates]]\n" + entry + "\n");
+    const auto outcome = folder.demcal({"plan", place, "--out", "o"});
+    INFO(entry << ": " << outcome.err);
+    CHECK(outcome.status == 78);
+    CHECK_THAT(outcome.err, Contains(what));
+  }
+}
