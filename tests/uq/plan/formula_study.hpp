@@ -16,6 +16,10 @@ using Formula = std::function<double(double a, double b, double x)>;
 inline double torque(double a, double b, double x) { return 10.0 + 5.0 * a + 4.0 * b + 0.3 * x * (a - b); }
 inline double angle(double a, double b, double x) { return 10.0 + 3.0 * a - 3.0 * b + 2.0 * x; }
 
+struct Pair {
+  Formula torque, angle;
+};
+
 /// Two parameters, a control `speed`, outputs torque and angle; torque measured at the speeds given.
 inline data::Study study(const std::vector<double>& speeds, const std::vector<double>& values, double sd) {
   data::Study made;
@@ -51,10 +55,10 @@ inline data::Study study(const std::vector<double>& speeds, const std::vector<do
 }
 
 /// Emulators of both outputs, with an error of sd `shared` that is the same at every speed.
-inline std::vector<uq::Emulator> emulators(double shared = 0.0) {
+inline std::vector<uq::Emulator> emulators(double shared = 0.0, const Pair& formulas = {torque, angle}) {
   std::vector<uq::Emulator> all;
   for (std::size_t output = 0; output < 2; ++output) {
-    const Formula formula = output == 0 ? Formula(torque) : Formula(angle);
+    const Formula formula = output == 0 ? formulas.torque : formulas.angle;
     uq::Emulator one{
         .material = "",
         .output = output,
