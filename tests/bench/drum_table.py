@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Coverage of intervals and verdicts on another code's table, and GrainLearning's filter beside it.
 
-drum_table.py DEMCAL [--designs 200] [--others 100] [--jobs 1] [--seed 1] [--errors roughness|PERCENT] [--out FOLDER]
+drum_table.py DEMCAL [--designs 200] [--others 100] [--jobs 1] [--seed 1] [--errors roughness|PERCENT] [--truths all|inner]
+    [--out FOLDER] [--summary]
 
 Each of N designs of data/drum-table in turn is the truth: its rows at the three speeds are the observations, as they
 stand (their own scatter is the noise), with the standard errors of make_data.py, or with PERCENT of every output. The
@@ -153,7 +154,7 @@ def one_design(program, table, truth, arguments):
         found = ours(program, folder, rows, truth, maker)
         shutil.rmtree(folder)
     return {"truth": dict(zip(maker.DESIGN, map(float, truth))), "others": arguments.others, "seed": arguments.seed, "errors": arguments.errors,
-            "ours": found, "filter": filtered(rows, truth, maker)}
+            "truths": arguments.truths, "ours": found, "filter": filtered(rows, truth, maker)}
 
 
 def share(flags):
@@ -167,7 +168,7 @@ def summary(results):
     done = [r for r in results if "cases" in r["ours"]]
     if not done:
         return "no design yet"
-    ends = {p: (min(r["truth"][p] for r in done), max(r["truth"][p] for r in done)) for p in PARAMETERS}
+    ends = {"sliding": (0.15, 1.0), "rolling": (0.0, 0.7), "cohesion": (0.0, 7e4), "restitution": (0.1, 0.99)}
     ranges = {p: high - low for p, (low, high) in ends.items()}
     lines = [f"{len(done)} designs, {len(results) - len(done)} failed; seconds each: median "
              f"{np.median([r['ours']['seconds'] for r in done]):.0f}",
@@ -207,6 +208,8 @@ def main():
     parser.add_argument("--designs", type=int, default=200)
     parser.add_argument("--others", type=int, default=100, help="other designs that are the runs")
     parser.add_argument("--errors", default="roughness")
+    parser.add_argument("--truths", choices=["all", "inner"], default="all",
+                        help="inner: designs with no parameter at an end of its range")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("drum-table-coverage"))
@@ -215,11 +218,14 @@ def main():
     arguments.out.mkdir(parents=True, exist_ok=True)
     kept = arguments.out / "results.jsonl"
     results = [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
-    results = [r for r in results if (r["others"], r["seed"], r["errors"]) == (arguments.others, arguments.seed, arguments.errors)]
+    results = [r for r in results if (r["others"], r["seed"], r["errors"], r["truths"]) == (arguments.others, arguments.seed, arguments.errors, arguments.truths)]
     if not arguments.summary:
         maker = load_maker()
         table = maker.read_table(STUDY / "granudrum_liggghts.csv")
         designs = sorted({maker.design_of(r) for r in table})
+        if arguments.truths == "inner":
+            ends = [{f(float(d[k]) for d in designs) for f in (min, max)} for k in range(1, len(maker.DESIGN))]
+            designs = [d for d in designs if not any(float(v) in e for v, e in zip(d[1:], ends))]
         random.Random(arguments.seed).shuffle(designs)
         known = {tuple(r["truth"].values()) for r in results}
         missing = [d for d in designs[:arguments.designs] if tuple(map(float, d)) not in known]
