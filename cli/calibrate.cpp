@@ -25,6 +25,7 @@ struct Options {
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   int rounds = 3;    ///< of verification, at most
   std::string time;  ///< no new round after it
+  bool no_scan = false;
 };
 
 uq::Calibration calibrate_once(const Options& options, const Workspace& workspace, const TrainingRows& rows) {
@@ -32,12 +33,13 @@ uq::Calibration calibrate_once(const Options& options, const Workspace& workspac
   uq::Calibration result;
   {
     JobProgress progress(options.common, "calibrating");
-    result = uq::calibrate_all(workspace.study, rows.table,
-                               {.surrogates = surrogates,
-                                .sampler = *options.sampler,
-                                .seed = workspace.study.seed,
-                                .findings = rows.findings,
-                                .progress = std::ref(progress)});
+    uq::CalibrateOptions calibrate{.surrogates = surrogates,
+                                   .sampler = *options.sampler,
+                                   .seed = workspace.study.seed,
+                                   .findings = rows.findings,
+                                   .progress = std::ref(progress)};
+    if (options.no_scan) calibrate.error_scan.clear();
+    result = uq::calibrate_all(workspace.study, rows.table, calibrate);
   }
   keep_surrogates(workspace, rows, surrogates, result.surrogates);
   return result;
@@ -175,6 +177,8 @@ Action add_calibrate(CLI::App& program) {
       ->check(CLI::Range(1, 1000));
   command->add_option("--rounds", options->rounds, "of --verify, at most (default 3)")->check(CLI::Range(1, 100));
   command->add_option("--for", options->time, "with --verify: no new round after this time, as 2h or 90min");
+  command->add_flag("--no-scan", options->no_scan,
+                    "leave out what other measurement errors would identify, half of the time of the cases");
   command->add_option("--jobs", options->jobs, "with --verify: runs at the same time (default: one a core)")
       ->check(CLI::Range(1, 4096));
   return [options] {

@@ -184,6 +184,50 @@ std::string read_material(const Csv& csv, const CsvRow& row, const std::optional
                            fmt::format("the study has '{}'", fmt::join(names, "', '"))});
 }
 
+/// What is said of single rows. Rows of which the same is said share a line where they are many.
+class RowNotes {
+ public:
+  explicit RowNotes(const Csv& csv) : csv_(csv) {}
+
+  /// "is empty, the row is left out" of a field; `what` names the one row, `whats` several.
+  void add(const CsvRow& row, std::size_t column, const char* what, const char* whats) {
+    const std::string& field = row.fields[column];
+    const std::string found = field.empty() ? "is empty" : "is " + field;
+    const auto same = std::find_if(notes_.begin(), notes_.end(), [&](const Note& note) {
+      return note.column == column && note.found == found && note.what == what;
+    });
+    Note& note = same != notes_.end() ? *same : notes_.emplace_back(Note{column, found, what, whats, {}});
+    note.rows.push_back(&row);
+  }
+
+  std::vector<std::string> texts() const {
+    constexpr std::size_t few = 3;  // rows of one kind that have a line each
+    std::vector<std::string> texts;
+    for (const Note& note : notes_) {
+      if (note.rows.size() <= few) {
+        for (const CsvRow* row : note.rows)
+          texts.push_back(fmt::format("{}: {}, {}", csv_.place(*row, note.column), note.found, note.what));
+        continue;
+      }
+      std::vector<std::string> places;
+      for (const CsvRow* row : note.rows) places.push_back(fmt::format("{}:{}", csv_.file, row->line));
+      texts.push_back(
+          fmt::format("{}: {}: {}, {}", list_places(places), csv_.columns[note.column], note.found, note.whats));
+    }
+    return texts;
+  }
+
+ private:
+  struct Note {
+    std::size_t column;
+    std::string found;
+    const char *what, *whats;
+    std::vector<const CsvRow*> rows;
+  };
+  const Csv& csv_;
+  std::vector<Note> notes_;
+};
+
 /// Columns of a row in which a number is missing or not finite.
 struct Missing {
   std::optional<std::size_t> input;  ///< the first: the row is of no use
@@ -224,27 +268,24 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     error_units.back().offset = 0.0;
   }
   tell_columns(csv, at, result);
+  RowNotes notes(csv);
   for (const CsvRow& line : csv.rows) {
     const Missing missing = not_finite(csv, line, at);
-    const auto shown = [&](std::size_t column) {
-      const std::string& field = line.fields[column];
-      return fmt::format("{}: {}", csv.place(line, column), field.empty() ? "is empty" : fmt::format("is {}", field));
-    };
     std::size_t no_logarithm = study.parameters.size();
     for (std::size_t i = study.parameters.size(); i-- > 0;)
       if (study.parameters[i].scale == Scale::log && csv.number(line, at.inputs[i]) <= 0.0) no_logarithm = i;
     if (no_logarithm < study.parameters.size()) {
-      result.left_out.push_back(shown(at.inputs[no_logarithm]) +
-                                ", which has no logarithm (scale = \"log\"), the row is left out");
+      notes.add(line, at.inputs[no_logarithm], "which has no logarithm (scale = \"log\"), the row is left out",
+                "which has no logarithm (scale = \"log\"), the rows are left out");
       continue;
     }
     if (missing.input || missing.outputs.size() == at.outputs.size()) {
-      result.left_out.push_back(shown(missing.input ? *missing.input : missing.outputs.front()) +
-                                ", the row is left out");
+      notes.add(line, missing.input ? *missing.input : missing.outputs.front(), "the row is left out",
+                "the rows are left out");
       continue;
     }
     for (const std::size_t column : missing.outputs)
-      result.left_out.push_back(shown(column) + ", the row counts for the other outputs only");
+      notes.add(line, column, "the row counts for the other outputs only", "the rows count for the other outputs only");
     RunRow row;
     row.material = read_material(csv, line, at.material, study);
     for (std::size_t i = 0; i < at.inputs.size(); ++i)
@@ -274,6 +315,7 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     row.left_out = failure(csv, line, at);
     table.rows.push_back(std::move(row));
   }
+  result.left_out = notes.texts();
   tell_failures(result);
   return result;
 }

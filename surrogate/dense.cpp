@@ -5,7 +5,8 @@
 namespace surrogate {
 namespace {
 
-constexpr Eigen::Index leaf = 24;  // below it, loops
+constexpr Eigen::Index leaf = 24;         // below it, loops
+constexpr Eigen::Index few_columns = 16;  // up to so many, a product reads the triangle as it lies
 
 using Block = Eigen::Ref<Eigen::MatrixXd>;
 
@@ -55,6 +56,40 @@ void gram_in_place(Block lower) {
       lower.bottomRightCorner(rest, rest).transpose().triangularView<Eigen::Upper>() * lower.bottomLeftCorner(rest, h);
   lower.bottomLeftCorner(rest, h) = scratch;
   gram_in_place(lower.bottomRightCorner(rest, rest));
+}
+
+void multiply_lower(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& x, Eigen::MatrixXd& product) {
+  const Eigen::Index n = lower.rows(), m = x.cols();
+  if (m > few_columns) {
+    product.noalias() = lower.triangularView<Eigen::Lower>() * x;
+    return;
+  }
+  product.setZero(n, m);
+  // Four columns of L at a time, so that a sum is loaded and stored once for four products.
+  Eigen::Index j = 0;
+  for (; j + 4 <= n; j += 4) {
+    const Eigen::Index below = n - j - 4;
+    for (Eigen::Index c = 0; c < m; ++c) {
+      for (Eigen::Index k = 0; k < 4; ++k)
+        for (Eigen::Index i = k; i < 4; ++i) product(j + i, c) += lower(j + i, j + k) * x(j + k, c);
+      product.col(c).tail(below) += lower.col(j).tail(below) * x(j, c) + lower.col(j + 1).tail(below) * x(j + 1, c) +
+                                    lower.col(j + 2).tail(below) * x(j + 2, c) +
+                                    lower.col(j + 3).tail(below) * x(j + 3, c);
+    }
+  }
+  for (; j < n; ++j)
+    for (Eigen::Index c = 0; c < m; ++c) product.col(c).tail(n - j) += lower.col(j).tail(n - j) * x(j, c);
+}
+
+void multiply_lower_transposed(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& x, Eigen::MatrixXd& product) {
+  const Eigen::Index n = lower.rows(), m = x.cols();
+  if (m > few_columns) {
+    product.noalias() = lower.transpose().triangularView<Eigen::Upper>() * x;
+    return;
+  }
+  product.resize(n, m);
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index c = 0; c < m; ++c) product(j, c) = lower.col(j).tail(n - j).dot(x.col(c).tail(n - j));
 }
 
 }  // namespace surrogate

@@ -15,4 +15,9 @@ void invert_lower_in_place(Eigen::Ref<Eigen::MatrixXd> lower);
 /// T' T (lower triangle) over the lower triangle T. With T = L^-1 this is the inverse of L L'.
 void gram_in_place(Eigen::Ref<Eigen::MatrixXd> lower);
 
+/// L x (lower triangle) and L' x. For a few columns, which a matrix product would mostly spend on arranging L anew,
+/// they read L once, column by column.
+void multiply_lower(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& x, Eigen::MatrixXd& product);
+void multiply_lower_transposed(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& x, Eigen::MatrixXd& product);
+
 }  // namespace surrogate

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "surrogate/dense.hpp"
 #include "surrogate/gaps.hpp"
 #include "surrogate/mixture.hpp"
 
@@ -36,8 +37,7 @@ void cross(const Conditioned& part, const GaussianProcess& process, const Eigen:
   workspace.correlations *= part.parameters.signal_variance;
   if (with_slopes) workspace.slopes *= part.parameters.signal_variance;
 
-  workspace.whitened.resize(n, m);
-  workspace.whitened.noalias() = part.factorised.inverse_factor.triangularView<Eigen::Lower>() * workspace.correlations;
+  multiply_lower(part.factorised.inverse_factor, workspace.correlations, workspace.whitened);
   if (p > 0) {
     workspace.projected = workspace.basis.transpose();
     workspace.projected.noalias() -= part.factorised.whitened_basis.transpose() * workspace.whitened;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surrogate/dense.hpp"
 #include "surrogate/gaps.hpp"
 #include "surrogate/mixture.hpp"
 #include "surrogate/prediction.hpp"
@@ -64,13 +65,14 @@ void GaussianProcess::predict_with_gradient(const Eigen::MatrixXd& points, std::
 
     // A common shift leaves k** as it is, so with B = K^-1 k* + K^-1 H R^-T E
     //   d cov = -(dk*' B) + dh*' R^-T E, plus its transpose;   d mean = dk*' a + dh*' beta.
-    workspace.solved = workspace.whitened;
+    Eigen::MatrixXd& right = workspace.moved;  // free until the slopes
+    right = workspace.whitened;
     Eigen::MatrixXd basis_part;
     if (p > 0) {
       basis_part.noalias() = part.factorised.basis_factor.transpose() * workspace.projected;
-      workspace.solved.noalias() += part.factorised.whitened_basis * basis_part;
+      right.noalias() += part.factorised.whitened_basis * basis_part;
     }
-    workspace.solved = part.factorised.inverse_factor.transpose().triangularView<Eigen::Upper>() * workspace.solved;
+    multiply_lower_transposed(part.factorised.inverse_factor, right, workspace.solved);
 
     target.mean_gradient.resize(wanted);
     target.covariance_gradient.resize(wanted);

@@ -31,6 +31,10 @@ TrainingSet on_process_scale(const TrainingSet& training, OutputScale scale) {
   return result;
 }
 
+/// A design of few levels is fitted again some twenty times. From so many of the kept runs the hyper-parameters come
+/// out as well as held-out errors need them; the process is conditioned on all that are kept.
+constexpr int refit_points = 400;
+
 /// A process fitted to the kept runs, from the full fit's hyper-parameters.
 HeldOutModel refitted(const TrainingSet& training, const FitOptions& options) {
   return [&training, &options](const std::vector<int>& kept, const std::vector<int>& left) -> HeldOutPrediction {
@@ -152,6 +156,7 @@ Validation validate(const TrainingSet& given, const FitOptions& fit_options, con
   FitOptions fold_options = fit_options;
   fold_options.scale = OutputScale::linear;
   fold_options.starts = 1;
+  fold_options.hyper_points = std::min(fit_options.hyper_points, refit_points);
   fold_options.first_start = to_logs(process.parts().front().parameters, fit_options.nugget);
   const int points = static_cast<int>(process.data().points.rows());
   // The nugget counts as noise only where replicates show that it is scatter: without them it may as well be structure

@@ -98,14 +98,17 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
         .kind = "unit",
         .place = place_of(set, set.points.front()) + ": " + output.name,
         .severity = Severity::warning,
-        .what = fmt::format("observed {:.4g} to {:.4g}{} lie outside all runs, {:.4g} to {:.4g}{}", shown(seen.low),
-                            shown(seen.high), unit, shown(runs.low), shown(runs.high), unit),
+        .what = fmt::format("observed {:.4g}{}{} lie{} outside all runs, {:.4g} to {:.4g}{}", shown(seen.low),
+                            seen.low < seen.high ? fmt::format(" to {:.4g}", shown(seen.high)) : "", unit,
+                            seen.low < seen.high ? "" : "s", shown(runs.low), shown(runs.high), unit),
         .remedy = "",
         .places = {}};
     if (const auto known = known_factor(median(seen.values), median(runs.values), 2.0))
       finding.what += fmt::format(": {:.3g} times the runs'. Is another unit meant, {}?", ratio, known->between);
-    finding.remedy = fmt::format("check the unit of {} in {} and in the run table, the fill and the geometry",
-                                 output.name, file_of(set));
+    finding.remedy = fmt::format(
+        "check the unit of {} in {} and in the run table, the fill and the geometry; where they are "
+        "right, the model as it was run does not reach this",
+        output.name, file_of(set));
     findings.push_back(std::move(finding));
   }
 }

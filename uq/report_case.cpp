@@ -8,6 +8,7 @@
 #include "uq/contradiction.hpp"
 #include "uq/diagnostics.hpp"
 #include "uq/discrepancy.hpp"
+#include "uq/misfit.hpp"
 #include "uq/posterior.hpp"
 #include "uq/quadrature.hpp"
 #include "uq/support.hpp"
@@ -191,6 +192,7 @@ void doubt(CaseReport& report, Words& words, const data::Study& study) {
   const bool own_engine = study.training.engine == "demcal";
   words.finding = fmt::format("No verdict: {}.{}", report.doubt,
                               report.fits ? "" : " As it stands, the surrogate does not reproduce the data either.");
+  if (const std::string off = farthest_off(report.predictive); !report.fits && !off.empty()) words.finding += " " + off;
   report.traded.clear();
   if (report.unusable) {
     words.consequence = "What the surrogate gives for the parameters is not the model's, and is not shown.";
@@ -300,6 +302,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.modes_parted_by = parted_by(study, model, found.modes);
   Words words = summarise(found, report.modes_parted_by);
   if (!found.fits) {
+    if (const std::string off = farthest_off(report.predictive); !off.empty()) words.finding += " " + off;
     const Contradiction sets =
         describe_contradiction(fits_alone(study, model, found.best_fit.x), options.identify.thresholds.best_fit_p);
     if (!sets.finding.empty()) {

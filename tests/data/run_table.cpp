@@ -129,6 +129,19 @@ TEST_CASE("a row that lacks one of several outputs is kept for the others, throu
   }
 }
 
+TEST_CASE("rows of which the same is said share one line where they are many") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder);
+  std::string rows = header + "\n0.4,4,60,20,8,0.1\n";
+  for (int i = 0; i < 500; ++i) rows += "0.4,4,60,20,,0.1\n";
+  const data::TableRead read = data::read_table(folder.write("t.csv", rows + "0.4,,60,20,8,0.1\n"), study);
+  CHECK(read.table.rows.size() == 1);
+  REQUIRE(read.left_out.size() == 2);
+  CHECK(read.left_out[0].find("t.csv:3, 4, 5") != std::string::npos);
+  CHECK(read.left_out[0].find("more: torque: is empty, the rows are left out") != std::string::npos);
+  CHECK(read.left_out[1].find("t.csv:503: cohesion: is empty, the row is left out") != std::string::npos);
+}
+
 TEST_CASE("what is wrong with a table in CSV is named with line and column") {
   const TemporaryFolder folder;
   const data::Study study = study_of(folder);
