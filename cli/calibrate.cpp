@@ -123,8 +123,9 @@ data::ExitStatus calibrate_and_verify(const Options& options) {
     for (std::size_t i = 0; i < listed.size(); ++i)
       if (!made.listed[i]) missing.push_back(listed[i].run);
     if (!missing.empty() && !rig) {
-      say(common, fmt::format("{} points to run with your code: {}. Add their rows to {}, and give this command again",
-                              missing.size(), verify_runs_path(workspace), workspace.study.training.table));
+      answer(common,
+             fmt::format("{} points to run with your code: {}. Add their rows to {}, and give this command again",
+                         missing.size(), verify_runs_path(workspace), workspace.study.training.table));
       return report_on(common, workspace, unseen, result);
     }
     if (!missing.empty()) {

@@ -1,13 +1,15 @@
 #include "cli/calibration.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
 #include "cli/campaign.hpp"
+#include "data/atomic_file.hpp"
 #include "data/hash.hpp"
 #include "data/provenance.hpp"
+#include "data/terminal.hpp"
 #include "dem/derived.hpp"
 #include "uq/data_check.hpp"
 #include "uq/report_html.hpp"
@@ -110,12 +112,13 @@ void keep_surrogates(const Workspace& workspace, const TrainingRows& rows, const
 void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>& fitted) {
   for (const uq::FittedSurrogate& one : fitted) {
     const uq::SurrogateReport& r = one.report;
-    say(common, fmt::format("surrogate of {}{}{}: {} (Q2 {:.4f} left out, {:.4f} held out; 95 % intervals cover {:.0f} "
-                            "%; {} runs{}).{}",
-                            r.material, r.material.empty() ? "" : " ", r.output, r.verdict, r.q2, r.q2_held_out,
-                            100.0 * r.coverage95, r.runs, r.low_runs > 0 ? fmt::format(" over {}", r.low_runs) : "",
-                            r.verdict == "good" ? "" : " " + r.remedy));
-    for (const std::string& note : r.notes) say(common, "  " + note);
+    answer(common,
+           fmt::format("surrogate of {}{}{}: {} (Q2 {:.4f} left out, {:.4f} held out; 95 % intervals cover {:.0f} "
+                       "%; {} runs{}).{}",
+                       r.material, r.material.empty() ? "" : " ", r.output, r.verdict, r.q2, r.q2_held_out,
+                       100.0 * r.coverage95, r.runs, r.low_runs > 0 ? fmt::format(" over {}", r.low_runs) : "",
+                       r.verdict == "good" ? "" : " " + r.remedy));
+    for (const std::string& note : r.notes) answer(common, "  " + note);
   }
 }
 
@@ -126,7 +129,12 @@ void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, c
   const auto add = [&](const std::string& name, const std::string& value) {
     report.provenance.emplace_back(name, value);
   };
-  add("study", fmt::format("{} (xxh3 {})", fs::path(study.file).filename().string(), data::hash_file(study.file)));
+  const std::string changes = fmt::format("{}", fmt::join(workspace.changes, "\n"));
+  add("study", fmt::format("{}{} (xxh3 {})", fs::path(study.file).filename().string(),
+                           changes.empty() ? "" : " with what the command line set",
+                           changes.empty() ? data::hash_file(study.file)
+                                           : data::hash_text(data::read_file(study.file) + "\n" + changes)));
+  if (!changes.empty()) add(uq::set_on_command_line, fmt::format("{}", fmt::join(workspace.changes, "; ")));
   add("training table", fmt::format("{} rows (xxh3 {})", data::used_rows(rows.table), uq::table_hash(rows.table)));
   if (rows.low)
     add("rows of the cheaper level", fmt::format("{} (xxh3 {})", rows.low->rows.size(), uq::table_hash(*rows.low)));
@@ -152,7 +160,9 @@ data::ExitStatus write_report(const Common& common, const Workspace& workspace, 
   const fs::path out = workspace.out;
   uq::write_report_json(report, (out / "report.json").string());
   uq::write_report_html(report, workspace.out);
-  say(common, uq::terminal_summary(report, {.report_file = (out / "report.html").string()}));
+  if (!common.json && data::answers_go_elsewhere())  // or whoever redirects the answer would not see them
+    for (const std::string& warning : uq::first_lines(report)) say(common, "WARNING: " + warning);
+  answer(common, uq::terminal_summary(report, {.report_file = (out / "report.html").string()}));
   print_json(common, uq::report_json(report));
   return uq::has_warning(report) ? data::ExitStatus::warning : data::ExitStatus::done;
 }
@@ -166,7 +176,7 @@ std::shared_ptr<std::optional<data::Sampler>> add_sampler_option(CLI::App& comma
             *chosen = name == "nuts" ? data::Sampler::nuts : data::Sampler::mixture;
           },
           "instead of each case's own: mixture (no gradient) or nuts")
-      ->check(CLI::IsMember({"mixture", "nuts"}));
+      ->check(one_of({"mixture", "nuts"}));
   return chosen;
 }
 

@@ -42,7 +42,9 @@ Action add_check(CLI::App& program) {
     const std::vector<data::Finding> found =
         uq::check_data(study, rows.table, rows.low, workspace.surrogates->log_outputs);
     rows.findings.insert(rows.findings.end(), found.begin(), found.end());
-    for (const data::Finding& finding : rows.findings) {
+    for (data::Finding& finding : rows.findings) {
+      // Before the runs are made there may be no measurement yet, so that its placeholder is no fault of the study.
+      if (finding.kind == "placeholder") finding.severity = data::Severity::note;
       if (finding.severity == data::Severity::warning) warnings.push_back(data::describe(finding));
       if (finding.severity == data::Severity::note) say(*common, "note: " + data::describe(finding));
     }
@@ -61,14 +63,14 @@ Action add_check(CLI::App& program) {
       const auto runs =
           std::count_if(missing.begin(), missing.end(), [&](const Point& p) { return p.material == material; });
       campaign_seconds += static_cast<double>(runs) * cost.seconds;
-      say(*common, material.empty() ? "simulation, amid its ranges:" : material + ", amid its ranges:");
-      for (const std::string& line : dem::describe(c, told.derived)) say(*common, "  " + line);
-      for (const std::string& line : dem::describe(told.forecast)) say(*common, "  " + line);
-      say(*common,
-          fmt::format("  a run: at most {:.3g} steps, {} of processor time, {:.2g} MB; {} runs are missing: {} "
-                      "(at {:.2g} million particle-steps/s, measured on this machine just now)",
-                      cost.steps, duration_text(cost.seconds), 1e-6 * cost.bytes, runs,
-                      duration_text(static_cast<double>(runs) * cost.seconds), 1e-6 * cost.effort.rate));
+      answer(*common, material.empty() ? "simulation, amid its ranges:" : material + ", amid its ranges:");
+      for (const std::string& line : dem::describe(c, told.derived)) answer(*common, "  " + line);
+      for (const std::string& line : dem::describe(told.forecast)) answer(*common, "  " + line);
+      answer(*common,
+             fmt::format("  a run: at most {:.3g} steps, {} of processor time, {:.2g} MB; {} runs are missing: {} "
+                         "(at {:.2g} million particle-steps/s, measured on this machine just now)",
+                         cost.steps, duration_text(cost.seconds), 1e-6 * cost.bytes, runs,
+                         duration_text(static_cast<double>(runs) * cost.seconds), 1e-6 * cost.effort.rate));
       const std::string of = material.empty() ? "" : material + ": ";
       for (const auto& list : {told.forecast.warnings, cost.warnings, problems_at_ends(workspace, middle)})
         for (const std::string& warning : list) warnings.push_back(of + warning);
@@ -80,18 +82,18 @@ Action add_check(CLI::App& program) {
       if (material == workspace.cases.begin()->first) warnings.insert(warnings.end(), broken.begin(), broken.end());
     }
     if (!workspace.cases.empty())
-      say(*common, fmt::format("the campaign: {} runs are missing, at most {} of processor time", missing.size(),
-                               duration_text(campaign_seconds)));
+      answer(*common, fmt::format("the campaign: {} runs are missing, at most {} of processor time", missing.size(),
+                                  duration_text(campaign_seconds)));
     if (study.cases.empty())
       warnings.push_back("there is no [[calibrate]] case yet: the study can train, not calibrate");
     for (const std::string& warning : warnings) say(*common, "warning: " + warning);
     data::refuse(rows.findings);
-    say(*common,
-        fmt::format("{}: {}, {}, {}, {}, {}, {}: {}", study.name, counted(study.parameters.size(), "parameter"),
-                    counted(study.controls.size(), "control"), counted(study.materials.size(), "material"),
-                    counted(study.observations.size(), "observation set"), counted(study.cases.size(), "case"),
-                    counted(data::used_rows(rows.table), "training run"),
-                    warnings.empty() ? "no problems" : counted(warnings.size(), "warning")));
+    answer(*common,
+           fmt::format("{}: {}, {}, {}, {}, {}, {}: {}", study.name, counted(study.parameters.size(), "parameter"),
+                       counted(study.controls.size(), "control"), counted(study.materials.size(), "material"),
+                       counted(study.observations.size(), "observation set"), counted(study.cases.size(), "case"),
+                       counted(data::used_rows(rows.table), "training run"),
+                       warnings.empty() ? "no problems" : counted(warnings.size(), "warning")));
     nlohmann::json findings = nlohmann::json::array();
     for (const data::Finding& finding : rows.findings)
       findings.push_back({{"kind", finding.kind},

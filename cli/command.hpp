@@ -31,6 +31,9 @@ using Action = std::function<data::ExitStatus()>;
 /// For ->transform or ->check of an option: a finite number from `low` to `high`. (CLI11's own ranges let nan pass.)
 CLI::Validator number_in(double low, double high, const std::string& what);
 
+/// For ->check of an option: one of these words; for another, the one that was meant.
+CLI::Validator one_of(const std::vector<std::string>& choices);
+
 /// Options of every command on a study.
 struct Common {
   std::string study;                  ///< file, or folder that holds study.toml
@@ -57,7 +60,8 @@ struct Workspace {
   std::map<std::string, dem::Case> cases;  ///< by material; empty when the study has no [rig]
   /// As the study says; rows and fitted surrogates are added by the commands that fit.
   std::shared_ptr<const uq::SurrogateOptions> surrogates;
-  std::string out;  ///< results folder, absolute; made by the first write
+  std::string out;                   ///< results folder, absolute; made by the first write
+  std::vector<std::string> changes;  ///< "study.seed=3": what the command line sets beside the study's file
   Unsteady unsteady = Unsteady::leave_out;
   data::PlanSection plan = {};
 };
@@ -91,8 +95,10 @@ TrainingRows training_rows(const Workspace& workspace);
 /// "150 rpm", or the number alone when there is no unit; five digits.
 std::string with_unit(double si, const data::Unit& unit);
 
-/// A line for the user on stderr, unless --quiet.
+/// A line for the user on stderr, unless --quiet: progress, notes and warnings.
 void say(const Common& common, const std::string& text);
+/// A line of what was asked for on stdout, unless --quiet. With --json it goes to stderr, as stdout holds JSON alone.
+void answer(const Common& common, const std::string& text);
 /// The machine-readable result on stdout, when --json.
 void print_json(const Common& common, const nlohmann::json& result);
 

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "cli/command.hpp"
+#include "cli/misspelt.hpp"
 #include "data/provenance.hpp"
 #include "data/terminal.hpp"
 
@@ -31,9 +32,18 @@ int run(int argc, char** argv) {
     cli::Action action = add(program);
     commands.emplace_back(program.get_subcommands({}).back(), std::move(action));
   }
+  if (argc < 2) {
+    data::print_answer(program.help());
+    return status(data::ExitStatus::usage);
+  }
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0)
+      if (const std::string wrong = cli::misspelt(program, {argv + 1, argv + argc}); !wrong.empty()) {
+        data::tell(wrong);
+        return status(data::ExitStatus::usage);
+      }
     std::ostringstream out, err;
     const int found = program.exit(error, out, err);
     const auto without_end = [](std::string text) {

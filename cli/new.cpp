@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "cli/command.hpp"
+#include "cli/placeholder.hpp"
 #include "data/atomic_file.hpp"
 #include "data/file_name.hpp"
 #include "data/terminal.hpp"
@@ -100,11 +101,6 @@ observe = ["bench"]
 free = ["friction", "hamaker"]
 )";
 
-constexpr const char* observed_template =
-    "# replace these lines by your measurement: torque of the powder alone (idle torque taken off) and its standard "
-    "error\n"
-    "rpm,torque,torque_se\n50,100,3\n150,98,3\n300,95,3\n";
-
 }  // namespace
 
 Action add_new(CLI::App& program) {
@@ -129,10 +125,11 @@ Action add_new(CLI::App& program) {
     const std::string name = data::file_name((path.has_filename() ? path : path.parent_path()).filename().string());
     std::string hint = data::shell_word(*folder);
     std::replace(hint.begin(), hint.end(), '\n', ' ');  // it stands in a comment
-    data::write_atomically((path / "bench.csv").string(), std::string_view(observed_template));
+    data::write_atomically((path / "bench.csv").string(), placeholder_torque());
     data::write_atomically(study.string(),
                            std::string_view(fmt::format(fmt::runtime(study_template), data::printable(hint), name)));
-    data::tell(fmt::format("{}: edit it, put your torque into bench.csv, then: demcal check {}", study.string(), hint));
+    data::print_answer(
+        fmt::format("{}: edit it, put your torque into bench.csv, then: demcal check {}", study.string(), hint));
     return data::ExitStatus::done;
   };
 }

@@ -237,11 +237,11 @@ data::ExitStatus observe(Options options) {
     const data::Plateau& plateau = plateaus[i];
     const data::MeanTorque found = observed_torque(plateau, idle, i);
     const double mean = found.value / unit.factor, error = found.error / unit.factor;
-    say(options.common,
-        fmt::format("{:>8.4g} {}: {:.4g} +- {:.2g} {} ({:.4g} s, {:.0f} independent samples)",
-                    log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, mean, error, unit.symbol,
-                    log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
-                    plateau.torque.effective_samples));
+    answer(options.common,
+           fmt::format("{:>8.4g} {}: {:.4g} +- {:.2g} {} ({:.4g} s, {:.0f} independent samples)",
+                       log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, mean, error, unit.symbol,
+                       log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
+                       plateau.torque.effective_samples));
     json["rows"].push_back({{options.control, log.speed_unit.from_si(plateau.speed)},
                             {options.output, mean},
                             {options.output + "_se", error},
@@ -249,8 +249,8 @@ data::ExitStatus observe(Options options) {
   }
   for (std::string& warning : warnings_of(log, plateaus)) warnings.push_back(std::move(warning));
   for (const std::string& warning : warnings) say(options.common, "warning: " + warning);
-  say(options.common, fmt::format("{} observations: {} (picture: {})", plateaus.size(), out.string(),
-                                  observe_pictures(out).front().string()));
+  answer(options.common, fmt::format("{} observations: {} (picture: {})", plateaus.size(), out.string(),
+                                     observe_pictures(out).front().string()));
   json["warnings"] = warnings;
   print_json(options.common, json);
   return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;

@@ -146,8 +146,8 @@ data::ExitStatus plan(const Options& options) {
   data::write_atomically(path, json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   add_to_report(workspace, planned);
   const std::vector<std::string> warnings = say_warnings(common, rows, assessment.surrogates, refused);
-  for (const uq::CaseReport& one : planned) say(common, uq::plan_text(one.name, *one.plan));
-  say(common, "Plan: " + path);
+  for (const uq::CaseReport& one : planned) answer(common, uq::plan_text(one.name, *one.plan));
+  answer(common, "Plan: " + path);
   print_json(common, nlohmann::json::parse(json.dump()));
   return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
 }

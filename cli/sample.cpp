@@ -44,9 +44,9 @@ data::ExitStatus check_width(const Common& common, const Workspace& workspace,
     uq::draw(uq::rank_figure(found, uq::slug("sbc-" + model.name)), (out / "figures").string(), {});
     calibrated = calibrated && found.calibrated();
     for (const uq::RankCheck& one : found.unknowns) {
-      say(common, fmt::format("{}: {}: ranks {} the 95 % bands; {:.0f} % intervals cover {:.1f} +- {:.1f} %",
-                              model.name, one.name, one.inside ? "inside" : "OUTSIDE", 100.0 * found.interval,
-                              100.0 * one.coverage, 100.0 * one.coverage_error));
+      answer(common, fmt::format("{}: {}: ranks {} the 95 % bands; {:.0f} % intervals cover {:.1f} +- {:.1f} %",
+                                 model.name, one.name, one.inside ? "inside" : "OUTSIDE", 100.0 * found.interval,
+                                 100.0 * one.coverage, 100.0 * one.coverage_error));
     }
     if (found.failed > 0)
       say(common, fmt::format("{}: {} of {} replicates did not converge and are left out", model.name, found.failed,
@@ -116,7 +116,7 @@ Action add_sample(CLI::App& program) {
     }
     write_next_runs(workspace, supports);
     const std::vector<std::string> warnings = say_warnings(*common, rows, fitted, more);
-    for (const std::string& line : lines) say(*common, line);
+    for (const std::string& line : lines) answer(*common, line);
     print_json(*common, {{"cases", json}, {"status", warnings.empty() ? "ok" : "warning"}, {"warnings", warnings}});
     return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
   };

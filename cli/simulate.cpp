@@ -11,6 +11,7 @@
 #include "data/hash.hpp"
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
+#include "data/terminal.hpp"
 #include "dem/rig.hpp"
 #include "dem/run_file.hpp"
 #include "dem/stl.hpp"
@@ -75,7 +76,6 @@ std::string summary(const Workspace& workspace, const Point& point, const dem::R
                         row.standard_errors[i] / output.unit.factor, output.unit.symbol,
                         dem::output(result, output.name).reliable ? "" : " (too short to know this error)");
   }
-  for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
   return text;
 }
 
@@ -131,9 +131,9 @@ Action add_simulate(CLI::App& program) {
       for (const dem::NamedMesh& mesh : dem::rig_meshes(case_at(workspace, point)))
         dem::write_stl(mesh.mesh, (out / (data::file_name(mesh.name) + ".stl")).string());
     }
-    say(common,
-        fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point)));
-
+    const std::string at =
+        fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point));
+    say(common, at);
     for (const std::string& note : notes) say(common, "note: " + note);
     dem::RunResult result;
     {
@@ -154,7 +154,8 @@ Action add_simulate(CLI::App& program) {
     if (result.status == dem::RunStatus::failed)
       throw data::InputError(data::ExitStatus::bad_study,
                              {describe(workspace.study, point), result.reason, "its last good state is in " + path});
-    say(common, summary(workspace, point, result) + path);
+    for (const std::string& warning : result.warnings) say(common, "warning: " + warning);
+    answer(common, (data::answers_go_elsewhere() ? at + "\n" : "") + summary(workspace, point, result) + path);
     nlohmann::json json = to_json(workspace, point, result);
     json["notes"] = notes;
     json["file"] = path;

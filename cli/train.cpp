@@ -48,7 +48,7 @@ Action add_train(CLI::App& program) {
           "--until", [options](const std::string&) { options->until_posterior = true; },
           "posterior: runs in batches where they sharpen the posteriors of the study's cases, until little of their "
           "width is the surrogate's; --runs and --for limit them. For another code's runs it writes OUT/next-runs.csv")
-      ->check(CLI::IsMember({"posterior"}));
+      ->check(one_of({"posterior"}));
   command->add_option("--for", options->time, "with --until: no new batch after this time, as 2h or 90min");
   command
       ->add_option("--share", options->share,
@@ -73,7 +73,7 @@ Action add_train(CLI::App& program) {
                                                         : plan_campaign(workspace, rows.all, options->runs);
     write_design(workspace, campaign.points);
     if (campaign.points.empty())
-      say(common, fmt::format("nothing is missing: the table has {} runs. For more of them: --runs N", before));
+      answer(common, fmt::format("nothing is missing: the table has {} runs. For more of them: --runs N", before));
     else
       say(common, fmt::format("{} runs to make{}; the table has {}", campaign.points.size(),
                               campaign.continues ? ", left by an unfinished campaign" : "", before));
@@ -106,7 +106,7 @@ Action add_train(CLI::App& program) {
                               campaign.points.size()));
       return data::ExitStatus::interrupted;
     }
-    say(common, fmt::format("{} new runs, {} in all: {}", ledger.finished, ledger.table.rows.size(), table));
+    answer(common, fmt::format("{} new runs, {} in all: {}", ledger.finished, ledger.table.rows.size(), table));
     if (workspace.unsteady == Unsteady::use) {  // they were asked for
       ledger.unsteady = 0;
       ledger.warnings.clear();

@@ -72,7 +72,7 @@ data::ExitStatus list_points(const Common& common, const Workspace& workspace, c
   const TrainingRows rows = training_rows(workspace);
   for (const std::string& note : rows.notes) say(common, "note: " + note);
   const Assessment assessment = assess(workspace, rows);
-  say(common, share_text(workspace.study, assessment));
+  answer(common, share_text(workspace.study, assessment));
   const bool enough = assessment.settled(options.share);
   ChosenRuns chosen;
   if (!enough) chosen = choose_runs(workspace, rows, assessment, options.runs > 0 ? options.runs : 8);
@@ -85,10 +85,10 @@ data::ExitStatus list_points(const Common& common, const Workspace& workspace, c
                       {"share_wanted", options.share},
                       {"next_runs", path}});
   if (enough) {
-    say(common, fmt::format("no runs are needed: that is no more than {:.0f} %", 100.0 * options.share));
+    answer(common, fmt::format("no runs are needed: that is no more than {:.0f} %", 100.0 * options.share));
   } else {
-    say(common, fmt::format("{} points to run with your code: {}. Add their rows to {}, and give this command again",
-                            chosen.runs.size(), path, workspace.study.training.table));
+    answer(common, fmt::format("{} points to run with your code: {}. Add their rows to {}, and give this command again",
+                               chosen.runs.size(), path, workspace.study.training.table));
   }
   return data::ExitStatus::done;
 }
@@ -227,11 +227,11 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
   }
   std::error_code ignored;
   std::filesystem::remove(posterior_runs_path(workspace), ignored);
-  say(common, fmt::format("{} new runs, {} in all; {}", made, rows.table.rows.size(), ending));
+  answer(common, fmt::format("{} new runs, {} in all; {}", made, rows.table.rows.size(), ending));
   const bool open = !assessment.shares.empty() && !assessment.settled(options.share);
   if (open)
-    say(common, fmt::format("{}; to go on: {}", share_text(workspace.study, assessment),
-                            cost_text(trail, rows.table, options)));
+    answer(common, fmt::format("{}; to go on: {}", share_text(workspace.study, assessment),
+                               cost_text(trail, rows.table, options)));
   return failures.empty() && unsteady == 0 ? data::ExitStatus::done : data::ExitStatus::warning;
 }
 

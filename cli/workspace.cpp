@@ -11,15 +11,18 @@
 #include <filesystem>
 #include <system_error>
 
+#include "cli/placeholder.hpp"
 #include "cli/point.hpp"
 #include "cli/training_table.hpp"
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
+#include "data/edit_distance.hpp"
 #include "data/run_table_files.hpp"
 #include "data/terminal.hpp"
 #include "dem/isa.hpp"
 #include "dem/read_case.hpp"
 #include "dem/target.hpp"
+#include "uq/report_results.hpp"
 #include "uq/surrogate_settings.hpp"
 
 namespace cli {
@@ -92,6 +95,17 @@ CLI::Validator number_in(double low, double high, const std::string& what) {
   return validator;
 }
 
+CLI::Validator one_of(const std::vector<std::string>& choices) {
+  return CLI::Validator(
+      [choices](std::string& text) {
+        if (std::find(choices.begin(), choices.end(), text) != choices.end()) return std::string();
+        const auto near = data::nearest(text, choices);
+        return fmt::format("'{}' is not one of {}{}", text, fmt::join(choices, ", "),
+                           near ? fmt::format(" (did you mean '{}'?)", *near) : "");
+      },
+      fmt::format("{}", fmt::join(choices, "|")), "");
+}
+
 CLI::App* add_study_command(CLI::App& program, const std::string& name, const std::string& purpose,
                             const std::string& example, Common& common) {
   CLI::App* command = program.add_subcommand(name, purpose);
@@ -126,7 +140,7 @@ void add_isa_option(CLI::App& command) {
           "--isa", dem::pin_isa,
           "instruction set of the contact forces: x86-64, x86-64-v3 or x86-64-v4 (default: the widest that the "
           "processor has); the result does not depend on it")
-      ->check(CLI::IsMember({"x86-64", "x86-64-v3", "x86-64-v4"}));
+      ->check(one_of({"x86-64", "x86-64-v3", "x86-64-v4"}));
 }
 
 Workspace open_workspace(const Common& common) {
@@ -135,7 +149,11 @@ Workspace open_workspace(const Common& common) {
   workspace.surrogates =
       std::make_shared<const uq::SurrogateOptions>(uq::read_surrogate_options(file, workspace.study));
   data::Study& study = workspace.study;
-  if (common.seed) study.seed = *common.seed;
+  workspace.changes = common.set;
+  if (common.seed) {
+    study.seed = *common.seed;
+    workspace.changes.push_back(fmt::format("study.seed={}", study.seed));
+  }
   if (file.root().child("rig").exists()) {
     for (const data::Material& material : study.materials)
       workspace.cases[material.name] = dem::read_case(file, material.name);
@@ -188,6 +206,29 @@ void make_out(const Workspace& workspace, const std::string& subfolder) {
                             "give another folder with --out DIR"});
 }
 
+namespace {
+
+/// Two studies of one name have one results folder by default, and the second must not replace the first's results.
+/// A study that was moved or renamed still owns its own.
+void require_own_results(const Workspace& workspace) {
+  const fs::path results = fs::path(workspace.out) / "results.json";
+  std::error_code failure;
+  if (!fs::exists(results, failure)) return;
+  std::string of;
+  try {
+    of = uq::load_results(results.string()).study_file;
+  } catch (const data::InputError&) {  // damaged or of another version: it says of nobody whose it is
+    return;
+  }
+  if (of.empty() || !fs::exists(of, failure) || fs::equivalent(of, workspace.study.file, failure)) return;
+  throw data::InputError(data::ExitStatus::cannot_write,
+                         {workspace.out, fmt::format("holds the results of another study, {}", of),
+                          "give another folder with --out DIR, give this study a name of its own ([study] name), or "
+                          "move those results away"});
+}
+
+}  // namespace
+
 std::unique_ptr<data::FolderLock> hold_out(const Workspace& workspace, Writes files, const std::string& command) {
   make_out(workspace);
   const char* const name = files == Writes::training ? "training" : files == Writes::results ? "results" : "run";
@@ -195,6 +236,7 @@ std::unique_ptr<data::FolderLock> hold_out(const Workspace& workspace, Writes fi
   std::vector<std::string> written;
   if (files == Writes::training) written = {"training.h5", "training.csv", "design.csv"};
   if (files == Writes::results) {
+    require_own_results(workspace);
     written = {"surrogate.h5", "results.json", "report.json", "report.html", "plan.json"};
     for (const data::CalibrationCase& one : workspace.study.cases) written.push_back("posterior-" + one.name + ".nc");
   }
@@ -257,6 +299,7 @@ TrainingRows training_rows(const Workspace& workspace) {
     result.low = std::move(read.table);
   }
   tell_unknown_rows(study, result);
+  for (data::Finding& finding : placeholders(study)) result.findings.push_back(std::move(finding));
   return result;
 }
 
@@ -266,6 +309,14 @@ std::string with_unit(double si, const data::Unit& unit) {
 
 void say(const Common& common, const std::string& text) {
   if (!common.quiet) data::tell(text);
+}
+
+void answer(const Common& common, const std::string& text) {
+  if (common.quiet) return;
+  if (common.json)
+    data::tell(text);
+  else
+    data::print_answer(text);
 }
 
 void print_json(const Common& common, const nlohmann::json& result) {

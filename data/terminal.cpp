@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -20,6 +21,22 @@ namespace {
 bool acts(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7f && code < 0xa0) || (code >= 0x200b && code <= 0x200f) ||
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2060 && code <= 0x206f) || code == 0xfeff;
+}
+
+/// A line on standard output. Returns 0 or an errno.
+int write_line(std::string_view text) {
+  errno = 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fputc('\n', stdout) >= 0;
+  if (std::fflush(stdout) == 0 && written) return 0;
+  const int error = errno != 0 ? errno : EIO;
+  std::clearerr(stdout);
+  return error;
+}
+
+[[noreturn]] void refuse_output(int error) {
+  throw InputError(ExitStatus::cannot_write,
+                   Problem{"standard output", fmt::format("cannot be written: {}", std::strerror(error)),
+                           "direct it to a place with room"});
 }
 
 }  // namespace
@@ -49,14 +66,19 @@ void tell(std::string_view line) {
 }
 
 void print_result(std::string_view text) {
-  errno = 0;
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fputc('\n', stdout) >= 0;
-  if (std::fflush(stdout) == 0 && written) return;
-  const int error = errno;
-  std::clearerr(stdout);
-  throw InputError(ExitStatus::cannot_write,
-                   Problem{"standard output", fmt::format("cannot be written: {}", std::strerror(error)),
-                           "direct it to a place with room"});
+  if (const int error = write_line(text); error != 0) refuse_output(error);
+}
+
+void print_answer(std::string_view text) {
+  const int error = write_line(printable(text));
+  if (error != 0 && error != EPIPE && error != EBADF) refuse_output(error);
+}
+
+bool answers_go_elsewhere() {
+  struct stat out {
+  }, err{};
+  if (::fstat(STDOUT_FILENO, &out) != 0 || ::fstat(STDERR_FILENO, &err) != 0) return true;
+  return out.st_dev != err.st_dev || out.st_ino != err.st_ino;
 }
 
 void guard_streams() {

@@ -17,6 +17,13 @@ void tell(std::string_view line);
 /// The result on standard output, a line. Throws InputError (73) when it cannot be written.
 void print_result(std::string_view text);
 
+/// What a person asked for on standard output, made printable, a line. A reader that left and a stream that is closed
+/// are no failures, as what it tells is kept in files; a full disk is one: throws InputError (73).
+void print_answer(std::string_view text);
+
+/// Whether the two streams end in different places, so that a line on one is not seen beside the other's.
+bool answers_go_elsewhere();
+
 /// At the program's start: standard streams that are closed are held by something harmless, so that no file takes
 /// their place; a reader that leaves (SIGPIPE) or a limit on a file's size (SIGXFSZ) is an error, not the end.
 void guard_streams();

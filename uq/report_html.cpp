@@ -246,6 +246,8 @@ void write_report_html(const CalibrationReport& report, const std::string& folde
   head += fmt::format("<header>\n<h1>Calibration report: {}</h1>\n", name);
   if (!report.study_description.empty()) head += "<p class=\"lead\">" + text(report.study_description) + "</p>\n";
   if (!report.study_file.empty()) head += "<p class=\"note\">Study: " + text(report.study_file) + "</p>\n";
+  if (const std::string changes = changes_of(report); !changes.empty())
+    head += "<p class=\"note\">Set on the command line: " + text(changes) + "</p>\n";
   head += "</header>\n" + cautions_list(report) + glance(report) + contents(sections);
   data::write_atomically((fs::path(folder) / "report.html").string(),
                          head + "<main>\n" + body + "</main>\n</body>\n</html>\n");

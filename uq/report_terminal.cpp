@@ -134,6 +134,7 @@ std::string terminal_summary(const CalibrationReport& report, const TerminalOpti
   if (!text.empty()) text += "\n";
   for (const CaseReport& result : report.cases) text += case_text(result, options.columns) + "\n";
   if (report.cases.empty()) text += "No case was calibrated.\n";
+  text += fold("Set on the command line: ", changes_of(report), options.columns);
   if (!options.report_file.empty()) text += "Report: " + harmless(options.report_file) + "\n";
   return text;
 }

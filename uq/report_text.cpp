@@ -238,6 +238,12 @@ std::string shown_value(const CaseReport& result, const ParameterReport& paramet
 
 std::string without_sentence(const CaseReport& result) { return result.without ? result.without->sentence : ""; }
 
+std::string changes_of(const CalibrationReport& report) {
+  for (const auto& [name, value] : report.provenance)
+    if (name == set_on_command_line) return value;
+  return {};
+}
+
 std::string program_version(const CalibrationReport& report) {
   for (const char* const key : {"demcal", "version", "demcal version"}) {
     for (const auto& [name, value] : report.provenance) {

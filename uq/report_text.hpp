@@ -69,6 +69,11 @@ std::string without_sentence(const CaseReport& result);
 /// The version of demcal that made the results, from their provenance; "unknown" where it does not say.
 std::string program_version(const CalibrationReport& report);
 
+/// The name in the provenance under which stands what the command line set beside the study's file.
+inline constexpr const char* set_on_command_line = "set on the command line";
+/// "training.runs=80; study.seed=3", from the provenance; empty where nothing was set.
+std::string changes_of(const CalibrationReport& report);
+
 /// Everything that must stand in the report's first lines: the warnings of the report and its cases, and, where those
 /// do not say so already, each case that does not fit or has not converged and each surrogate that is unusable.
 std::vector<std::string> first_lines(const CalibrationReport& report);

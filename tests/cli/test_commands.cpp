@@ -89,6 +89,8 @@ TEST_CASE("a new study passes its own check") {
   INFO(outcome.err);
   CHECK(outcome.status == 0);
   CHECK(folder.demcal({"new", "my-mixer"}).status == 73);
+  CHECK_THAT(outcome.out, Contains("no problems"));
+  CHECK_THAT(outcome.err, Contains("bench.csv: 'bench' still holds the example that demcal new wrote"));
   // Beside the study the results have a folder of their own.
   CHECK(folder.demcal({"design", "my-mixer"}).status == 0);
   CHECK(fs::exists(folder.path / "my-mixer-results" / "design.csv"));
