@@ -63,8 +63,7 @@ TEST_CASE("a plan refuses what cannot be planned, with place and remedy") {
   CHECK(folder.demcal({"plan", study, "--about", "no-such"}).status == 64);
   CHECK(folder.demcal({"plan", study, "--case", "no-such"}).status == 64);
   CHECK(folder.demcal({"plan", study, "--budget", "nan"}).status == 64);
-  const std::string place = folder.study("other-code").string(), file = "study/study.toml",
-                    toml = folder.read(file);
+  const std::string place = folder.study("other-code").string(), file = "study/study.toml", toml = folder.read(file);
   for (const auto& [entry, what] : std::vector<std::pair<std::string, std::string>>{
            {"settings = { speed = \"900 rpm\" }", "speed"}, {"outputs = [\"angle\"]", "angle"}, {"cots = 1", "cots"}}) {
     folder.write(file, toml + "\n[plan]\n[[plan.candidates]]\n" + entry + "\n");
