@@ -102,7 +102,7 @@ free = ["friction", "hamaker"]
 
 # [plan]                     # what could be measured next (demcal plan); without it, every speed and every output
 # [[plan.candidates]]
-# settings = { rpm = ["250 rpm", "300 rpm"] }
+# settings = {{ rpm = ["250 rpm", "300 rpm"] }}
 # outputs = ["torque"]
 # error = "2 %"              # of one reading
 # cost = 1                   # of one reading, in any unit
