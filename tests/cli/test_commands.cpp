@@ -129,11 +129,11 @@ TEST_CASE("shipped rows of the steady flow and an observed point come out again"
     if (row.field.count("state") > 0 && row.field.at("state") == "steady") rows.push_back(row);
   for (std::size_t which = 1; which < rows.size(); which += std::max<std::size_t>(1, rows.size() - 2)) {
     const Row& row = rows[which];
-    const nlohmann::json run =
-        simulate(folder, {"--material", row.field.at("material"), "--at",
-                          "friction=" + row.field.at("friction") + ",hamaker=" + row.field.at("hamaker") +
-                              ",rpm=" + row.field.at("rpm"),
-                          "--seed", row.field.at("seed")});
+    const nlohmann::json run = simulate(
+        folder,
+        {"--material", row.field.at("material"), "--at",
+         "friction=" + row.field.at("friction") + ",hamaker=" + row.field.at("hamaker") + ",rpm=" + row.field.at("rpm"),
+         "--seed", row.field.at("seed")});
     CHECK(run["settings"] == row.field.at("settings"));
     const double torque = run["outputs"]["torque"]["mean"];
     CHECK(torque == row.number("torque"));
