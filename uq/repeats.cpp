@@ -41,7 +41,12 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
     std::vector<Eigen::Index> free;
     for (Eigen::Index s = 0; s < u.size(); ++s) {
       const double slack = 1e-4 * (upper[s] - lower[s]);
-      if (s != profile.unknown && u[s] - lower[s] > slack && upper[s] - u[s] > slack) free.push_back(s);
+      if (s == profile.unknown) continue;
+      const bool low = u[s] - lower[s] <= slack, high = upper[s] - u[s] <= slack;
+      if (!low && !high) free.push_back(s);
+      // A bound at 0 that nature sets ends nothing (uq/profile.hpp).
+      if (s < model.own_count() && (high || (low && !physical_low(model.slots[static_cast<std::size_t>(s)]))))
+        point.at_end = true;
     }
     point.slopes.resize(slopes.rows(), static_cast<Eigen::Index>(free.size()));
     point.precision.resize(point.slopes.cols());
@@ -71,8 +76,21 @@ PathWords::PathWords(const std::vector<PathPoint>& points, const std::vector<Eig
     precision.diagonal() += point.precision;
     local.bent.compute(precision);
     if (local.slopes.cols() > 0 && local.bent.info() != Eigen::Success) continue;
+    local.at_end = point.at_end;
     points_.push_back(std::move(local));
   }
+}
+
+std::pair<bool, bool> PathWords::ends_by_another(const Eigen::VectorXd& deviance, double drop) const {
+  const auto end_of = [&](auto first, auto last, int outwards) {
+    for (auto i = first; i != last; i -= outwards)
+      if (deviance[static_cast<Eigen::Index>(i)] <= drop)
+        return i != first &&
+               (points_[static_cast<std::size_t>(i)].at_end || points_[static_cast<std::size_t>(i + outwards)].at_end);
+    return false;
+  };
+  const int n = static_cast<int>(points_.size());
+  return {end_of(0, n, -1), end_of(n - 1, -1, 1)};
 }
 
 Eigen::VectorXd PathWords::deviances(const Eigen::VectorXd& y) const {

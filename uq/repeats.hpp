@@ -11,6 +11,7 @@
 // noise stays as found: influence, structure, a side that another parameter's range ends. An unknown at the end of its
 // range on the path stays there.
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "uq/case_model.hpp"
@@ -41,6 +42,7 @@ struct PathPoint {
   Eigen::VectorXd noise;       ///< variances
   Eigen::MatrixXd slopes;      ///< rows x the unknowns that can move
   Eigen::VectorXd precision;   ///< of their priors
+  bool at_end = false;         ///< another of the case's parameters stands at the end of its range
 };
 
 /// Points that may matter: near enough to the best or beside such a point, and the two ends; all of them when `all`.
@@ -57,6 +59,8 @@ class PathWords {
   bool usable() const { return points_.size() >= 3; }
   /// Less their least; at the points that a covariance could be factored at.
   Eigen::VectorXd deviances(const Eigen::VectorXd& y) const;
+  /// Whether the interval's low and high end lie where another parameter's range ends, and not this one's data.
+  std::pair<bool, bool> ends_by_another(const Eigen::VectorXd& deviance, double drop) const;
   /// Facts as found, with what hangs on the data's noise taken from `deviance`; `before`, `found_deviance`: those of
   /// the data as they were found.
   WordFacts facts(const FoundFacts& found, const PathWords& before, const Eigen::VectorXd& found_deviance,
@@ -70,6 +74,7 @@ class PathWords {
     double log_determinant = 0.0;
     Eigen::MatrixXd slopes;            ///< whitened
     Eigen::LLT<Eigen::MatrixXd> bent;  ///< A' A + P
+    bool at_end = false;
   };
   struct Parts {
     int count = 0;

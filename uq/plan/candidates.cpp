@@ -349,6 +349,16 @@ const char* to_text(CandidateKind kind) {
   return "";
 }
 
+Eigen::VectorXd ExtendedCase::noise_at(const Eigen::VectorXd& mean, const Eigen::VectorXd& noise) const {
+  Eigen::VectorXd scaled = noise;
+  for (Index i = 0; i < noise.size(); ++i) {
+    const auto variance = [&](double m) { return std::pow(absolute[i], 2) + std::pow(relative[i] * m, 2); };
+    if (relative[i] > 0.0 && variance(reference[i]) > 0.0)
+      scaled[i] *= std::max(variance(mean[i]) / variance(reference[i]), 1e-12);
+  }
+  return scaled;
+}
+
 std::vector<Candidate> candidates_of(const Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
                                      const data::PlanSection& plan, const CandidateOptions& options) {
   if (plan.candidates.empty()) return Usual(study, emulators, case_index, options).all();
@@ -412,6 +422,8 @@ ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, 
 
   const StackedPrediction prediction = predict(model, u);
   found.planned.resize(candidates.size());
+  found.absolute = found.relative = Eigen::VectorXd::Zero(prediction.mean.size());
+  found.reference = prediction.mean;
   Index row = 0;
   for (RowGroup& group : model.groups)
     for (std::size_t r = 0; r < group.origin.size(); ++r, ++row) {
@@ -423,6 +435,8 @@ ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, 
       const Candidate& candidate = candidates[planned->second.candidate];
       const data::Spread& error = candidate.error[planned->second.column];
       const double sd = std::hypot(error.absolute, error.relative * prediction.mean[row]);
+      found.absolute[row] = error.absolute;
+      found.relative[row] = error.relative;
       group.variance[static_cast<Index>(r)] = std::max(sd * sd, 1e-300) / candidate.readings;
       found.planned[planned->second.candidate].push_back(row);
     }

@@ -46,6 +46,11 @@ struct ExtendedCase {
   CaseModel model;
   std::vector<Eigen::Index> measured;              ///< rows of the data, pooled and thinned where there are many
   std::vector<std::vector<Eigen::Index>> planned;  ///< per candidate, its rows
+  Eigen::VectorXd absolute, relative;              ///< errors of each row's reading; 0 of the measured
+  Eigen::VectorXd reference;  ///< SI, mean at which the model's variances of planned rows were taken
+
+  /// The rows' noise variances where their means are `mean`: an error in per cent is that of the reading itself.
+  Eigen::VectorXd noise_at(const Eigen::VectorXd& mean, const Eigen::VectorXd& noise) const;
 };
 
 /// `sampled`: the case as it was sampled. The planned rows' variances are those of a reading at `u`.

@@ -40,12 +40,7 @@ const char* to_text(Floor floor) {
 
 Forecast::Forecast(const ExtendedCase& extended, const CaseModel& judged, const Identification& found,
                    const Outlook& outlook, const VerdictThresholds& thresholds, std::uint64_t seed)
-    : extended_(extended),
-      outlook_(outlook),
-      thresholds_(thresholds),
-      seed_(seed),
-      profiles_(found.profiles),
-      pinned_(found.profiles) {
+    : extended_(extended), outlook_(outlook), thresholds_(thresholds), seed_(seed), profiles_(found.profiles) {
   const CaseModel exact = without_surrogate_error(extended.model);
   for (std::size_t k = 0; k < profiles_.size(); ++k) {
     profiles_[k].low_pinned.reset();
@@ -56,6 +51,9 @@ Forecast::Forecast(const ExtendedCase& extended, const CaseModel& judged, const 
     paths_.push_back(path_points(extended.model, judged, profiles_[k], found.best_fit.x, true));
     paths_of_exact_.push_back(path_points(exact, judged, profiles_[k], found.best_fit.x, true));
   }
+  for (auto* paths : {&paths_, &paths_of_exact_})
+    for (std::vector<PathPoint>& path : *paths)
+      for (PathPoint& point : path) point.noise = extended.noise_at(point.mean, point.noise);
   data_ = observed(extended.model)(extended.measured);
 }
 
@@ -91,21 +89,18 @@ std::vector<std::vector<Verdict>> Forecast::words_of_draws(const std::vector<Ind
     VectorXd y(measured + planned);
     y << data_, law.mean;
     std::vector<WordFacts> facts(paths_.size());
+    std::vector<std::pair<bool, bool>> by_another(paths_.size(), {false, false});
     for (std::size_t k = 0; k < paths_.size(); ++k) {
       if (!before[k].usable() || !after[k].usable()) continue;
       const VectorXd deviance = after[k].deviances(y);
       facts[k] = after[k].facts(found_[k], before[k], found_deviance[k], deviance, thresholds_.profile_drop);
+      by_another[k] = after[k].ends_by_another(deviance, thresholds_.profile_drop);
       facts[k].influences = deviance.maxCoeff() > thresholds_.silent_deviance;
     }
     for (std::size_t k = 0; k < paths_.size(); ++k) {
       WordFacts one = facts[k];
-      const auto still_open = [&](const std::optional<int>& by) {
-        if (!by || *by >= static_cast<int>(facts.size())) return by.has_value();
-        const WordFacts& other = facts[static_cast<std::size_t>(*by)];
-        return other.open_low || other.open_high;
-      };
-      one.open_low = one.open_low || still_open(pinned_[k].low_pinned);
-      one.open_high = one.open_high || still_open(pinned_[k].high_pinned);
+      one.open_low = one.open_low || by_another[k].first;
+      one.open_high = one.open_high || by_another[k].second;
       words[k].push_back(word_of(one, thresholds_));
     }
   }

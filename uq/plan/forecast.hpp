@@ -4,7 +4,8 @@
 //
 // A reading is drawn from its law given a draw of the posterior and the data (outlook.hpp), and joins the data; along
 // the profiles' paths the deviances of both together, and from them the words, follow as in uq/repeats.hpp, without
-// another search. A side that ended with another parameter's range (pinned) is open as long as that parameter's is.
+// another search. A side is open, too, where the interval ends beside a point at which another parameter has come to
+// the end of its range.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -40,10 +41,6 @@ class Forecast {
  private:
   /// What is uncertain of the law of data, beside their noise.
   enum class Uncertain { all, not_surrogate, nothing };
-  struct Draw {
-    Eigen::Index draw = 0;
-    std::uint32_t stream = 0;
-  };
   std::vector<std::vector<Verdict>> words_of_draws(const std::vector<Eigen::Index>& rows, double readings,
                                                    Uncertain uncertain) const;
   double identified(const std::vector<Eigen::Index>& rows, double readings, int parameter, Uncertain uncertain) const;
@@ -53,7 +50,6 @@ class Forecast {
   VerdictThresholds thresholds_;
   std::uint64_t seed_;
   std::vector<Profile> profiles_;  ///< as found, but nothing pinned
-  std::vector<Profile> pinned_;    ///< as found
   std::vector<FoundFacts> found_;
   std::vector<std::vector<PathPoint>> paths_, paths_of_exact_;  ///< per parameter; with the surrogate taken as exact
   Eigen::VectorXd data_;

@@ -33,7 +33,8 @@ Outlook::Outlook(const ExtendedCase& extended, const MatrixXd& draws, Given give
   laws_.resize(static_cast<std::size_t>(draws.rows()));
   for_each_index(static_cast<int>(draws.rows()), threads, [&](int job) {
     const StackedPrediction all = predict(model, draws.row(job).transpose());
-    ReadingLaw law{all.mean(planned), all.covariance(planned, planned), all.noise(planned)};
+    ReadingLaw law{all.mean(planned), all.covariance(planned, planned),
+                   extended.noise_at(all.mean, all.noise)(planned)};
     if (given == Given::data && !measured.empty()) {
       MatrixXd among = all.covariance(measured, measured);
       among.diagonal() += all.noise(measured);
