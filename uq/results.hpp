@@ -120,7 +120,8 @@ struct PlannedRuns {
   std::vector<PlannedParameter> parameters;            ///< with a surrogate that is exact: the most that runs can do
 };
 
-/// How an output changes over half of a parameter's range about the posterior's mean, in measurement errors.
+/// How a reading changes when a parameter changes by its prior's sd, at the best fit (before any measurement: at the
+/// prior's mean), in errors of one reading.
 struct PlanArrow {
   std::string output, parameter;
   std::map<std::string, double> setting;

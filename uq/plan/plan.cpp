@@ -87,7 +87,7 @@ class Planner {
  public:
   Planner(const Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
           const SampledCase& sampled, const data::PlanSection& section, const PlanOptions& options)
-      : study_(study), case_index_(case_index), sampled_(sampled), options_(options) {
+      : study_(study), sampled_(sampled), options_(options) {
     const CaseModel& model = *sampled.model;
     if (sampled.draws.chains.empty() && !options.prior)
       throw data::InputError(
@@ -453,7 +453,6 @@ class Planner {
   }
 
   const Study& study_;
-  std::size_t case_index_;
   const SampledCase& sampled_;
   const PlanOptions& options_;
   MatrixXd draws_;
