@@ -24,11 +24,14 @@ int run(int argc, char** argv) {
       "parameters the measurement cannot determine."};
   program.set_version_flag("--version", "demcal " + data::program_version());
   program.require_subcommand(1);
-  program.footer("Example: demcal calibrate data/developer\nHelp on a command: demcal COMMAND --help");
+  program.footer(
+      "Example: demcal calibrate data/developer\nHelp on a command: demcal COMMAND --help, on a key of study.toml: "
+      "demcal help KEY");
 
   std::vector<std::pair<CLI::App*, cli::Action>> commands;
   for (const auto add : {cli::add_new, cli::add_check, cli::add_simulate, cli::add_design, cli::add_train, cli::add_fit,
-                         cli::add_sample, cli::add_calibrate, cli::add_plan, cli::add_report, cli::add_observe}) {
+                         cli::add_sample, cli::add_calibrate, cli::add_plan, cli::add_report, cli::add_observe,
+                         cli::add_help}) {
     cli::Action action = add(program);
     commands.emplace_back(program.get_subcommands({}).back(), std::move(action));
   }

@@ -134,6 +134,10 @@ std::optional<double> read_quantity(const Node& node, std::string_view key, cons
   }
 }
 
+std::string shown_default(const std::optional<double>& fallback) {
+  return fallback && std::isfinite(*fallback) ? fmt::format("{:.10g}", *fallback) : "";
+}
+
 Section open_section(const Node& parent, const toml::table* table, std::string name, std::size_t line) {
   if (table != nullptr) parent.state->opened.insert(table);
   return Section(std::make_shared<Node>(Node{parent.state, table, std::move(name), line > 0 ? line : parent.line}));
@@ -145,6 +149,7 @@ std::size_t line_of(const toml::node& node) { return node.source().begin.line; }
 
 bool Section::exists() const { return node_->table != nullptr; }
 bool Section::has(std::string_view key) const {
+  node_->state->looked_for.insert(node_->dotted(key));
   if (node_->table == nullptr) return false;
   node_->state->known[node_->table].emplace(key);
   return node_->table->contains(key);
@@ -161,6 +166,7 @@ std::string Section::place(std::string_view key) const { return node_->place(key
 std::string Section::name() const { return node_->name; }
 
 double Section::number(std::string_view key, Range range, std::optional<double> fallback) const {
+  node_->note(key, {"number", "", range, shown_default(fallback), {}});
   const toml::node* node = fallback ? node_->ask(key) : node_->demand(key, "0.5");
   if (node == nullptr) return missing_value(range, fallback);
   const std::optional<double> value = bare_number(*node);
@@ -172,6 +178,7 @@ double Section::number(std::string_view key, Range range, std::optional<double> 
 }
 
 std::int64_t Section::integer(std::string_view key, Range range, std::optional<std::int64_t> fallback) const {
+  node_->note(key, {"whole number", "", range, fallback ? std::to_string(*fallback) : "", {}});
   const toml::node* node = fallback ? node_->ask(key) : node_->demand(key, "1");
   std::optional<double> real_fallback;
   if (fallback) real_fallback = static_cast<double>(*fallback);
@@ -189,6 +196,7 @@ std::int64_t Section::integer(std::string_view key, Range range, std::optional<s
 
 double Section::quantity(std::string_view key, std::string_view si_unit, Range range, std::optional<double> fallback,
                          const Unit* default_unit) const {
+  node_->note(key, {"quantity", std::string(si_unit), range, shown_default(fallback), {}});
   const std::string example = fmt::format("\"1 {}\"", default_unit != nullptr ? default_unit->symbol : si_unit);
   const toml::node* node = fallback ? node_->ask(key) : node_->demand(key, convertible(si_unit, "1") ? "0.5" : example);
   if (node == nullptr) return missing_value(range, fallback);
@@ -196,6 +204,7 @@ double Section::quantity(std::string_view key, std::string_view si_unit, Range r
 }
 
 std::string Section::text(std::string_view key, std::optional<std::string> fallback) const {
+  node_->note(key, {"text", "", {}, fallback.value_or(""), {}});
   const toml::node* node = fallback ? node_->ask(key) : node_->demand(key, "\"...\"");
   if (node == nullptr) return fallback.value_or("");
   if (const auto* text = node->as_string()) return text->get();
@@ -205,6 +214,7 @@ std::string Section::text(std::string_view key, std::optional<std::string> fallb
 
 std::string Section::choice(std::string_view key, const std::vector<std::string>& options,
                             std::optional<std::string> fallback) const {
+  node_->note(key, {"choice", "", {}, fallback.value_or(""), options});
   const toml::node* node = fallback ? node_->ask(key) : node_->demand(key, fmt::format("\"{}\"", options.front()));
   const std::string otherwise = fallback.value_or(options.front());
   if (node == nullptr) return otherwise;
@@ -219,6 +229,7 @@ std::string Section::choice(std::string_view key, const std::vector<std::string>
 }
 
 bool Section::flag(std::string_view key, bool fallback) const {
+  node_->note(key, {"true or false", "", {}, fallback ? "true" : "false", {}});
   const toml::node* node = node_->ask(key);
   if (node == nullptr) return fallback;
   if (const auto* flag = node->as_boolean()) return flag->get();
@@ -227,6 +238,7 @@ bool Section::flag(std::string_view key, bool fallback) const {
 }
 
 std::vector<std::string> Section::texts(std::string_view key, bool required) const {
+  node_->note(key, {"list of texts", "", {}, "", {}});
   const toml::node* node = required ? node_->demand(key, "[\"...\"]") : node_->ask(key);
   std::vector<std::string> values;
   if (node == nullptr) return values;
@@ -249,6 +261,7 @@ std::vector<std::string> Section::texts(std::string_view key, bool required) con
 }
 
 std::vector<std::string> Section::labels(std::string_view key) const {
+  node_->note(key, {"list of lines", "", {}, "", {}});
   const toml::node* node = node_->ask(key);
   std::vector<std::string> values;
   if (node == nullptr) return values;
@@ -272,6 +285,7 @@ std::vector<std::string> Section::labels(std::string_view key) const {
 
 std::vector<double> Section::quantities(std::string_view key, std::string_view si_unit, Range range,
                                         const Unit* default_unit) const {
+  node_->note(key, {"list of quantities", std::string(si_unit), range, "", {}});
   const toml::node* node = node_->ask(key);
   std::vector<double> values;
   if (node == nullptr) return values;
@@ -289,6 +303,7 @@ std::vector<double> Section::quantities(std::string_view key, std::string_view s
 }
 
 Section Section::child(std::string_view key) const {
+  node_->note(key, {"table", "", {}, "", {}});
   const toml::node* node = node_->ask(key);
   const toml::table* table = node != nullptr ? node->as_table() : nullptr;
   if (node != nullptr && table == nullptr) {
@@ -312,6 +327,7 @@ std::vector<std::pair<std::string, Section>> Section::children() const {
 
 std::vector<Section> Section::array(std::string_view key) const {
   std::vector<Section> sections;
+  node_->note(key, {"tables", "", {}, "", {}});
   const toml::node* node = node_->ask(key);
   if (node == nullptr) return sections;
   const auto* array = node->as_array();

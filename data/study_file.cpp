@@ -151,6 +151,9 @@ Section StudyFile::root() const {
 std::string StudyFile::path() const { return state_->absolute; }
 std::string StudyFile::folder() const { return state_->folder; }
 
+const std::map<std::string, AskedKey>& StudyFile::asked() const { return state_->asked; }
+const std::set<std::string>& StudyFile::looked_for() const { return state_->looked_for; }
+
 std::vector<Problem> StudyFile::recorded() const {
   std::vector<State::Located> located = state_->problems;
   std::stable_sort(located.begin(), located.end(), [](const auto& a, const auto& b) { return a.line < b.line; });

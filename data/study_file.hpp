@@ -3,8 +3,10 @@
 // error with its line. Readers (data/study.cpp, dem/read_case.cpp) ask; problems are collected, not thrown, so
 // that one pass reports them all.
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,6 +30,16 @@ inline constexpr Range non_negative{.low = 0.0};
 
 /// What stands behind a key.
 enum class ValueKind { missing, number, text, flag, table, other };
+
+/// What a reader said of a key when it asked for it.
+struct AskedKey {
+  std::string type;  ///< "number", "whole number", "quantity", "text", "choice", "true or false", "list of ...",
+                     ///< "table", "tables"
+  std::string unit;  ///< SI, of a quantity
+  Range range = {};
+  std::string fallback;              ///< SI; empty: none
+  std::vector<std::string> choices;  ///< of a choice
+};
 
 class StudyFile;
 
@@ -84,6 +96,12 @@ class StudyFile {
   Section root() const;
   std::string path() const;    ///< of the file
   std::string folder() const;  ///< that holds it; relative paths in the study start here
+
+  /// Every key that was asked for so far, whether it is there or not, by its dotted name. The reference of keys
+  /// (study_keys.hpp) is held against it.
+  const std::map<std::string, AskedKey>& asked() const;
+  /// Every key that was looked for, to be read only when it is there.
+  const std::set<std::string>& looked_for() const;
 
   /// The problems recorded so far, in the order of the file.
   std::vector<Problem> recorded() const;

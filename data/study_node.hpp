@@ -28,6 +28,8 @@ struct StudyFile::State {
   std::set<const toml::table*> opened;
   std::vector<Located> problems;
   std::set<std::pair<std::string, std::string>> told;
+  std::map<std::string, AskedKey> asked;
+  std::set<std::string> looked_for;
 
   void add(std::size_t line, Problem problem) {
     if (!told.emplace(problem.place, problem.what).second) return;  // two readers may ask for one key
@@ -75,6 +77,17 @@ struct Section::Node {
     const toml::node* node = table->get(key);
     if (node != nullptr) state->used[table].emplace(key);
     return node;
+  }
+
+  /// Some keys are read in several ways: a number, or a table. Text that is read first is a look at what stands there.
+  void note(std::string_view key, const AskedKey& how) const {
+    const auto [known, is_new] = state->asked.emplace(dotted(key), how);
+    std::string& type = known->second.type;
+    if (is_new || type.find(how.type) != std::string::npos || how.type == "text") return;
+    if (type == "text")
+      known->second = how;
+    else
+      type += " or " + how.type;
   }
 
   /// `ask` for a value that must be there.

@@ -5,10 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include "data/error.hpp"
@@ -21,6 +23,26 @@ namespace {
 bool acts(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7f && code < 0xa0) || (code >= 0x200b && code <= 0x200f) ||
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2060 && code <= 0x206f) || code == 0xfeff;
+}
+
+/// Whether a stream is a terminal that may show colours (NO_COLOR: https://no-color.org).
+bool takes_colours(int stream) {
+  const char* const none = std::getenv("NO_COLOR");
+  const char* const terminal = std::getenv("TERM");
+  return ::isatty(stream) == 1 && (none == nullptr || *none == '\0') && terminal != nullptr &&
+         std::string_view(terminal) != "dumb";
+}
+
+/// The words that begin a line of warning, yellow on a terminal.
+std::string coloured(std::string text, int stream) {
+  if (!takes_colours(stream)) return text;
+  for (std::size_t at = 0; at < text.size();) {
+    for (const std::string_view word : {"WARNING:", "warning:"})
+      if (std::string_view(text).substr(at).starts_with(word))
+        text.replace(at, word.size(), fmt::format("\x1b[33m{}\x1b[0m", word));
+    at = std::min(text.find('\n', at), text.size() - 1) + 1;
+  }
+  return text;
 }
 
 /// A line on standard output. Returns 0 or an errno.
@@ -59,7 +81,7 @@ std::string printable(std::string_view text) {
 }
 
 void tell(std::string_view line) {
-  const std::string shown = printable(line) + "\n";
+  const std::string shown = coloured(printable(line), STDERR_FILENO) + "\n";
   std::fwrite(shown.data(), 1, shown.size(), stderr);
   std::fflush(stderr);
   std::clearerr(stderr);
@@ -70,7 +92,7 @@ void print_result(std::string_view text) {
 }
 
 void print_answer(std::string_view text) {
-  const int error = write_line(printable(text));
+  const int error = write_line(coloured(printable(text), STDOUT_FILENO));
   if (error != 0 && error != EPIPE && error != EBADF) refuse_output(error);
 }
 

@@ -58,6 +58,20 @@ TEST_CASE("the answer of a command is on stdout, and its progress and warnings a
   CHECK_THAT(json.err, Contains("surrogate of torque: good"));
 }
 
+TEST_CASE("colours are for terminals that want them") {
+  const Folder folder;
+  CHECK(folder.demcal({"new", "s"}).status == 0);
+  const auto screen = [&](const std::string& environment) {  // script gives the program a terminal
+    return folder
+        .shell(environment + " script -qec \"$demcal check s --set run.skin=0.9 --set rig.fill=60000\" /dev/null")
+        .out;
+  };
+  const std::string yellow = "\x1b[33mwarning:";
+  CHECK_THAT(screen("TERM=xterm NO_COLOR="), Contains(yellow));
+  CHECK_THAT(screen("TERM=xterm NO_COLOR=1"), Contains("warning:") && !Contains("\x1b["));
+  CHECK_THAT(screen("TERM=dumb NO_COLOR="), Contains("warning:") && !Contains("\x1b["));
+}
+
 TEST_CASE("an answer that finds no room is a failure, and one that nobody waits for is none") {
   const Folder folder;
   const auto full = folder.shell("\"$demcal\" fit " + other_code + " >/dev/full");
