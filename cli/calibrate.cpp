@@ -8,12 +8,12 @@
 #include <limits>
 #include <thread>
 
+#include "campaign/verify.hpp"
 #include "cli/calibration.hpp"
 #include "cli/train_posterior.hpp"
-#include "cli/verify.hpp"
 #include "data/interrupt.hpp"
-#include "uq/posterior_nc.hpp"
-#include "uq/report_results.hpp"
+#include "uq/calibrate/posterior_nc.hpp"
+#include "uq/findings/results_file.hpp"
 
 namespace cli {
 namespace {

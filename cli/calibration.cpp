@@ -5,19 +5,19 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "cli/campaign.hpp"
+#include "campaign/design.hpp"
 #include "data/atomic_file.hpp"
 #include "data/hash.hpp"
 #include "data/provenance.hpp"
 #include "data/terminal.hpp"
-#include "dem/derived.hpp"
-#include "uq/data_check.hpp"
-#include "uq/report_html.hpp"
-#include "uq/report_json.hpp"
-#include "uq/report_results.hpp"
-#include "uq/report_terminal.hpp"
-#include "uq/report_text.hpp"
-#include "uq/surrogate_file.hpp"
+#include "dem/bed/derived.hpp"
+#include "uq/calibrate/data_check.hpp"
+#include "uq/emulate/surrogate_file.hpp"
+#include "uq/findings/results_file.hpp"
+#include "uq/findings/wording.hpp"
+#include "uq/report/html.hpp"
+#include "uq/report/json.hpp"
+#include "uq/report/terminal.hpp"
 
 namespace cli {
 namespace fs = std::filesystem;

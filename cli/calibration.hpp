@@ -7,11 +7,11 @@
 
 #include "cli/command.hpp"
 #include "data/progress.hpp"
-#include "uq/calibrate.hpp"
+#include "uq/calibrate/calibrate.hpp"
 
 namespace cli {
 
-/// The rows of the run table, looked at (uq/data_check.hpp): its findings are added to theirs. Throws InputError (66)
+/// The rows of the run table, looked at (uq/calibrate/data_check.hpp): its findings are added to theirs. Throws InputError (66)
 /// when there are none, saying how to get some, and (65, 78) for what cannot be meant; prints what was left out.
 TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace);
 

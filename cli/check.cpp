@@ -3,11 +3,12 @@
 
 #include <algorithm>
 
-#include "cli/campaign.hpp"
-#include "cli/foretell.hpp"
-#include "dem/rig.hpp"
-#include "uq/data_check.hpp"
-#include "uq/surrogates.hpp"
+#include "campaign/design.hpp"
+#include "campaign/foretell.hpp"
+#include "cli/command.hpp"
+#include "dem/rig/rig.hpp"
+#include "uq/calibrate/data_check.hpp"
+#include "uq/emulate/surrogates.hpp"
 
 namespace cli {
 namespace {

@@ -3,7 +3,8 @@
 
 #include <filesystem>
 
-#include "cli/campaign.hpp"
+#include "campaign/design.hpp"
+#include "cli/command.hpp"
 
 namespace cli {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "campaign/placeholder.hpp"
 #include "cli/command.hpp"
-#include "cli/placeholder.hpp"
 #include "data/atomic_file.hpp"
 #include "data/file_name.hpp"
 #include "data/terminal.hpp"

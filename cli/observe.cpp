@@ -16,7 +16,7 @@
 #include "data/origin.hpp"
 #include "data/torque_log.hpp"
 #include "data/unit_text.hpp"
-#include "uq/report_gnuplot.hpp"
+#include "uq/report/gnuplot.hpp"
 
 namespace cli {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "uq/report_plot.hpp"
+#include "uq/report/plot.hpp"
 
 namespace cli {
 namespace {

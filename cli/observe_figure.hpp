@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "data/torque_log.hpp"
-#include "uq/report_gnuplot.hpp"
+#include "uq/report/gnuplot.hpp"
 
 namespace cli {
 

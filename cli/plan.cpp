@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "campaign/posterior_runs.hpp"
 #include "cli/calibration.hpp"
-#include "cli/posterior_runs.hpp"
 #include "data/atomic_file.hpp"
 #include "data/provenance.hpp"
+#include "uq/findings/results_file.hpp"
 #include "uq/plan/plan.hpp"
-#include "uq/report_html.hpp"
-#include "uq/report_json.hpp"
-#include "uq/report_plan.hpp"
-#include "uq/report_results.hpp"
+#include "uq/report/html.hpp"
+#include "uq/report/json.hpp"
+#include "uq/report/plan.hpp"
 
 namespace cli {
 namespace {

@@ -60,7 +60,7 @@ std::string man_command(const CLI::App& command) {
 }
 
 /// In single quotes of a shell.
-std::string quoted(std::string_view text) {
+std::string in_single_quotes(std::string_view text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
@@ -126,7 +126,7 @@ std::string bash_completion(const CLI::App& program) {
   std::string commands, cases;
   for (const CLI::App* command : program.get_subcommands({})) {
     commands += (commands.empty() ? "" : " ") + command->get_name();
-    cases += fmt::format("    {}) options={} ;;\n", command->get_name(), quoted(options_text(*command)));
+    cases += fmt::format("    {}) options={} ;;\n", command->get_name(), in_single_quotes(options_text(*command)));
   }
   return fmt::format(
       "# Completion of demcal for bash.\n"
@@ -147,17 +147,18 @@ std::string bash_completion(const CLI::App& program) {
       "  esac\n"
       "}}\n"
       "complete -o filenames -F _demcal demcal\n",
-      quoted(commands + " --help --version"), quoted(topics(program)), cases);
+      in_single_quotes(commands + " --help --version"), in_single_quotes(topics(program)), cases);
 }
 
 std::string zsh_completion(const CLI::App& program) {
   std::string commands, cases;
   for (const CLI::App* command : program.get_subcommands({})) {
-    commands += "    " + quoted(command->get_name() + ":" + zsh_text(command->get_description())) + "\n";
+    commands += "    " + in_single_quotes(command->get_name() + ":" + zsh_text(command->get_description())) + "\n";
     cases += fmt::format("      {}) _arguments", command->get_name());
     for (const CLI::Option* option : long_options(*command))
-      cases += " " + quoted(fmt::format("{}[{}]{}", name_of(*option), zsh_text(option->get_description()),
-                                        is_flag(*option) ? "" : ":" + zsh_text(option->get_type_name()) + ":_files"));
+      cases += " " + in_single_quotes(
+                         fmt::format("{}[{}]{}", name_of(*option), zsh_text(option->get_description()),
+                                     is_flag(*option) ? "" : ":" + zsh_text(option->get_type_name()) + ":_files"));
     cases += command->get_name() == "help" ? " '*:topic:(" + topics(program) + ")'" : " '*:file:_files'";
     cases += " ;;\n";
   }

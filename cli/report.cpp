@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "cli/calibration.hpp"
-#include "uq/report_results.hpp"
+#include "uq/findings/results_file.hpp"
 
 namespace cli {
 

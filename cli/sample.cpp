@@ -7,11 +7,11 @@
 #include "cli/calibration.hpp"
 #include "data/atomic_file.hpp"
 #include "data/random.hpp"
-#include "uq/posterior_nc.hpp"
-#include "uq/report_gnuplot.hpp"
-#include "uq/report_text.hpp"
-#include "uq/simulation_calibration.hpp"
-#include "uq/support.hpp"
+#include "uq/calibrate/posterior_nc.hpp"
+#include "uq/calibrate/simulation_calibration.hpp"
+#include "uq/findings/wording.hpp"
+#include "uq/posterior/support.hpp"
+#include "uq/report/figure_ranks.hpp"
 
 namespace cli {
 namespace {
@@ -57,6 +57,22 @@ data::ExitStatus check_width(const Common& common, const Workspace& workspace,
   return calibrated ? data::ExitStatus::done : data::ExitStatus::warning;
 }
 
+/// A line for each unknown: mean, sd, central interval, and how well the draws know it.
+std::string summary_line(const uq::NuisanceReport& unknown) {
+  const uq::Rounding rounding = uq::rounding_of(unknown.mean, unknown.sd);
+  constexpr uq::Typography ascii = uq::Typography::ascii;
+  return fmt::format("  {}: {}, 90 % {}, R-hat {:.3f}, bulk ESS {:.0f}", unknown.name,
+                     uq::format_with_error(unknown.mean, unknown.sd, unknown.unit, ascii),
+                     uq::format_interval(unknown.q05, unknown.q95, rounding, unknown.unit, ascii), unknown.rhat,
+                     unknown.ess_bulk);
+}
+
+nlohmann::json to_json(const uq::NuisanceReport& unknown) {
+  return {{"name", unknown.name},         {"unit", unknown.unit},        {"mean", unknown.mean}, {"sd", unknown.sd},
+          {"q05", unknown.q05},           {"q50", unknown.q50},          {"q95", unknown.q95},   {"rhat", unknown.rhat},
+          {"ess_bulk", unknown.ess_bulk}, {"ess_tail", unknown.ess_tail}};
+}
+
 }  // namespace
 
 Action add_sample(CLI::App& program) {
@@ -90,7 +106,12 @@ Action add_sample(CLI::App& program) {
     std::vector<std::string> lines, more;
     std::vector<uq::SupportReport> supports;
     for (std::size_t i = 0; i < study.cases.size(); ++i) {
-      const uq::SampledCase sampled = uq::sample_case(study, uq::emulators_of(fitted), i, options);
+      const uq::SampledCase sampled = [&] {
+        JobProgress progress(*common, "sampling " + study.cases[i].name);
+        uq::CalibrateOptions own = options;
+        own.nuts.progress = [&](double share) { progress("", share); };
+        return uq::sample_case(study, uq::emulators_of(fitted), i, own);
+      }();
       const std::string path = posterior_path(workspace, study.cases[i].name);
       const uq::Draws& draws = sampled.draws;
       if (!draws.chains.empty()) uq::write_posterior(path, study, sampled, study.seed);
@@ -109,9 +130,16 @@ Action add_sample(CLI::App& program) {
                             draws.ess_bulk.minCoeff(), draws.converged ? "" : ", NOT CONVERGED (" + draws.reason + ")",
                             path);
       lines.push_back(study.cases[i].name + ": " + found);
+      nlohmann::json unknowns = nlohmann::json::array();
+      for (int k = 0; k < sampled.model->dimension() && !draws.chains.empty(); ++k) {
+        const uq::NuisanceReport unknown = uq::summary_of(sampled, k);
+        lines.push_back(summary_line(unknown));
+        unknowns.push_back(to_json(unknown));
+      }
       json.push_back({{"case", study.cases[i].name},
                       {"converged", draws.converged},
                       {"file", path},
+                      {"unknowns", unknowns},
                       {"usable", draws.converged && doubts.empty()}});
     }
     write_next_runs(workspace, supports);

@@ -5,17 +5,18 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "cli/foretell.hpp"
-#include "cli/run_point.hpp"
+#include "campaign/foretell.hpp"
+#include "campaign/run_point.hpp"
+#include "cli/command.hpp"
 #include "data/file_name.hpp"
 #include "data/hash.hpp"
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
 #include "data/terminal.hpp"
-#include "dem/rig.hpp"
-#include "dem/run_file.hpp"
-#include "dem/stl.hpp"
-#include "dem/target.hpp"
+#include "dem/reading/target.hpp"
+#include "dem/rig/rig.hpp"
+#include "dem/run/run_file.hpp"
+#include "dem/walls/stl.hpp"
 
 namespace cli {
 namespace {
@@ -25,6 +26,7 @@ struct Options {
   std::string material;
   std::vector<std::string> at;
   int threads = 1;
+  int frames = 0;
   bool stl = false;
 };
 
@@ -111,6 +113,11 @@ Action add_simulate(CLI::App& program) {
   command->add_option("--threads", options->threads, "threads of this run; the result does not depend on it")
       ->check(CLI::Range(1, 256));
   add_isa_option(*command);
+  command
+      ->add_option("--frames", options->frames,
+                   "write N moments of the run, spheres and surfaces, as frames/0000.vtkhdf ... for ParaView")
+      ->check(CLI::Range(1, 10000))
+      ->type_name("N");
   command->add_flag("--stl", options->stl, "write the rig's surfaces too (mixer.stl, trough.stl)");
   return [options] {
     const data::InterruptGuard interrupt;
@@ -127,6 +134,7 @@ Action add_simulate(CLI::App& program) {
     if (path != out / "run.h5")
       notes.push_back(fmt::format("run.h5 holds another run and is kept; this one is in {}",
                                   std::filesystem::path(path).filename().string()));
+    if (options->frames > 0) make_out(workspace, "frames");
     if (options->stl) {
       for (const dem::NamedMesh& mesh : dem::rig_meshes(case_at(workspace, point)))
         dem::write_stl(mesh.mesh, (out / (data::file_name(mesh.name) + ".stl")).string());
@@ -142,6 +150,8 @@ Action add_simulate(CLI::App& program) {
       result = run_point(workspace, point,
                          {.path = path,
                           .threads = options->threads,
+                          .frames = options->frames,
+                          .frames_folder = (out / "frames").string(),
                           .stop = interrupt.token(),
                           .progress = [&](const dem::RunProgress& now) {
                             progress.set(static_cast<std::uint64_t>(std::lround(1000.0 * now.fraction)));

@@ -5,8 +5,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "cli/campaign.hpp"
-#include "cli/run_batch.hpp"
+#include "campaign/design.hpp"
+#include "campaign/run_batch.hpp"
+#include "cli/command.hpp"
 #include "cli/train_posterior.hpp"
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "cli/campaign.hpp"
-#include "cli/posterior_runs.hpp"
+#include "campaign/design.hpp"
+#include "campaign/posterior_runs.hpp"
+#include "cli/command.hpp"
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
 

@@ -1,11 +1,13 @@
-# cmake --install: the program with its studies, man page and completions (component program), and the libraries uq and
+# cmake --install: the program with its studies, man page and completions (component program), and the libraries of uq and
 # surrogate with headers and a package config (component development). cpack -G DEB makes a Debian package of each.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(TARGETS demcal RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-foreach(study developer quick other-code)
+set(without_studies)
+foreach(study developer quick other-code drum-table hydrogel)
   install(DIRECTORY data/${study} DESTINATION ${CMAKE_INSTALL_DATADIR}/demcal/data COMPONENT program)
+  list(APPEND without_studies PATTERN ${study} EXCLUDE)
 endforeach()
 install(FILES README.md docs/keys.md docs/files.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
@@ -29,11 +31,15 @@ install(FILES ${CMAKE_BINARY_DIR}/reference/demcal.bash RENAME demcal
 install(FILES ${CMAKE_BINARY_DIR}/reference/_demcal DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
         COMPONENT program)
 
-install(TARGETS demcal_flags demcal_isa demcal_data demcal_surrogate demcal_uq EXPORT demcal
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+# All of uq.
+add_library(demcal_uq INTERFACE)
+target_link_libraries(demcal_uq INTERFACE demcal_plan demcal_report)
+install(TARGETS demcal_flags demcal_isa demcal_uq demcal_data demcal_surrogate demcal_infer demcal_findings demcal_emulate
+                demcal_posterior demcal_verdict demcal_refine demcal_calibrate demcal_plan demcal_report
+        EXPORT demcal ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 foreach(folder data surrogate uq)
   install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/demcal/${folder} COMPONENT development
-          FILES_MATCHING PATTERN "*.hpp" PATTERN "developer" EXCLUDE PATTERN "quick" EXCLUDE PATTERN "other-code" EXCLUDE)
+          FILES_MATCHING PATTERN "*.hpp" ${without_studies})
 endforeach()
 set(config ${CMAKE_INSTALL_LIBDIR}/cmake/demcal)
 install(EXPORT demcal NAMESPACE demcal:: DESTINATION ${config} COMPONENT development)

@@ -173,6 +173,7 @@ Study read_study(const StudyFile& file) {
   read_rig_scale(root, study);
   const FileProblems files = read_observation_sets(root, study);
   read_cases(root, study);
+  read_predictions(root, study);
   for (const Section& section : root.array("calibrate")) check_file_name(section, section.text("name"));
 
   if (!files.problems.empty()) {

@@ -1,6 +1,6 @@
 #pragma once
 // What a study says about parameters, controls, outputs, observations and cases. The sections [rig], [materials.*]
-// beyond `fixed` and `runs`, [contact] and [run] belong to the DEM (dem/read_case.cpp).
+// beyond `fixed` and `runs`, [contact] and [run] belong to the DEM (dem/reading/read_case.cpp).
 // All numbers are SI; a Unit beside them is for display only.
 #include <cstdint>
 #include <map>
@@ -9,12 +9,11 @@
 #include <string_view>
 #include <vector>
 
+#include "data/axis.hpp"
 #include "data/study_file.hpp"
 #include "data/unit.hpp"
 
 namespace data {
-
-enum class Scale { linear, log };
 
 enum class PriorKind { uniform, normal, truncated_normal, log_normal, beta, posterior };
 
@@ -45,6 +44,7 @@ struct Parameter {
   Scale scale = Scale::linear;
   Prior prior;
   std::string place;
+  Axis axis() const { return {low, high, scale}; }
 };
 
 /// A standard error: the root of the sum of the squares of its two parts.
@@ -72,6 +72,7 @@ struct Control {
   double high = 1.0;                        ///< SI
   std::optional<SettingError> uncertainty;  ///< of every observation set that does not state its own
   std::string place;
+  Axis axis() const { return {low, high}; }
 };
 
 struct Output {
@@ -165,6 +166,14 @@ struct CalibrationCase {
   std::string place;
 };
 
+/// Observation sets that a case does not use, held against what it predicts of them.
+struct Prediction {
+  std::string name;
+  std::size_t case_index = 0;  ///< into Study::cases
+  std::vector<std::string> observe;
+  std::string place;
+};
+
 /// What the machine's torque is to the slice's: a number, or unknown with a prior.
 struct RigScale {
   double value = 1.0;
@@ -186,6 +195,7 @@ struct Study {
   std::optional<RigScale> scale;  ///< [rig] scale
   std::vector<ObservationSet> observations;
   std::vector<CalibrationCase> cases;
+  std::vector<Prediction> predictions;
 
   std::optional<std::size_t> parameter_index(std::string_view parameter_name) const;
   std::optional<std::size_t> observation_index(std::string_view set_name) const;

@@ -1,4 +1,4 @@
-// [[calibrate]]: what each case names must exist, and together `free`, `fixed` and what the observed materials fix
+// [[calibrate]] and [[predict]]: what each case names must exist, and together `free`, `fixed` and what the observed materials fix
 // themselves must give every parameter exactly one role.
 #include <fmt/format.h>
 
@@ -157,6 +157,44 @@ void check_posteriors(const Section& section, const CalibrationCase& item, const
   }
 }
 
+/// The sets that inform a case's posterior: its own, and those of the cases whose posteriors are its priors.
+std::set<std::string> informing(const CalibrationCase& item, const Study& study) {
+  std::set<std::string> sets, visited;
+  std::vector<std::string> ahead{item.name};
+  while (!ahead.empty()) {
+    const std::string name = ahead.back();
+    ahead.pop_back();
+    if (!visited.insert(name).second) continue;
+    for (const CalibrationCase& one : study.cases) {
+      if (one.name != name) continue;
+      sets.insert(one.observe.begin(), one.observe.end());
+      for (const auto& [unused, prior] : one.priors)
+        if (prior.kind == PriorKind::posterior) ahead.push_back(prior.posterior_of);
+    }
+  }
+  return sets;
+}
+
+/// What is predicted must not have been used, and must be read by what the case knows.
+void check_prediction(const Section& section, const Prediction& wanted, const Study& study) {
+  const CalibrationCase& item = study.cases[wanted.case_index];
+  const std::set<std::string> used = informing(item, study);
+  for (const std::string& name : wanted.observe) {
+    if (used.count(name) > 0)
+      section.problem("observe",
+                      fmt::format("'{}' informs the case '{}' itself, so nothing is foretold", name, item.name),
+                      "name a set that the case does not observe");
+    const auto index = study.observation_index(name);
+    if (!index) continue;
+    for (const SettingError& error : study.observations[*index].setting_errors)
+      if (error.unknown)
+        section.problem("observe",
+                        fmt::format("'{}' has a setting error that is an unknown of its own ({})", name,
+                                    study.controls[error.control].name),
+                        "set as = \"covariance\" in its uncertainty");
+  }
+}
+
 }  // namespace
 
 void read_cases(const Section& root, Study& study) {
@@ -195,6 +233,27 @@ void read_cases(const Section& root, Study& study) {
   for (std::size_t i = 0; i < sections.size(); ++i) {
     check_roles(sections[i], study.cases[i], study);
     check_posteriors(sections[i], study.cases[i], study);
+  }
+}
+
+void read_predictions(const Section& root, Study& study) {
+  std::vector<std::string> cases, observations;
+  for (const CalibrationCase& item : study.cases) cases.push_back(item.name);
+  for (const ObservationSet& set : study.observations) observations.push_back(set.name);
+  for (const Section& section : root.array("predict")) {
+    Prediction wanted{
+        .name = section.text("name"), .observe = section.texts("observe", true), .place = section.place()};
+    check_names(section, "observe", wanted.observe, {"the name of an [[observe]]", observations});
+    const std::string of = cases.size() == 1 ? section.text("case", cases.front()) : section.text("case");
+    check_names(section, "case", {of}, {"the name of a [[calibrate]]", cases});
+    const auto found = std::find(cases.begin(), cases.end(), of);
+    for (const Prediction& other : study.predictions)
+      if (other.name == wanted.name)
+        section.problem("name", fmt::format("'{}' is taken", wanted.name), "give each prediction its own name");
+    if (found == cases.end()) continue;
+    wanted.case_index = static_cast<std::size_t>(found - cases.begin());
+    check_prediction(section, wanted, study);
+    study.predictions.push_back(std::move(wanted));
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // A study.toml in which every key that is asked for counts as used, and every key that nobody asked for is an
-// error with its line. Readers (data/study.cpp, dem/read_case.cpp) ask; problems are collected, not thrown, so
+// error with its line. Readers (data/study.cpp, dem/reading/read_case.cpp) ask; problems are collected, not thrown, so
 // that one pass reports them all.
 #include <limits>
 #include <map>

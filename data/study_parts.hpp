@@ -44,5 +44,6 @@ std::map<std::string, double> read_settings(const Section& section, const Study&
 std::vector<Nuisance> read_nuisances(const Section& section, const Study& study);
 
 void read_cases(const Section& root, Study& study);
+void read_predictions(const Section& root, Study& study);
 
 }  // namespace data

@@ -32,8 +32,8 @@
 
 #ifdef WITH_SAMPLER
 #include "tests/uq/closed_form.hpp"
-#include "uq/mixture_sampler.hpp"
-#include "uq/posterior.hpp"
+#include "uq/infer/mixture_sampler.hpp"
+#include "uq/posterior/posterior.hpp"
 #endif
 
 namespace {

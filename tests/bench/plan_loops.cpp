@@ -12,7 +12,7 @@
 #include <cstdlib>
 
 #include "data/random.hpp"
-#include "tests/uq/plan/formula_study.hpp"
+#include "tests/uq/formula_study.hpp"
 #include "uq/plan/plan.hpp"
 
 namespace {

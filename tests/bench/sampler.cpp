@@ -18,8 +18,8 @@
 #include "surrogate/design.hpp"
 #include "surrogate/fit.hpp"
 #include "tests/uq/closed_form.hpp"
-#include "uq/mixture_sampler.hpp"
-#include "uq/posterior.hpp"
+#include "uq/infer/mixture_sampler.hpp"
+#include "uq/posterior/posterior.hpp"
 
 namespace {
 

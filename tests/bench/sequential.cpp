@@ -18,8 +18,8 @@
 #include "data/random.hpp"
 #include "surrogate/design.hpp"
 #include "surrogate/fit.hpp"
-#include "uq/next_runs.hpp"
-#include "uq/posterior.hpp"
+#include "uq/posterior/posterior.hpp"
+#include "uq/refine/next_runs.hpp"
 
 namespace {
 

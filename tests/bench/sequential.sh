@@ -16,10 +16,6 @@ if [ "${1:-}" = --puq ]; then
   (cd "$folder" && /usr/bin/python3 setup.py -q build_ext --inplace)
   puq=(--puq "$folder")
 fi
-cmake --build "$build" --target demcal_uq
-march=$(grep -o -m 1 -- '-march=[^ "]*' "$build/compile_commands.json")  # as the library was compiled
-g++ -std=c++20 -O2 "$march" -I "$root" $(pkg-config --cflags eigen3) "$root/tests/bench/sequential.cpp" \
-  "$build/uq/libdemcal_uq.a" "$build/surrogate/libdemcal_surrogate.a" "$build/data/libdemcal_data.a" \
-  $(pkg-config --libs gsl nlopt hdf5 netcdf libxxhash fmt) -ludunits2 -ltomlplusplus -o "$build/bench_sequential"
+cmake --build "$build" --target bench_sequential
 export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
-exec /usr/bin/python3 "$root/tests/bench/sequential.py" "$build/bench_sequential" "${puq[@]}" "$@"
+exec /usr/bin/python3 "$root/tests/bench/sequential.py" "$build/tests/bench/bench_sequential" "${puq[@]}" "$@"

@@ -7,9 +7,5 @@ build=${1:?usage: surrogate.sh BUILD_FOLDER [options]}
 shift
 source "$root/tests/bench/peers.sh"
 install_peers python3-sklearn python3-openturns python3-scipy libopenblas0-pthread  # OpenBLAS: the peers at their best
-cmake --build "$build" --target demcal_surrogate
-march=$(grep -o -m 1 -- '-march=[^ "]*' "$build/compile_commands.json")  # as the library was compiled
-g++ -std=c++20 -O2 "$march" -I "$root" $(pkg-config --cflags eigen3) "$root/tests/bench/surrogate.cpp" \
-  "$build/surrogate/libdemcal_surrogate.a" "$build/data/libdemcal_data.a" \
-  $(pkg-config --libs gsl nlopt hdf5 libxxhash fmt) -o "$build/bench_surrogate"
-exec /usr/bin/python3 "$root/tests/bench/surrogate.py" "$build/bench_surrogate" "$@"
+cmake --build "$build" --target bench_surrogate
+exec /usr/bin/python3 "$root/tests/bench/surrogate.py" "$build/tests/bench/bench_surrogate" "$@"

@@ -65,8 +65,8 @@ TEST_CASE("another code's runs give a whole calibration: report, results and pos
   CHECK(report["format"] == 1);
   CHECK(report["cases"].size() == 1);
   for (const char* file : {"report.html", "report.json", "results.json", "surrogate.h5", "posterior-powder.nc"})
-    CHECK(fs::exists(folder.path / "other-code" / file));
-  CHECK(nlohmann::json::parse(folder.read("other-code/report.json"))["cases"] == report["cases"]);
+    CHECK(fs::exists(folder.path / "other-code-results" / file));
+  CHECK(nlohmann::json::parse(folder.read("other-code-results/report.json"))["cases"] == report["cases"]);
 
   // The data trade friction for cohesion: the truth (its file's header) lies inside, and neither is called identified.
   const nlohmann::json& friction = report["cases"][0]["parameters"][0];
@@ -75,10 +75,10 @@ TEST_CASE("another code's runs give a whole calibration: report, results and pos
   CHECK(friction["verdict"] != "identified");
 
   SECTION("the report is written again without sampling, and is the same page") {
-    const std::string page = folder.read("other-code/report.html");
-    fs::remove(folder.path / "other-code" / "report.html");
+    const std::string page = folder.read("other-code-results/report.html");
+    fs::remove(folder.path / "other-code-results" / "report.html");
     CHECK(folder.demcal({"report", DEMCAL_SOURCE_DIR "/data/other-code"}).status == 0);
-    CHECK(folder.read("other-code/report.html") == page);
+    CHECK(folder.read("other-code-results/report.html") == page);
   }
 }
 
@@ -106,13 +106,13 @@ TEST_CASE("training runs are interrupted, go on where they were, and give the ta
                                            "--set",  "run.longest=\"0.4 s\"",
                                            "--set",  "training.unsteady=\"use\""};
   CHECK(whole.demcal(arguments).status == 0);
-  CHECK(halted.demcal(arguments, "quick/runs").status == 75);
+  CHECK(halted.demcal(arguments, "quick-results/runs").status == 75);
   const auto rest = halted.demcal(arguments);
   INFO(rest.err);
   CHECK(rest.status == 0);
   const auto by_point = [](const Folder& folder) {
     std::map<std::string, std::string> torque;
-    for (const Row& row : read_rows(folder.path / "quick" / "training.csv"))
+    for (const Row& row : read_rows(folder.path / "quick-results" / "training.csv"))
       torque[row.field.at("friction") + " " + row.field.at("hamaker") + " " + row.field.at("rpm")] =
           row.field.at("torque");
     return torque;

@@ -167,11 +167,11 @@ TEST_CASE("a terminal that is full or closed loses no result, and a result that 
   make_study(folder);
   for (const char* streams : {"2>/dev/full", "2>&-", "2>&- >&-"}) {
     INFO(streams);
-    fs::remove_all(folder.path / "other-code");
+    fs::remove_all(folder.path / "other-code-results");
     const auto outcome = folder.shell(std::string("\"$demcal\" calibrate study ") + streams);
     CHECK((outcome.status == 0 || outcome.status == 2));
-    CHECK(fs::exists(folder.path / "other-code/results.json"));
-    CHECK(fs::exists(folder.path / "other-code/report.html"));
+    CHECK(fs::exists(folder.path / "other-code-results/results.json"));
+    CHECK(fs::exists(folder.path / "other-code-results/report.html"));
   }
   for (const char* streams : {">/dev/full", ">&-"}) {
     const auto outcome = folder.shell(std::string("\"$demcal\" check study --json ") + streams);
@@ -232,13 +232,13 @@ TEST_CASE(
 TEST_CASE("a results folder is one calibration's at a time, and the second is told whose") {
   const Folder folder;
   make_study(folder);
-  const data::FolderLock lock((folder.path / "other-code").string(), "results", "demcal calibrate");
+  const data::FolderLock lock((folder.path / "other-code-results").string(), "results", "demcal calibrate");
   for (const char* command : {"calibrate", "fit", "sample"}) {
     const auto outcome = folder.demcal({command, "study"});
     CHECK(outcome.status == 73);
     CHECK_THAT(outcome.err, Contains(fmt::format("is in use by process {}", getpid())) && Contains("demcal calibrate"));
   }
-  const data::FolderLock training((folder.path / "quick").string(), "training", "demcal train");
+  const data::FolderLock training((folder.path / "quick-results").string(), "training", "demcal train");
   CHECK(folder.demcal({"train", DEMCAL_SOURCE_DIR "/data/quick"}).status == 73);
 }
 
@@ -252,12 +252,12 @@ TEST_CASE("damage to a saved result is found, named and made good where it can b
     bytes[at % bytes.size()] = static_cast<char>(bytes[at % bytes.size()] ^ 4);
     folder.write(file, bytes);
   };
-  const std::size_t middle = folder.read("other-code/results.json").size() / 2;
-  flip("other-code/results.json", middle);
+  const std::size_t middle = folder.read("other-code-results/results.json").size() / 2;
+  flip("other-code-results/results.json", middle);
   const auto report = folder.demcal({"report", "study"});
   CHECK(report.status == 65);
   CHECK_THAT(report.err, Contains("results.json") && Contains("is damaged"));
-  flip("other-code/surrogate.h5", folder.read("other-code/surrogate.h5").size() / 2);
+  flip("other-code-results/surrogate.h5", folder.read("other-code-results/surrogate.h5").size() / 2);
   const auto again = folder.demcal({"calibrate", "study", "--json"});
   CHECK(again.status == first.status);
   CHECK_THAT(again.err, Contains("surrogate.h5 is fitted again"));
@@ -271,12 +271,12 @@ TEST_CASE("a full disk ends no command with a signal: the file is named, and not
   // A limit on the size of files stands for the disk: the n-th kilobyte is the one that does not fit.
   for (const int kilobytes : {1, 4, 12, 40, 120}) {
     INFO(kilobytes);
-    fs::remove_all(folder.path / "other-code");
+    fs::remove_all(folder.path / "other-code-results");
     const auto outcome =
         folder.shell(fmt::format("(ulimit -f {}; exec \"$demcal\" calibrate study --quiet)", 2 * kilobytes));
     INFO(outcome.err);
     CHECK((outcome.status == 73 || outcome.status == 0 || outcome.status == 2));
-    if (outcome.status == 73) CHECK_THAT(outcome.err, Contains("other-code/") && Contains("cannot be written"));
+    if (outcome.status == 73) CHECK_THAT(outcome.err, Contains("other-code-results/") && Contains("cannot be written"));
     for (const std::string& name : names_in(folder.path)) CHECK_FALSE(name.ends_with(".tmp"));
   }
 }

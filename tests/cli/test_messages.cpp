@@ -171,7 +171,7 @@ TEST_CASE(
     CHECK_THAT(outcome.err, Contains("--sampler") && Contains("gibbs") && Contains("mixture") && Contains("nuts"));
   }
   CHECK(folder.demcal({"sample", study, "--sbc"}).status == 64);
-  CHECK_FALSE(std::filesystem::exists(folder.path / "other-code"));
+  CHECK_FALSE(std::filesystem::exists(folder.path / "other-code-results"));
 }
 
 TEST_CASE("an instruction set that does not exist is refused with those that do") {

@@ -86,7 +86,7 @@ TEST_CASE("points for another code are listed until the surrogate hides little o
     if (round == 0) before = share;
     enough = json["points"] == 0;
     CHECK(enough == (share <= 0.04));
-    if (!enough) CHECK(run_listed(folder.path / "other-code" / "next-runs.csv", study / "runs.csv") == 6);
+    if (!enough) CHECK(run_listed(folder.path / "other-code-results" / "next-runs.csv", study / "runs.csv") == 6);
   }
   CHECK(before > 0.04);
   CHECK(enough);
@@ -101,7 +101,7 @@ TEST_CASE("a posterior is confirmed by another code's runs, or is not and says w
   INFO(asked.err);
   CHECK(asked.status == 0);
   CHECK(asked.err.find("6 points to run with your code") != std::string::npos);
-  CHECK(run_listed(folder.path / "other-code" / "verify-runs.csv", study / "runs.csv", wrong) == 6);
+  CHECK(run_listed(folder.path / "other-code-results" / "verify-runs.csv", study / "runs.csv", wrong) == 6);
   const auto told = folder.demcal(arguments);
   INFO(told.err);
   const auto verification = nlohmann::json::parse(told.out)["cases"][0]["verification"];
@@ -110,11 +110,11 @@ TEST_CASE("a posterior is confirmed by another code's runs, or is not and says w
   CHECK(verification[0]["points"] == 2);
   CHECK(verification[0]["agrees"] == (wrong == 1.0));
   CHECK(told.status == (wrong == 1.0 ? 0 : 2));
-  const std::string page = folder.read("other-code/report.html");
+  const std::string page = folder.read("other-code-results/report.html");
   CHECK(page.find(wrong == 1.0 ? "Confirmed by 6 runs of your code at 2 points" : "Not confirmed by 6 runs") !=
         std::string::npos);
   // The runs have joined the table: the list is gone.
-  CHECK_FALSE(fs::exists(folder.path / "other-code" / "verify-runs.csv"));
+  CHECK_FALSE(fs::exists(folder.path / "other-code-results" / "verify-runs.csv"));
 }
 
 TEST_CASE("training around the posterior is interrupted, goes on, and makes the runs of one that was not", "[slow]") {
@@ -131,13 +131,13 @@ TEST_CASE("training around the posterior is interrupted, goes on, and makes the 
   const auto all = whole.demcal(arguments);
   INFO(all.err);
   CHECK(all.status == 0);
-  CHECK(halted.demcal(arguments, "quick/runs").status == 75);
+  CHECK(halted.demcal(arguments, "quick-results/runs").status == 75);
   const auto rest = halted.demcal(arguments);
   INFO(rest.err);
   CHECK(rest.status == 0);
   const auto by_point = [](const Folder& folder) {
     std::map<std::string, std::string> found;
-    for (const auto& row : read_csv(folder.path / "quick" / "training.csv").rows)
+    for (const auto& row : read_csv(folder.path / "quick-results" / "training.csv").rows)
       found[row.at("friction") + " " + row.at("hamaker") + " " + row.at("rpm") + " " + row.at("seed")] =
           row.at("torque");
     return found;

@@ -65,5 +65,5 @@ TEST_CASE("a fixed value of any number of digits is the same point in the design
   const int points = nlohmann::json::parse(first.out)["points"];
   CHECK(points > 0);
   CHECK(nlohmann::json::parse(second.out)["points"] == points);
-  CHECK_THAT(folder.read("quick/design.csv"), Contains("2.345678e-18"));
+  CHECK_THAT(folder.read("quick-results/design.csv"), Contains("2.345678e-18"));
 }

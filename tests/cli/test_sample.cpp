@@ -59,7 +59,7 @@ TEST_CASE("the width of the posterior is checked for every parameter, in words, 
   INFO(outcome.err);
   const nlohmann::json told = nlohmann::json::parse(outcome.out)["cases"][0];
   CHECK(outcome.status == (told["calibrated"].get<bool>() ? 0 : 2));
-  const nlohmann::json found = nlohmann::json::parse(folder.read("other-code/sbc-powder.json"));
+  const nlohmann::json found = nlohmann::json::parse(folder.read("other-code-results/sbc-powder.json"));
   CHECK(found["calibrated"] == told["calibrated"]);
   CHECK(found["replicates"] == 20);
   REQUIRE(found["unknowns"].size() == 2);
@@ -71,10 +71,10 @@ TEST_CASE("the width of the posterior is checked for every parameter, in words, 
                                 Contains("OUTSIDE"));
   }
   CHECK_THAT(outcome.err, Contains("90 % intervals cover") && Contains("+- 6.7 %"));
-  CHECK(fs::exists(folder.path / "other-code" / "figures" / "sbc-powder.svg"));
-  CHECK_FALSE(fs::exists(folder.path / "other-code" / "posterior-powder.nc"));
+  CHECK(fs::exists(folder.path / "other-code-results" / "figures" / "sbc-powder.svg"));
+  CHECK_FALSE(fs::exists(folder.path / "other-code-results" / "posterior-powder.nc"));
   // The same seed, the same ranks.
   REQUIRE(folder.demcal({"sample", study, "--sbc", "20", "--seed", "4", "--out", "again", "--quiet"}).status ==
           outcome.status);
-  CHECK(folder.read("again/sbc-powder.json") == folder.read("other-code/sbc-powder.json"));
+  CHECK(folder.read("again/sbc-powder.json") == folder.read("other-code-results/sbc-powder.json"));
 }

@@ -1,5 +1,5 @@
 // The sign of a mesh's torque: that of what its drive supplies, by how far the mesh turns over the measured window.
-#include "dem/drive.hpp"
+#include "dem/rig/drive.hpp"
 
 #include <catch2/catch.hpp>
 

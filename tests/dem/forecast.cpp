@@ -1,12 +1,12 @@
 // What is said of a rig before it runs: how full it is, which gaps pinch, and what makes its run nonsense. The rigs are
 // boxes, whose volumes and gaps are known by arithmetic.
-#include "dem/forecast.hpp"
+#include "dem/forecast/forecast.hpp"
 
 #include <catch2/catch.hpp>
 
-#include "dem/derived.hpp"
-#include "dem/slice.hpp"
-#include "dem/target.hpp"
+#include "dem/bed/derived.hpp"
+#include "dem/reading/target.hpp"
+#include "dem/rig/slice.hpp"
 
 using Catch::Contains;
 

@@ -6,10 +6,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "dem/derived.hpp"
-#include "dem/mesh.hpp"
-#include "dem/rig.hpp"
-#include "dem/simulation.hpp"
+#include "dem/bed/derived.hpp"
+#include "dem/bed/setup.hpp"
+#include "dem/engine/simulation.hpp"
+#include "dem/rig/rig.hpp"
+#include "dem/walls/mesh.hpp"
 
 namespace scene {
 

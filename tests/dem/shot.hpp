@@ -9,7 +9,7 @@
 #include <numbers>
 #include <string>
 
-#include "dem/collision.hpp"
+#include "dem/contact/collision.hpp"
 #include "scene.hpp"
 
 namespace scene {

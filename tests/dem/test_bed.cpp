@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "data/error.hpp"
-#include "dem/target.hpp"
+#include "dem/reading/target.hpp"
 #include "scene.hpp"
 
 namespace {

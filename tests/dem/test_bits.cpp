@@ -2,7 +2,7 @@
 // contact laws and for a mixture.
 #include "data/provenance.hpp"
 #include "data/random.hpp"
-#include "dem/isa.hpp"
+#include "dem/contact/isa.hpp"
 #include "families.hpp"
 
 namespace {

@@ -3,8 +3,8 @@
 #include <numeric>
 
 #include "data/random.hpp"
-#include "dem/rig.hpp"
-#include "dem/slice.hpp"
+#include "dem/rig/rig.hpp"
+#include "dem/rig/slice.hpp"
 #include "shot.hpp"
 
 namespace {

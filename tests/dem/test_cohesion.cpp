@@ -1,7 +1,7 @@
 // The attraction of Tanaka et al., PARTICLES 2011, eq. (1) and the coarse-grain rule eq. (2).
 #include <catch2/catch.hpp>
 
-#include "dem/forces/compose.hpp"
+#include "dem/contact/forces/compose.hpp"
 #include "scene.hpp"
 
 TEST_CASE("the Bond number at 2.0e-18 J on 0.8 mm zirconia is 52, 8.3 and 0.5 for h_min 0.4, 1 and 4 nm") {

@@ -1,7 +1,7 @@
 // Conservation in the simulation: momentum (test_slice.cpp has it in a periodic gas), angular momentum, and energy:
 // kinetic + elastic + gravity + attraction grows by the work of the tools less what contacts dissipate.
 #include "data/random.hpp"
-#include "dem/rig.hpp"
+#include "dem/rig/rig.hpp"
 #include "families.hpp"
 
 namespace {

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "data/error.hpp"
-#include "dem/read_case.hpp"
-#include "dem/target.hpp"
+#include "dem/reading/read_case.hpp"
+#include "dem/reading/target.hpp"
 #include "tests/temporary.hpp"
 
 namespace {

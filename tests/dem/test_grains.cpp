@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "dem/grains.hpp"
-#include "dem/run.hpp"
-#include "dem/slice.hpp"
-#include "dem/target.hpp"
+#include "dem/case/grains.hpp"
+#include "dem/reading/target.hpp"
+#include "dem/rig/slice.hpp"
+#include "dem/run/run.hpp"
 #include "scene.hpp"
 
 namespace {

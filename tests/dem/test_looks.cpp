@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "data/random.hpp"
-#include "dem/run.hpp"
+#include "dem/run/run.hpp"
 
 namespace {
 

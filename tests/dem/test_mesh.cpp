@@ -4,9 +4,9 @@
 #include <cstring>
 
 #include "data/error.hpp"
-#include "dem/mesh_check.hpp"
-#include "dem/slice.hpp"
-#include "dem/stl.hpp"
+#include "dem/rig/slice.hpp"
+#include "dem/walls/mesh_check.hpp"
+#include "dem/walls/stl.hpp"
 #include "tests/temporary.hpp"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "data/random.hpp"
-#include "dem/order.hpp"
+#include "dem/engine/order.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // A contact deeper than the laws are meant for ends the run; shallower ones are counted.
 #include <catch2/catch.hpp>
 
-#include "dem/run.hpp"
+#include "dem/run/run.hpp"
 #include "scene.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "dem/target.hpp"
+#include "dem/reading/target.hpp"
 #include "scene.hpp"
 
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "data/error.hpp"
-#include "dem/read_case.hpp"
-#include "dem/run_file.hpp"
-#include "dem/target.hpp"
+#include "dem/reading/read_case.hpp"
+#include "dem/reading/target.hpp"
+#include "dem/run/run_file.hpp"
 #include "tests/temporary.hpp"
 
 namespace {

@@ -3,9 +3,9 @@
 
 #include "data/error.hpp"
 #include "data/random.hpp"
-#include "dem/run.hpp"
-#include "dem/slice.hpp"
-#include "dem/target.hpp"
+#include "dem/reading/target.hpp"
+#include "dem/rig/slice.hpp"
+#include "dem/run/run.hpp"
 #include "scene.hpp"
 
 namespace {

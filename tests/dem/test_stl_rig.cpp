@@ -2,12 +2,13 @@
 #include <catch2/catch.hpp>
 
 #include "data/error.hpp"
-#include "dem/read_case.hpp"
-#include "dem/run.hpp"
-#include "dem/slice.hpp"
-#include "dem/stl.hpp"
-#include "dem/stl_rig.hpp"
-#include "dem/target.hpp"
+#include "dem/bed/setup.hpp"
+#include "dem/case/stl_rig.hpp"
+#include "dem/reading/read_case.hpp"
+#include "dem/reading/target.hpp"
+#include "dem/rig/slice.hpp"
+#include "dem/run/run.hpp"
+#include "dem/walls/stl.hpp"
 #include "scene.hpp"
 #include "tests/temporary.hpp"
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "dem/team.hpp"
+#include "dem/engine/team.hpp"
 
 TEST_CASE("a team calls each item once in every pass, however many members and items") {
   for (const int members : {1, 2, 5}) {

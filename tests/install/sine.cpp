@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "surrogate/fit.hpp"
-#include "uq/diagnostics.hpp"
+#include "uq/infer/diagnostics.hpp"
 
 int main() {
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(9, 0.0, 1.0);

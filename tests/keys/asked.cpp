@@ -3,12 +3,13 @@
 #include <regex>
 
 #include "data/error.hpp"
+#include "data/plan.hpp"
 #include "data/study.hpp"
-#include "dem/read_case.hpp"
-#include "dem/slice.hpp"
-#include "dem/stl.hpp"
+#include "dem/reading/read_case.hpp"
+#include "dem/rig/slice.hpp"
+#include "dem/walls/stl.hpp"
 #include "tests/temporary.hpp"
-#include "uq/surrogate_settings.hpp"
+#include "uq/emulate/surrogate_settings.hpp"
 
 namespace keys {
 namespace {
@@ -108,6 +109,26 @@ observe = ["bench2"]
 free = ["NAME"]
 noise = "unknown"
 discrepancy = true
+[[predict]]
+name = "one"
+case = "one"
+observe = ["bench2"]
+[plan]
+about = "NAME"
+cost_unit = "h"
+[[plan.candidates]]
+name = "one"
+material = "NAME"
+outputs = ["NAME7"]
+settings = { NAME6 = 200, NAME8 = [200] }
+together = true
+readings = 2
+error = "3 %"
+common_error = "1 %"
+cost = 2
+[[plan.candidates]]
+name = "two"
+settings = { NAME6 = [100, 200] }
 [contact]
 normal = "linear"
 tangential = "linear"
@@ -250,6 +271,7 @@ void collect(const std::string& text, Asked& all) {
   const data::StudyFile file = data::StudyFile::open(folder.path());
   const data::Study study = data::read_study(file);
   uq::read_surrogate_options(file, study);
+  data::read_plan(file, study);
   for (const data::Material& material : study.materials) dem::read_case(file, material.name);
   for (const auto& [name, how] : file.asked()) {
     const auto [known, is_new] = all.asked.emplace(reference_name(name), how);
@@ -268,7 +290,9 @@ void collect(const std::string& text, Asked& all) {
 std::string reference_name(const std::string& dotted) {
   std::string name = std::regex_replace(dotted, std::regex("NAME[0-9]+"), "NAME");
   name = std::regex_replace(name, std::regex("\\.[0-9]+(?=\\.|$)"), "");
-  name = std::regex_replace(name, std::regex("^(observe|calibrate|rig\\.mesh)\\.(bench2|bench|one|two|mixer)"), "$1");
+  name = std::regex_replace(
+      name, std::regex("^(observe|calibrate|rig\\.mesh|plan\\.candidates|predict)\\.(bench2|bench|one|two|mixer)"),
+      "$1");
   name = std::regex_replace(name, std::regex("^materials\\.NAME\\.contact\\."), "contact.");
   // Priors have the same keys wherever they stand.
   name = std::regex_replace(name,

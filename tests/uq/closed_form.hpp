@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "data/random.hpp"
-#include "uq/case_model.hpp"
+#include "uq/posterior/case_model.hpp"
 
 namespace closed_form {
 
@@ -63,7 +63,7 @@ inline uq::CaseModel make_case(const std::vector<Unknown>& unknowns, const Formu
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
       Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
       for (std::size_t k = 0; k < parameters.size(); ++k)
-        values[static_cast<Eigen::Index>(k)] = uq::from_scaled(parameters[k], points(i, static_cast<Eigen::Index>(k)));
+        values[static_cast<Eigen::Index>(k)] = parameters[k].axis().from_unit(points(i, static_cast<Eigen::Index>(k)));
       found.mean[i] = formula(values, points(i, points.cols() - 1));
     }
     return found;

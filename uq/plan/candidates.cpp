@@ -7,15 +7,14 @@
 #include <set>
 
 #include "data/error.hpp"
-#include "uq/posterior.hpp"
+#include "uq/posterior/more_data.hpp"
+#include "uq/posterior/posterior.hpp"
 
 namespace uq::plan {
 namespace {
 
 using data::Study;
 using Eigen::Index;
-
-constexpr std::size_t rows_most = 120;  // of the data in the model of what they leave open
 
 const Emulator* emulator_of(const std::vector<Emulator>& emulators, const std::string& material, std::size_t output) {
   for (const Emulator& one : emulators)
@@ -295,33 +294,6 @@ class Entry {
   std::vector<data::Problem>& problems_;
 };
 
-/// Points measured again at the same controls become one, and of very many some stand for all.
-void condense(data::ObservationSet& set) {
-  std::map<std::vector<double>, std::vector<const data::Observation*>> at;
-  for (const data::Observation& point : set.points) at[point.controls].push_back(&point);
-  std::vector<data::Observation> points;
-  for (const auto& [controls, same] : at) {
-    data::Observation one = *same.front();
-    for (std::size_t c = 0; c < one.values.size(); ++c) {
-      double weight = 0.0, sum = 0.0;
-      for (const auto* point : same) {
-        const double w = 1.0 / std::pow(point->standard_errors[c], 2);
-        weight += w;
-        sum += w * point->values[c];
-      }
-      one.values[c] = sum / weight;
-      one.standard_errors[c] = 1.0 / std::sqrt(weight);
-    }
-    points.push_back(std::move(one));
-  }
-  if (points.size() > rows_most) {
-    std::vector<data::Observation> some;
-    for (std::size_t i = 0; i < rows_most; ++i) some.push_back(points[i * (points.size() - 1) / (rows_most - 1)]);
-    points = std::move(some);
-  }
-  set.points = std::move(points);
-}
-
 /// A set of the case that reads this output alone with the candidate's meter, so that its errors are shared.
 std::optional<std::size_t> host_of(const Study& study, const std::vector<std::size_t>& sets, const Candidate& candidate,
                                    std::size_t output) {
@@ -410,16 +382,8 @@ ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, 
       }
     }
   }
-  ExtendedCase found{.model = build_case(wider, emulators, case_index), .measured = {}, .planned = {}};
+  ExtendedCase found{.model = with_more_data(wider, emulators, case_index, sampled), .measured = {}, .planned = {}};
   CaseModel& model = found.model;
-  model.slots = sampled.slots;  // with the laws of unknowns that were cut from another case
-  model.distinct.reset();
-  for (RowGroup& group : model.groups)
-    for (const RowGroup& other : sampled.groups)
-      if (other.emulator.material == group.emulator.material && other.emulator.output == group.emulator.output)
-        for (std::size_t k = 0; k < other.measurement.discrepancies.size(); ++k)
-          group.measurement.discrepancies.at(k).magnitude = other.measurement.discrepancies[k].magnitude;
-
   const StackedPrediction prediction = predict(model, u);
   found.planned.resize(candidates.size());
   found.absolute = found.relative = Eigen::VectorXd::Zero(prediction.mean.size());

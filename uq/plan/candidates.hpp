@@ -7,7 +7,7 @@
 
 #include "data/plan.hpp"
 #include "data/study.hpp"
-#include "uq/case_model.hpp"
+#include "uq/posterior/case_model.hpp"
 
 namespace uq::plan {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "data/random.hpp"
-#include "uq/acquire.hpp"
-#include "uq/posterior.hpp"
+#include "uq/posterior/posterior.hpp"
+#include "uq/refine/acquire.hpp"
 
 namespace uq::plan {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "surrogate/design.hpp"
-#include "uq/parallel.hpp"
-#include "uq/posterior.hpp"
+#include "uq/infer/parallel.hpp"
+#include "uq/posterior/posterior.hpp"
 
 namespace uq::plan {
 
@@ -21,8 +21,7 @@ Outlook::Outlook(const ExtendedCase& extended, const MatrixXd& draws, Given give
   for (const auto& rows : extended.planned) planned.insert(planned.end(), rows.begin(), rows.end());
   std::sort(planned.begin(), planned.end());
   for (std::size_t i = 0; i < planned.size(); ++i) place_[static_cast<std::size_t>(planned[i])] = static_cast<Index>(i);
-  const std::vector<Index>& measured = extended.measured;
-  const VectorXd y = observed(model)(measured);
+  const VectorXd y = observed(model);
 
   values_.resize(draws.rows(), model.own_count());
   for (Index i = 0; i < draws.rows(); ++i)
@@ -33,18 +32,8 @@ Outlook::Outlook(const ExtendedCase& extended, const MatrixXd& draws, Given give
   laws_.resize(static_cast<std::size_t>(draws.rows()));
   for_each_index(static_cast<int>(draws.rows()), threads, [&](int job) {
     const StackedPrediction all = predict(model, draws.row(job).transpose());
-    ReadingLaw law{all.mean(planned), all.covariance(planned, planned),
-                   extended.noise_at(all.mean, all.noise)(planned)};
-    if (given == Given::data && !measured.empty()) {
-      MatrixXd among = all.covariance(measured, measured);
-      among.diagonal() += all.noise(measured);
-      const Eigen::LLT<MatrixXd> factor(among);
-      if (factor.info() == Eigen::Success) {
-        const MatrixXd between = all.covariance(measured, planned);
-        law.mean += between.transpose() * factor.solve(y - all.mean(measured));
-        law.shared -= between.transpose() * factor.solve(between);
-      }
-    }
+    ReadingLaw law = reading_law(all, y, planned, given == Given::data ? extended.measured : std::vector<Index>{});
+    law.noise = extended.noise_at(all.mean, all.noise)(planned);
     laws_[static_cast<std::size_t>(job)] = std::move(law);
   });
 }

@@ -1,23 +1,16 @@
 #pragma once
 // What planned readings would be. For draws of a posterior the law of a reading is that given the draw *and* the data:
 // the surrogate's error, the meter's common errors and the discrepancy are the same in a reading to come as in those
-// that are there, so that a setting read again teaches less than one read for the first time. With rows m measured, p
-// planned, S their covariance given the unknowns u, noise included,
-//   p | u, y  ~  N( mean_p + S_pm S_mm^-1 (y - mean_m),  S_pp - S_pm S_mm^-1 S_mp ).
+// that are there (uq/posterior/more_data.hpp), so that a setting read again teaches less than one read for the first
+// time.
 #include <Eigen/Dense>
 #include <vector>
 
 #include "uq/plan/candidates.hpp"
 #include "uq/plan/information.hpp"
+#include "uq/posterior/more_data.hpp"
 
 namespace uq::plan {
-
-/// Of the planned rows, in their order in the model, given one draw.
-struct ReadingLaw {
-  Eigen::VectorXd mean;    ///< SI
-  Eigen::MatrixXd shared;  ///< SI^2, what a reading made again shares
-  Eigen::VectorXd noise;   ///< SI^2, variances of each reading's own
-};
 
 class Outlook {
  public:

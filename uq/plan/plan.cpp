@@ -8,12 +8,12 @@
 #include <numeric>
 
 #include "data/error.hpp"
-#include "uq/parallel.hpp"
+#include "uq/infer/parallel.hpp"
 #include "uq/plan/forecast.hpp"
 #include "uq/plan/information.hpp"
 #include "uq/plan/outlook.hpp"
-#include "uq/posterior.hpp"
-#include "uq/surrogate_share.hpp"
+#include "uq/posterior/posterior.hpp"
+#include "uq/refine/surrogate_share.hpp"
 
 namespace uq::plan {
 namespace {

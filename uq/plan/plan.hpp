@@ -2,7 +2,7 @@
 // What to measure next: candidates ranked by what they are expected to teach of one parameter, per cost; what becomes
 // of the verdict; how many readings it takes; several candidates together.
 //   candidates (candidates.hpp) -> laws of their readings (outlook.hpp) -> information (information.hpp)
-//   -> words afterwards (forecast.hpp) -> ranking and batches -> PlanReport (uq/results.hpp)
+//   -> words afterwards (forecast.hpp) -> ranking and batches -> PlanReport (uq/findings/results.hpp)
 // All is averaged over the posterior, or, before any measurement, over the prior; never at a point.
 #include <cstdint>
 #include <functional>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "data/plan.hpp"
-#include "uq/calibrate.hpp"
+#include "uq/calibrate/calibrate.hpp"
 #include "uq/plan/candidates.hpp"
 
 namespace uq::plan {

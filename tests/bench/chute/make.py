@@ -50,7 +50,7 @@ def study(folder, start, x, y):
         out.write("x,y,z,vx,vy,vz,frozen\n")
         for kind, p, v in rows:
             out.write(",".join(repr(c) for c in (*p, *v)) + f",{kind - 1}\n")
-    # Damping 50 per effective mass m/2, and the steps in a contact that make the time step 1e-4 (dem/derived.cpp).
+    # Damping 50 per effective mass m/2, and the steps in a contact that make the time step 1e-4 (dem/bed/derived.cpp).
     frequency = math.sqrt(2.0 * 200000.0 / (math.pi / 6.0))
     zeta = 0.5 * 50.0 / frequency
     damped = math.sqrt(1.0 - zeta**2)

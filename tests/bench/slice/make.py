@@ -12,7 +12,7 @@ rows = [line.split()[4:7] for line in atoms if line.strip()]
 (folder / "positions.csv").write_text("x,y,z\n" + "".join(",".join(row) + "\n" for row in rows))
 
 # The law of in.slice: 200 N/m, damping 1050 m/2 per second between spheres. Its restitution, and the steps in a contact
-# that make the time step 1e-5 s, follow from demcal's own formulas (dem/derived.cpp).
+# that make the time step 1e-5 s, follow from demcal's own formulas (dem/bed/derived.cpp).
 stiffness, mass, gamma, step = 200.0, 6090.0 * math.pi / 6.0 * 0.8e-3**3, 1050.0, 1e-5
 frequency = math.sqrt(2.0 * stiffness / mass)
 zeta = 0.5 * gamma / frequency

@@ -7,7 +7,7 @@
 
 #include "data/error.hpp"
 #include "data/random.hpp"
-#include "tests/uq/plan/formula_study.hpp"
+#include "tests/uq/formula_study.hpp"
 #include "uq/plan/outlook.hpp"
 
 using uq::PlanCandidate;

@@ -1,0 +1,182 @@
+#include "campaign/design.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "campaign/run_point.hpp"
+#include "data/atomic_file.hpp"
+#include "data/csv.hpp"
+#include "data/file_name.hpp"
+#include "data/hash.hpp"
+#include "surrogate/design.hpp"
+
+namespace campaign {
+namespace {
+
+/// The value that is typed with five digits in the unit, so that table, terminal and simulation mean the same point.
+double rounded(double si, const data::Unit& unit) { return unit.to_si(fmt::format("{:.5g}", unit.from_si(si))); }
+
+std::string point_key(const Workspace& workspace, const Point& point) {
+  // Another code's rows have no seed and settings of ours: the point alone tells them apart.
+  if (workspace.cases.empty()) return data::row_key({.material = point.material, .inputs = point.inputs});
+  return data::row_key({.material = point.material,
+                        .inputs = point.inputs,
+                        .seed = workspace.study.seed,
+                        .settings = settings_hash(workspace, point.material)});
+}
+
+/// Whether the run that the row is of would stop where it stopped.
+bool cannot_do_better(const Workspace& workspace, const data::RunRow& row) {
+  const Point point{row.material, row.inputs};
+  return is_done(workspace, point, run_path(workspace, point));
+}
+
+std::string design_path(const Workspace& workspace) {
+  return (std::filesystem::path(workspace.out) / "design.csv").string();
+}
+
+}  // namespace
+
+std::vector<Point> training_design(const Workspace& workspace, const std::string& material, int first, int runs) {
+  const data::Study& study = workspace.study;
+  const data::Material& rows = study.material(material);
+  const int dimension = static_cast<int>(study.parameters.size() - rows.fixed.size() + study.controls.size());
+  const std::uint64_t seed = number_from(fmt::format("{} {}", study.seed, material));
+  const Eigen::MatrixXd cube = surrogate::scrambled_sobol(runs, dimension, seed, first);
+  std::vector<Point> points;
+  for (int run = 0; run < runs; ++run) {
+    Point point{material, {}};
+    int column = 0;
+    for (const data::Parameter& p : study.parameters) {
+      const auto fixed = rows.fixed.find(p.name);
+      point.inputs.push_back(fixed != rows.fixed.end() ? fixed->second
+                                                       : rounded(p.axis().from_unit(cube(run, column++)), p.unit));
+    }
+    for (const data::Control& c : study.controls)
+      point.inputs.push_back(rounded(c.axis().from_unit(cube(run, column++)), c.unit));
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int runs) {
+  std::set<std::string> known;
+  const bool simulated = !workspace.cases.empty();
+  std::map<std::string, int> rows_of;
+  for (const data::RunRow& row : table.rows) {
+    if (!data::is_unsteady(row) || cannot_do_better(workspace, row))
+      known.insert(simulated ? data::row_key(row) : data::row_key({.material = row.material, .inputs = row.inputs}));
+    ++rows_of[row.material];
+  }
+  Campaign campaign;
+  const auto add_missing = [&](const std::vector<Point>& points) {
+    for (const Point& point : points)
+      if (known.insert(point_key(workspace, point)).second) campaign.points.push_back(point);
+  };
+  std::map<std::string, int> next;
+  if (simulated) {
+    add_missing(read_design(workspace));
+    campaign.continues = !campaign.points.empty();
+    for (const data::Material& material : workspace.study.materials) {
+      next[material.name] = material.runs.value_or(workspace.study.training.runs);
+      add_missing(training_design(workspace, material.name, 0, next[material.name]));
+    }
+  } else {
+    // Another code's design is not ours to complete: further points, past as many of the sequence as there are rows.
+    constexpr int usual = 16;
+    if (runs == 0) runs = usual;
+    for (const data::Material& material : workspace.study.materials) next[material.name] = rows_of[material.name];
+  }
+  // Further points go to the materials in turn, each continuing its own sequence past what is known already.
+  for (std::size_t turn = 0; !campaign.continues && static_cast<int>(campaign.points.size()) < runs; ++turn) {
+    const std::string& material = workspace.study.materials[turn % workspace.study.materials.size()].name;
+    for (std::size_t before = campaign.points.size(); campaign.points.size() == before;)
+      add_missing(training_design(workspace, material, next[material]++, 1));
+  }
+  if (runs > 0 && static_cast<int>(campaign.points.size()) > runs)
+    campaign.points.resize(static_cast<std::size_t>(runs));
+  return campaign;
+}
+
+std::vector<Point> read_design(const Workspace& workspace) {
+  const std::string path = design_path(workspace);
+  if (!std::filesystem::exists(path)) return {};
+  return read_points(workspace, path);
+}
+
+std::vector<Point> read_points(const Workspace& workspace, const std::string& path) {
+  const data::Study& study = workspace.study;
+  const data::Csv csv = data::read_csv(path);
+  const std::optional<std::size_t> material = csv.find("material");
+  std::vector<Point> points;
+  for (const data::CsvRow& row : csv.rows) {
+    Point point{choose_material(study, material ? row.fields[*material] : ""), {}};
+    const auto read = [&](const std::string& name, const data::Unit& unit) {
+      const std::size_t column = csv.column(name);
+      if (!std::isfinite(csv.number(row, column)))
+        throw data::InputError(data::ExitStatus::bad_data,
+                               {csv.place(row, column), fmt::format("'{}' is not a value", row.fields[column]),
+                                "correct the line, or remove design.csv: it is made again"});
+      point.inputs.push_back(csv.unit(column, unit).to_si(row.fields[column]));
+    };
+    for (const data::Parameter& p : study.parameters) read(p.name, p.unit);
+    for (const data::Control& c : study.controls) read(c.name, c.unit);
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+void write_design(const Workspace& workspace, const std::vector<Point>& points) {
+  write_points(workspace, design_path(workspace), points);
+}
+
+std::string next_runs_path(const Workspace& workspace) {
+  return (std::filesystem::path(workspace.out) / "next-runs.csv").string();
+}
+
+Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& table, int runs) {
+  const std::string path = next_runs_path(workspace);
+  if (!std::filesystem::exists(path))
+    throw data::InputError(data::ExitStatus::missing_input,
+                           {path, "is not there: nothing is known of a posterior yet", "run demcal calibrate first"});
+  std::set<std::string> known;
+  for (const data::RunRow& row : table.rows) known.insert(data::row_key(row));
+  Campaign campaign;
+  for (const Point& point : read_points(workspace, path))
+    if (static_cast<int>(campaign.points.size()) < runs && known.insert(point_key(workspace, point)).second)
+      campaign.points.push_back(point);
+  return campaign;
+}
+
+void write_points(const Workspace& workspace, const std::string& path, const std::vector<Point>& points) {
+  const data::Study& study = workspace.study;
+  const bool has_materials = study.materials.size() > 1 || !study.materials.front().name.empty();
+  std::vector<std::string> fields;
+  if (has_materials) fields.push_back("material");
+  for (const data::Parameter& p : study.parameters) fields.push_back(p.name);
+  for (const data::Control& c : study.controls) fields.push_back(c.name);
+  std::string text = fmt::format("{}\n", fmt::join(fields, ","));
+  for (const Point& point : points) {
+    fields.clear();
+    if (has_materials) fields.push_back(data::csv_field(point.material));
+    std::size_t column = 0;
+    for (const data::Parameter& p : study.parameters) fields.push_back(p.unit.digits(point.inputs[column++]));
+    for (const data::Control& c : study.controls) fields.push_back(c.unit.digits(point.inputs[column++]));
+    text += fmt::format("{}\n", fmt::join(fields, ","));
+  }
+  data::write_atomically(path, text);
+}
+
+std::string run_name(const Workspace& workspace, const Point& point) {
+  return (point.material.empty() ? "run" : data::file_name(point.material)) + "-" +
+         data::hash_text(point_key(workspace, point)).substr(0, 12);
+}
+
+std::string run_path(const Workspace& workspace, const Point& point) {
+  return (std::filesystem::path(workspace.out) / "runs" / (run_name(workspace, point) + ".h5")).string();
+}
+
+}  // namespace campaign

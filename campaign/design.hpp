@@ -1,0 +1,40 @@
+#pragma once
+// The training campaign: which points are to be simulated, and which of them are still missing.
+#include <string>
+#include <vector>
+
+#include "campaign/point.hpp"
+
+namespace campaign {
+
+/// Points first .. first + runs - 1 of the material's training design: scrambled Sobol' over what its runs vary
+/// (parameters on their scale, controls linearly), each value rounded to five digits in its unit, so that a point that
+/// is typed in is the same point.
+std::vector<Point> training_design(const Workspace& workspace, const std::string& material, int first, int runs);
+
+/// What to simulate now: points without a row in `table`, or with one that is not of the steady flow and whose run
+/// would now go on for longer. First those that an unfinished campaign left in
+/// OUT/design.csv, then the study's own design; when nothing was left unfinished, further points are added up to
+/// `runs`, shared among the materials. `runs` above 0 is also the most.
+struct Campaign {
+  std::vector<Point> points;
+  bool continues = false;  ///< an earlier campaign was unfinished, and nothing is added to it
+};
+Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int runs);
+
+/// Reads and writes OUT/design.csv: material, parameters and controls in the study's units.
+std::vector<Point> read_design(const Workspace& workspace);
+std::vector<Point> read_points(const Workspace& workspace, const std::string& path);
+void write_points(const Workspace& workspace, const std::string& path, const std::vector<Point>& points);
+std::string next_runs_path(const Workspace& workspace);  ///< OUT/next-runs.csv, points of the posterior
+
+/// The first `runs` of OUT/next-runs.csv that have no row yet. Throws InputError (66) when there is no such file.
+Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& table, int runs);
+void write_design(const Workspace& workspace, const std::vector<Point>& points);
+
+/// "zirconia-100-1f3a..": names the run's file; equal for equal point, seed and settings.
+std::string run_name(const Workspace& workspace, const Point& point);
+/// OUT/runs/NAME.h5.
+std::string run_path(const Workspace& workspace, const Point& point);
+
+}  // namespace campaign

@@ -1,0 +1,105 @@
+#include "campaign/foretell.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include "dem/reading/target.hpp"
+
+namespace campaign {
+Foretold foretell(const Workspace& workspace, const Point& point) {
+  const dem::Case c = case_at(workspace, point);
+  if (auto found = dem::problems(c); !found.empty())
+    throw data::InputError(data::ExitStatus::bad_study, std::move(found));
+  Foretold told{dem::derive(c), dem::forecast(c, workspace.study.seed)};
+  if (!told.forecast.problems.empty())
+    throw data::InputError(data::ExitStatus::bad_study, std::move(told.forecast.problems));
+  return told;
+}
+
+Cost cost_of(const dem::Case& c, const dem::Derived& derived) {
+  Cost cost;
+  cost.effort = dem::measure_effort(c, derived);
+  const double spheres = static_cast<double>(derived.spheres);
+  cost.steps = (c.run.settle + c.run.longest) / derived.time_step;
+  cost.seconds = cost.steps * spheres / cost.effort.rate;
+  cost.bytes = 2.0 * spheres * cost.effort.bytes_per_sphere;  // the state, and the last good one
+  const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (cost.bytes > 0.8 * machine)
+    cost.warnings.push_back(fmt::format("a run needs about {:.2g} GB of memory, and this machine has {:.2g} GB",
+                                        1e-9 * cost.bytes, 1e-9 * machine));
+  if (cost.seconds > 86400.0)
+    cost.warnings.push_back(
+        fmt::format("a run takes up to {} on one core: {} spheres, {:.2g} steps of {:.2g} s (fewer "
+                    "or larger spheres, or a softer contact.stiffness, shorten it)",
+                    duration_text(cost.seconds), derived.spheres, cost.steps, derived.time_step));
+  return cost;
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 100.0) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 6000.0) return fmt::format("{:.2g} min", seconds / 60.0);
+  if (seconds < 360000.0) return fmt::format("{:.2g} h", seconds / 3600.0);
+  return fmt::format("{:.3g} days", seconds / 86400.0);
+}
+
+std::vector<std::string> problems_at_ends(const Workspace& workspace, const Point& middle) {
+  std::vector<std::string> found;
+  const std::vector<Input> inputs = inputs_of(workspace.study);
+  const auto& fixed = workspace.study.material(middle.material).fixed;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (fixed.count(inputs[i].name) > 0) continue;
+    for (const double end : {inputs[i].low, inputs[i].high}) {
+      // No run is made at a standstill: the design's points lie inside.
+      if (end == 0.0 && dem::target(inputs[i].target).name == "rig.rpm") continue;
+      Point point = middle;
+      point.inputs[i] = end;
+      for (const data::Problem& p : dem::problems(case_at(workspace, point)))
+        found.push_back(
+            fmt::format("at {} {}: {}", inputs[i].name, with_unit(end, inputs[i].unit), data::describe({p})));
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> outside_ranges(const Workspace& workspace, const Point& point) {
+  std::vector<std::string> notes;
+  const std::vector<Input> inputs = inputs_of(workspace.study);
+  const auto& fixed = workspace.study.material(point.material).fixed;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const Input& in = inputs[i];
+    const double x = point.inputs[i];
+    if (const auto held = fixed.find(in.name); held != fixed.end()) {
+      if (x != held->second)
+        notes.push_back(fmt::format("{} {} is not what the study holds it at for this material, {}", in.name,
+                                    with_unit(x, in.unit), with_unit(held->second, in.unit)));
+    } else if (x < in.low || x > in.high) {
+      notes.push_back(fmt::format("{} {} lies outside the study's range, {} to {}: no training run is made there",
+                                  in.name, with_unit(x, in.unit), with_unit(in.low, in.unit),
+                                  with_unit(in.high, in.unit)));
+    }
+  }
+  return notes;
+}
+
+nlohmann::json to_json(const Foretold& told, const Cost& cost) {
+  const dem::Forecast& f = told.forecast;
+  nlohmann::json json{{"spheres", f.spheres},
+                      {"mass_kg", f.mass},
+                      {"bond_number", told.derived.bond},
+                      {"wall_bond_number", told.derived.wall_bond},
+                      {"time_step_s", told.derived.time_step},
+                      {"steps", cost.steps},
+                      {"cpu_seconds_at_most", cost.seconds},
+                      {"memory_bytes", cost.bytes},
+                      {"particle_steps_per_second", cost.effort.rate},
+                      {"bodies", f.bodies},
+                      {"warnings", f.warnings}};
+  json["fill"] = f.fill ? nlohmann::json(*f.fill) : nlohmann::json();
+  json["surface_m"] = f.surface ? nlohmann::json(*f.surface) : nlohmann::json();
+  json["gaps"] = nlohmann::json::array();
+  for (const dem::NamedGap& gap : f.gaps)
+    json["gaps"].push_back({{"between", gap.between}, {"m", gap.width}, {"spheres", gap.in_spheres}});
+  return json;
+}
+
+}  // namespace campaign

@@ -1,0 +1,43 @@
+#pragma once
+// What the runs of a study will be, said before any is made: by `check` of each material, and by `simulate` and `train`
+// before they start.
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "campaign/point.hpp"
+#include "dem/bed/derived.hpp"
+#include "dem/forecast/effort.hpp"
+#include "dem/forecast/forecast.hpp"
+
+namespace campaign {
+
+struct Foretold {
+  dem::Derived derived;
+  dem::Forecast forecast;
+};
+/// Of the point's run. Throws data::InputError (78) with every problem that makes it nonsense.
+Foretold foretell(const Workspace& workspace, const Point& point);
+
+/// What a run costs, by a measurement on this machine.
+struct Cost {
+  double steps = 0.0;    ///< at most
+  double seconds = 0.0;  ///< of processor time, at most
+  double bytes = 0.0;
+  dem::Effort effort;
+  std::vector<std::string> warnings;  ///< beyond this machine's memory, or a day
+};
+Cost cost_of(const dem::Case& c, const dem::Derived& derived);
+
+/// "2 min", "5.3 h".
+std::string duration_text(double seconds);
+
+/// Problems at the ends of each parameter's and control's range, the others amid theirs.
+std::vector<std::string> problems_at_ends(const Workspace& workspace, const Point& middle);
+
+/// For each input of the point that the study's range does not cover, a sentence.
+std::vector<std::string> outside_ranges(const Workspace& workspace, const Point& point);
+
+nlohmann::json to_json(const Foretold& told, const Cost& cost);
+
+}  // namespace campaign

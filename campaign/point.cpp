@@ -1,0 +1,157 @@
+#include "campaign/point.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "data/hash.hpp"
+#include "data/provenance.hpp"
+#include "dem/reading/target.hpp"
+
+namespace campaign {
+
+std::vector<Input> inputs_of(const data::Study& study) {
+  std::vector<Input> inputs;
+  for (const data::Parameter& p : study.parameters) inputs.push_back({p.name, p.target, p.unit, p.low, p.high});
+  for (const data::Control& c : study.controls) inputs.push_back({c.name, c.target, c.unit, c.low, c.high});
+  return inputs;
+}
+
+namespace {
+
+data::InputError usage(std::string place, std::string what, std::string remedy) {
+  return {data::ExitStatus::usage, data::Problem{std::move(place), std::move(what), std::move(remedy)}};
+}
+
+std::string names_of(const std::vector<Input>& inputs) {
+  std::string names;
+  for (const Input& input : inputs) names += (names.empty() ? "" : ", ") + input.name;
+  return names;
+}
+
+/// "2e-18 J" or, in the input's unit, "2e-18".
+double parse_value(const std::string& text, const Input& input, const std::string& place) {
+  std::size_t used = 0;
+  try {
+    std::stod(text, &used);
+  } catch (const std::exception&) {
+    throw usage(place, fmt::format("'{}' is not a number", text),
+                fmt::format("write {}=NUMBER or {}=\"NUMBER UNIT\"", input.name, input.name));
+  }
+  const std::string digits = text.substr(0, used);
+  std::string unit = text.substr(used);
+  unit.erase(0, unit.find_first_not_of(' '));
+  if (unit.empty()) return input.unit.to_si(digits);
+  try {
+    if (data::convertible(unit, input.unit.symbol)) return data::parse_unit(unit).to_si(digits);
+  } catch (const std::invalid_argument&) {
+  }
+  throw usage(place, fmt::format("'{}' is not a unit of {}", unit, input.name),
+              fmt::format("use {}", input.unit.symbol.empty() ? "a bare number" : input.unit.symbol));
+}
+
+}  // namespace
+
+std::string choose_material(const data::Study& study, const std::string& wanted) {
+  std::string known;
+  for (const data::Material& material : study.materials) {
+    if (wanted.empty() || material.name == wanted) return material.name;
+    known += (known.empty() ? "" : ", ") + material.name;
+  }
+  throw usage("--material", fmt::format("the study has no material '{}'", wanted), "choose one of: " + known);
+}
+
+Point parse_point(const Workspace& workspace, const std::string& material, const std::vector<std::string>& at) {
+  const std::vector<Input> inputs = inputs_of(workspace.study);
+  const data::Material& rows = workspace.study.material(material);
+  Point point{material, {}};
+  for (const Input& input : inputs) {
+    const auto fixed = rows.fixed.find(input.name);
+    point.inputs.push_back(fixed != rows.fixed.end() ? fixed->second : 0.5 * (input.low + input.high));
+  }
+  for (const std::string& assignment : at) {
+    const std::size_t equals = assignment.find('=');
+    const std::string name = assignment.substr(0, equals);
+    const auto found =
+        std::find_if(inputs.begin(), inputs.end(), [&](const Input& input) { return input.name == name; });
+    if (equals == std::string::npos || found == inputs.end())
+      throw usage("--at", fmt::format("'{}' sets no parameter or control", assignment),
+                  fmt::format("write NAME=VALUE with one of: {}", names_of(inputs)));
+    const std::string place = "--at " + name;
+    const double value = parse_value(assignment.substr(equals + 1), *found, place);
+    const dem::Target target = dem::target(found->target);
+    if (!(value >= target.low && value <= target.high))
+      throw usage(place,
+                  fmt::format("{} is outside the possible range [{:g}, {:g}] of {}", with_unit(value, found->unit),
+                              found->unit.from_si(target.low), found->unit.from_si(target.high), target.name),
+                  "choose a value inside it");
+    point.inputs[static_cast<std::size_t>(found - inputs.begin())] = value;
+  }
+  return point;
+}
+
+std::string describe(const data::Study& study, const Point& point) {
+  std::string text;
+  const std::vector<Input> inputs = inputs_of(study);
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", inputs[i].name, with_unit(point.inputs[i], inputs[i].unit));
+  return text;
+}
+
+dem::Case case_at(const Workspace& workspace, const Point& point) {
+  dem::Case result = workspace.cases.at(point.material);
+  const std::vector<Input> inputs = inputs_of(workspace.study);
+  for (std::size_t i = 0; i < inputs.size(); ++i) dem::set_target(result, inputs[i].target, point.inputs[i]);
+  return result;
+}
+
+std::string settings_hash(const Workspace& workspace, const std::string& material) {
+  if (!workspace.cases.contains(material)) return "";  // another code's runs
+  dem::Case settings = workspace.cases.at(material);
+  // What is an input stands at one value, whatever its range is: rows stay good when a range is moved.
+  for (const Input& input : inputs_of(workspace.study)) {
+    const dem::Target target = dem::target(input.target);
+    dem::set_target(settings, input.target, std::clamp(1.0, target.low, target.high));
+  }
+  // How long a run is decides its standard error, not what it estimates: rows of any length stay good.
+  const dem::RunControl usual;
+  settings.run.standard_error = usual.standard_error;
+  settings.run.shortest = usual.shortest;
+  settings.run.shortest_turns = usual.shortest_turns;
+  settings.run.start_up_turns = usual.start_up_turns;
+  settings.run.longest = usual.longest;
+  // Whether a run is stopped, not what it gives.
+  settings.run.overlap_limit = usual.overlap_limit;
+  return data::hash_text(dem::settings_text(settings));
+}
+
+std::uint64_t number_from(const std::string& text) {
+  return std::stoull(data::hash_text(text).substr(0, 16), nullptr, 16);
+}
+
+std::uint64_t run_seed(const Workspace& workspace, const Point& point) {
+  std::string text = fmt::format("{} {}", workspace.study.seed, settings_hash(workspace, point.material));
+  for (const double value : point.inputs) text += fmt::format(" {:.12g}", value);
+  return number_from(text);
+}
+
+data::RunRow to_row(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
+  data::RunRow row{.material = point.material,
+                   .inputs = point.inputs,
+                   .seed = workspace.study.seed,
+                   .settings = settings_hash(workspace, point.material),
+                   .isa = result.diagnostics.isa,
+                   .origin = "demcal " + data::program_version(),
+                   .cpu_seconds = result.summary.cpu_seconds,
+                   .state = std::string(dem::name_of(result.summary.state)),
+                   .unreliable = ""};
+  for (const data::Output& output : workspace.study.outputs) {
+    const data::SeriesMean& mean = dem::output(result, output.name);
+    row.outputs.push_back(mean.mean);
+    row.standard_errors.push_back(mean.standard_error);
+    if (!mean.reliable) row.unreliable += (row.unreliable.empty() ? "" : " ") + output.name;
+  }
+  return row;
+}
+
+}  // namespace campaign

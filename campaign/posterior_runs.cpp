@@ -1,0 +1,279 @@
+#include "campaign/posterior_runs.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <tuple>
+
+#include "campaign/design.hpp"
+#include "data/atomic_file.hpp"
+#include "data/csv.hpp"
+
+namespace campaign {
+namespace {
+
+using Eigen::Index;
+
+const std::string left_comment = "# runs left to this campaign: ";
+
+/// Rows in an order that does not depend on which run finished first.
+data::RunTable in_order(data::RunTable table) {
+  std::stable_sort(table.rows.begin(), table.rows.end(), [](const data::RunRow& a, const data::RunRow& b) {
+    return std::tie(a.material, a.inputs, a.seed, a.settings) < std::tie(b.material, b.inputs, b.seed, b.settings);
+  });
+  return table;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// The surrogate that gives an emulator.
+const uq::FittedSurrogate& surrogate_of(const std::vector<uq::FittedSurrogate>& all, const std::string& material,
+                                        std::size_t output) {
+  return *std::find_if(all.begin(), all.end(), [&](const uq::FittedSurrogate& one) {
+    return one.rows.material == material && one.rows.output == output;
+  });
+}
+
+/// What one more run is expected to scatter by: the usual standard error of the runs, and the scatter beyond it.
+uq::RunNoise noise_of(const uq::FittedSurrogate& fitted) {
+  const surrogate::TrainingSet& set = fitted.rows.set;
+  const bool log = fitted.process->data().scale == surrogate::OutputScale::log;
+  std::vector<double> known;
+  for (Index i = 0; i < set.noise_variance.size(); ++i)
+    known.push_back(set.noise_variance[i] / (log ? set.y[i] * set.y[i] : 1.0));
+  const double nugget_sd =
+      fitted.two_level ? fitted.two_level->parameters().nugget_sd : fitted.process->hyper_parameters().nugget_sd;
+  const double variance = median(known) + nugget_sd * nugget_sd;
+  return log ? uq::RunNoise{.absolute = 0.0, .relative = variance}
+             : uq::RunNoise{.absolute = variance, .relative = 0.0};
+}
+
+/// The point that a run of the criterion stands for. What the material's surrogates do not vary keeps its value.
+Point to_point(const Workspace& workspace, const std::vector<uq::FittedSurrogate>& surrogates,
+               const uq::RunPoint& run) {
+  const data::Study& study = workspace.study;
+  std::vector<bool> varied_parameter(study.parameters.size(), false), varied_control(study.controls.size(), false);
+  Point point{run.material, std::vector<double>(study.parameters.size() + study.controls.size(), 0.0)};
+  for (const uq::FittedSurrogate& one : surrogates) {
+    if (one.rows.material != run.material) continue;
+    for (const auto& [p, value] : one.rows.constants) point.inputs[p] = value;
+    for (const auto& [c, range] : one.rows.control_range) point.inputs[study.parameters.size() + c] = range.first;
+    for (const uq::EmulatorInput& input : one.rows.inputs)
+      (input.kind == uq::InputKind::parameter ? varied_parameter : varied_control)[input.index] = true;
+  }
+  for (std::size_t p = 0; p < study.parameters.size(); ++p)
+    if (varied_parameter[p] && static_cast<Index>(p) < run.parameters.size())
+      point.inputs[p] = five_digits(study.parameters[p].axis().from_unit(run.parameters[static_cast<Index>(p)]),
+                                    study.parameters[p].unit);
+  for (std::size_t c = 0; c < study.controls.size(); ++c)
+    if (varied_control[c] && static_cast<Index>(c) < run.controls.size()) {
+      const data::Control& control = study.controls[c];
+      point.inputs[study.parameters.size() + c] =
+          five_digits(control.axis().from_unit(run.controls[static_cast<Index>(c)]), control.unit);
+    }
+  return point;
+}
+
+/// The same back: as the criterion sees a run at this point.
+uq::RunPoint to_run(const Workspace& workspace, const std::vector<uq::FittedSurrogate>& surrogates,
+                    const Point& point) {
+  const data::Study& study = workspace.study;
+  uq::RunPoint run{point.material, Eigen::VectorXd::Zero(static_cast<Index>(study.parameters.size())),
+                   Eigen::VectorXd::Zero(static_cast<Index>(study.controls.size()))};
+  for (const uq::FittedSurrogate& one : surrogates) {
+    if (one.rows.material != point.material) continue;
+    for (const uq::EmulatorInput& input : one.rows.inputs) {
+      const auto index = static_cast<Index>(input.index);
+      if (input.kind == uq::InputKind::parameter)
+        run.parameters[index] = study.parameters[input.index].axis().to_unit(point.inputs[input.index]);
+      else
+        run.controls[index] =
+            study.controls[input.index].axis().to_unit(point.inputs[study.parameters.size() + input.index]);
+    }
+  }
+  return run;
+}
+
+}  // namespace
+
+double five_digits(double si, const data::Unit& unit) { return unit.to_si(fmt::format("{:.5g}", unit.from_si(si))); }
+
+bool Assessment::settled(double most) const {
+  return share() <= most &&
+         std::all_of(cases.begin(), cases.end(), [](const uq::SampledCase& one) { return one.draws.converged; });
+}
+
+Assessment assess(const Workspace& workspace, const TrainingRows& rows) {
+  const data::Study& study = workspace.study;
+  uq::SurrogateOptions options = *workspace.surrogates;
+  options.fit.seed = study.seed;
+  options.low = rows.low;
+  options.observed_only = true;
+  Assessment found;
+  found.surrogates = uq::fit_surrogates(study, in_order(rows.table), options);
+  const std::vector<uq::Emulator> emulators = uq::emulators_of(found.surrogates);
+  for (std::size_t index = 0; index < study.cases.size(); ++index) {
+    found.cases.push_back(uq::sample_case(study, emulators, index, {.surrogates = options, .seed = study.seed}));
+    const uq::SampledCase& sampled = found.cases.back();
+    found.shares.push_back(uq::surrogate_share(*sampled.model, sampled.draws.chains.empty()
+                                                                   ? Eigen::MatrixXd(0, sampled.model->dimension())
+                                                                   : sampled.draws.pooled()));
+    if (found.shares.back().share > found.shares[found.worst].share) found.worst = index;
+  }
+  return found;
+}
+
+ChosenRuns choose_runs(const Workspace& workspace, const TrainingRows& rows, const Assessment& assessment, int runs,
+                       int tried) {
+  const data::Study& study = workspace.study;
+  uq::Acquisition acquisition;
+  for (const uq::SampledCase& sampled : assessment.cases)
+    acquisition.cases.push_back({.model = sampled.model,
+                                 .draws = sampled.draws.chains.empty() ? Eigen::MatrixXd(0, sampled.model->dimension())
+                                                                       : sampled.draws.pooled(),
+                                 .log_evidence = sampled.draws.log_evidence});
+  data::RunTable table = in_order(rows.table);
+  std::erase_if(table.rows, [](const data::RunRow& row) { return !row.left_out.empty(); });
+  for (const data::RunRow& row : table.rows)
+    acquisition.existing.push_back(to_run(workspace, assessment.surrogates, Point{row.material, row.inputs}));
+  acquisition.noise = [&](const uq::Emulator& emulator) {
+    return noise_of(surrogate_of(assessment.surrogates, emulator.material, emulator.output));
+  };
+  acquisition.rounded = [&](const uq::RunPoint& run) {
+    return to_run(workspace, assessment.surrogates, to_point(workspace, assessment.surrogates, run));
+  };
+  const std::uint64_t seed = number_from(fmt::format("{} next runs {} {}", study.seed, rows.all.rows.size(), tried));
+  const uq::Batch batch = uq::next_batch(acquisition, {.runs = runs, .seed = seed, .candidates = {}, .reference = {}});
+  ChosenRuns chosen;
+  for (const uq::BatchRun& next : batch.runs) {
+    Point point = to_point(workspace, assessment.surrogates, next.point);
+    // A replicate stands where the first run does, with all its digits.
+    for (std::size_t i = 0; next.replicate && i < acquisition.existing.size(); ++i)
+      if (uq::same_run(acquisition.existing[i], next.point)) point.inputs = table.rows[i].inputs;
+    chosen.replicates += next.replicate ? 1 : 0;
+    chosen.runs.push_back({point, free_seed(workspace, rows.all, chosen.runs, point)});
+  }
+  if (!batch.variance_before.empty()) {
+    chosen.variance_before = batch.variance_before[assessment.worst];
+    chosen.variance_after_expected = batch.variance_after[assessment.worst];
+  }
+  return chosen;
+}
+
+Point point_at(const Workspace& workspace, const std::vector<uq::FittedSurrogate>& surrogates,
+               const uq::RowGroup& group, Index row, const Eigen::VectorXd& u) {
+  return to_point(workspace, surrogates, uq::run_at(group, row, u));
+}
+
+std::vector<PlannedRun> starting_runs(const Workspace& workspace, const data::RunTable& table) {
+  const data::Study& study = workspace.study;
+  std::vector<PlannedRun> all;
+  for (const data::Material& material : study.materials) {
+    const int inputs = static_cast<int>(study.parameters.size() - material.fixed.size() + study.controls.size());
+    const auto rows = std::count_if(table.rows.begin(), table.rows.end(),
+                                    [&](const data::RunRow& row) { return row.material == material.name; });
+    const int wanted =
+        std::min(std::max(10, 5 * inputs), std::max(material.runs.value_or(study.training.runs), inputs + 2));
+    const std::vector<Point> design = training_design(workspace, material.name, 0, wanted);
+    std::vector<PlannedRun> planned;
+    for (const Point& point : design) planned.push_back({point, study.seed});
+    planned = without_rows(workspace, planned, table);
+    const int missing = wanted - static_cast<int>(rows);
+    for (int i = 0; i < missing && i < static_cast<int>(planned.size()); ++i)
+      all.push_back(planned[static_cast<std::size_t>(i)]);
+  }
+  return all;
+}
+
+std::uint64_t free_seed(const Workspace& workspace, const data::RunTable& table, const std::vector<PlannedRun>& planned,
+                        const Point& point) {
+  const std::string settings = workspace.cases.empty() ? "" : settings_hash(workspace, point.material);
+  const auto key = [&](const Point& at, std::uint64_t seed) {
+    return data::row_key({.material = at.material, .inputs = at.inputs, .seed = seed, .settings = settings});
+  };
+  std::set<std::string> taken;
+  for (const data::RunRow& row : table.rows) taken.insert(data::row_key(row));
+  for (const PlannedRun& run : planned) taken.insert(key(run.point, run.seed));
+  std::uint64_t seed = workspace.study.seed;
+  while (taken.contains(key(point, seed))) ++seed;
+  return seed;
+}
+
+std::vector<PlannedRun> without_rows(const Workspace& workspace, const std::vector<PlannedRun>& runs,
+                                     const data::RunTable& table) {
+  std::set<std::string> known;
+  for (const data::RunRow& row : table.rows) known.insert(data::row_key(row));
+  std::vector<PlannedRun> missing;
+  for (const PlannedRun& run : runs)
+    if (!known.contains(data::row_key({.material = run.point.material,
+                                       .inputs = run.point.inputs,
+                                       .seed = run.seed,
+                                       .settings = settings_hash(workspace, run.point.material)})))
+      missing.push_back(run);
+  return missing;
+}
+
+std::string posterior_runs_path(const Workspace& workspace) {
+  return (std::filesystem::path(workspace.out) / "posterior-runs.csv").string();
+}
+
+void write_posterior_runs(const Workspace& workspace, const PosteriorRuns& next) {
+  const data::Study& study = workspace.study;
+  std::string text = next.left ? left_comment + std::to_string(*next.left) + "\n" : "";
+  text += "material";
+  for (const data::Parameter& p : study.parameters) text += "," + data::csv_field(p.name);
+  for (const data::Control& c : study.controls) text += "," + data::csv_field(c.name);
+  text += ",seed\n";
+  for (const PlannedRun& run : next.runs) {
+    text += data::csv_field(run.point.material);
+    std::size_t column = 0;
+    for (const data::Parameter& p : study.parameters)
+      text += fmt::format(",{:.12g}", p.unit.from_si(run.point.inputs[column++]));
+    for (const data::Control& c : study.controls)
+      text += fmt::format(",{:.12g}", c.unit.from_si(run.point.inputs[column++]));
+    text += fmt::format(",{}\n", run.seed);
+  }
+  data::write_atomically(posterior_runs_path(workspace), text);
+}
+
+std::optional<PosteriorRuns> read_posterior_runs(const Workspace& workspace) {
+  const std::string path = posterior_runs_path(workspace);
+  if (!std::filesystem::exists(path)) return {};
+  const data::Study& study = workspace.study;
+  const data::Csv csv = data::read_csv(path);
+  const std::size_t material = csv.column("material"), seed = csv.column("seed");
+  PosteriorRuns next;
+  for (const std::string& comment : csv.comments)
+    if (("# " + comment).starts_with(left_comment))
+      next.left = std::atoi(("# " + comment).substr(left_comment.size()).c_str());
+  for (const data::CsvRow& row : csv.rows) {
+    PlannedRun run{.point = {choose_material(study, row.fields[material]), {}}, .seed = 0};
+    const auto read = [&](const std::string& name, const data::Unit& unit) {
+      const std::size_t column = csv.column(name);
+      static_cast<void>(csv.number(row, column));  // throws where it is none
+      run.point.inputs.push_back(unit.to_si(row.fields[column]));
+    };
+    for (const data::Parameter& p : study.parameters) read(p.name, p.unit);
+    for (const data::Control& c : study.controls) read(c.name, c.unit);
+    static_cast<void>(csv.number(row, seed));
+    run.seed = std::stoull(row.fields[seed]);
+    next.runs.push_back(std::move(run));
+  }
+  return next;
+}
+
+double median_run_time(const data::RunTable& table) {
+  std::vector<double> times;
+  for (const data::RunRow& row : table.rows)
+    if (row.cpu_seconds > 0.0) times.push_back(row.cpu_seconds);
+  return median(times);
+}
+
+}  // namespace campaign

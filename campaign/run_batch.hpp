@@ -1,0 +1,46 @@
+#pragma once
+// Several runs at once, one thread each. Every finished run is kept at once: its file in OUT/runs, its row in
+// OUT/training.h5 and training.csv. An interrupted run goes on from its checkpoint when the same run is asked for
+// again.
+#include <cstdint>
+#include <exception>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "campaign/point.hpp"
+#include "data/progress.hpp"
+
+namespace campaign {
+
+/// A run to make. Runs at one point with other seeds are replicates: they share nothing but the point.
+struct PlannedRun {
+  Point point;
+  std::uint64_t seed = 0;  ///< of its random streams and of its row
+};
+
+struct BatchOptions {
+  int jobs = 1;                         ///< runs at the same time
+  std::vector<data::RunRow> kept = {};  ///< rows of other settings, written back
+  std::stop_token stop = {};
+  data::Progress* progress = nullptr;  ///< told of each run that ended and of failures; may be none
+};
+
+struct BatchResult {
+  data::RunTable table;               ///< the rows there were, and one for each finished run
+  std::size_t finished = 0;           ///< runs
+  std::size_t unsteady = 0;           ///< of them, not of the steady flow
+  std::vector<bool> ended;            ///< per run: finished or failed
+  std::vector<std::string> failures;  ///< point and reason
+  std::vector<std::string> warnings;
+  std::exception_ptr error;  ///< of a worker; the others stopped
+};
+
+/// Throws InputError (78) where the rig makes a run nonsense, before any is made.
+BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
+                      const BatchOptions& options);
+
+/// The same study under another seed.
+Workspace with_seed(const Workspace& workspace, std::uint64_t seed);
+
+}  // namespace campaign

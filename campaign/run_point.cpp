@@ -1,0 +1,98 @@
+#include "campaign/run_point.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+
+#include "data/atomic_file.hpp"
+#include "dem/contact/isa.hpp"
+#include "dem/reading/target.hpp"
+#include "dem/run/frame_file.hpp"
+#include "dem/run/run_file.hpp"
+
+namespace campaign {
+namespace {
+
+/// All that decides a run's bits up to where it stops: the settings without those that say how long it is, and what of
+/// it is measured.
+std::string course_of(const std::string& settings) {
+  static constexpr std::string_view other[]{"run.standard_error ", "run.start_up", "run.shortest", "run.longest ",
+                                            "run.window "};
+  std::string course;
+  for (std::size_t at = 0; at < settings.size();) {
+    const std::size_t end = std::min(settings.find('\n', at), settings.size() - 1) + 1;
+    const std::string_view line = std::string_view(settings).substr(at, end - at);
+    if (std::none_of(std::begin(other), std::end(other), [&](std::string_view key) { return line.starts_with(key); }))
+      course += line;
+    at = end;
+  }
+  return course;
+}
+
+/// What an earlier start left in the file, if it is a run of the same course.
+std::optional<dem::SavedRun> earlier(const std::string& path, const dem::Case& c, std::uint64_t seed) {
+  if (!std::filesystem::exists(path)) return {};
+  try {
+    dem::SavedRun saved = dem::read_run(path);
+    if (course_of(saved.settings) == course_of(dem::settings_text(c)) && saved.result.seed == seed) return saved;
+  } catch (const data::InputError&) {  // damaged, or of another version: made again
+  }
+  return {};
+}
+
+/// Whether the run has ended as this case's would.
+bool ended(const dem::SavedRun& saved, const dem::Case& c) {
+  // A run that failed fails again: it depends on its point, seed and settings alone.
+  return saved.result.status != dem::RunStatus::interrupted && saved.settings == dem::settings_text(c) &&
+         saved.rule == dem::look_rule_version;
+}
+
+}  // namespace
+
+bool is_done(const Workspace& workspace, const Point& point, const std::string& path) {
+  const dem::Case c = case_at(workspace, point);
+  const std::optional<dem::SavedRun> before = earlier(path, c, run_seed(workspace, point));
+  return before && ended(*before, c);
+}
+
+dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options) {
+  const dem::Case c = case_at(workspace, point);
+  const std::uint64_t seed = run_seed(workspace, point);
+  data::require_replaceable(options.path);
+  std::optional<dem::SavedRun> before = earlier(options.path, c, seed);
+  const std::vector<std::uint64_t> frames =
+      options.frames > 0 ? dem::frame_steps(c, options.frames) : std::vector<std::uint64_t>{};
+  const auto tag = [&](int index) {
+    return dem::FrameTag{.index = index, .count = options.frames, .seed = seed, .settings = dem::settings_text(c)};
+  };
+  // Frames that a finished or interrupted run has passed can only be had by making it again.
+  const std::uint64_t passed = !before             ? 0
+                               : ended(*before, c) ? ~std::uint64_t{0}
+                                                   : before->result.checkpoint.state.step;
+  for (int k = 0; k < options.frames && before; ++k)
+    if (frames[static_cast<std::size_t>(k)] <= passed &&
+        !dem::is_frame(dem::frame_path(options.frames_folder, k), tag(k)))
+      before.reset();
+  if (before && ended(*before, c)) return before->result;
+
+  dem::RunOptions run{.threads = options.threads, .stop = options.stop, .progress = options.progress};
+  run.checkpoint = [&](const dem::Checkpoint& checkpoint) {
+    dem::RunResult so_far{
+        .status = dem::RunStatus::interrupted, .seed = seed, .series = checkpoint.series, .checkpoint = checkpoint};
+    so_far.diagnostics.isa = dem::isa();
+    dem::write_run(options.path, c, so_far);
+  };
+  run.frames = options.frames;
+  run.frame = [&](int index, const dem::Simulation& simulation, double time) {
+    dem::write_frame(dem::frame_path(options.frames_folder, index), simulation, time, tag(index));
+  };
+  if (before && before->result.status != dem::RunStatus::failed && !before->result.checkpoint.state.position.empty())
+    run.resume = &before->result.checkpoint;
+  dem::RunResult result = dem::run(c, seed, run);
+  const bool steady = result.status == dem::RunStatus::done && result.summary.state == dem::Steady::yes;
+  if (steady && !options.keep_state) result.checkpoint = {};
+  dem::write_run(options.path, c, result);
+  return result;
+}
+
+}  // namespace campaign

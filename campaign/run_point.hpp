@@ -1,0 +1,29 @@
+#pragma once
+// One DEM run of a point, kept in a file: finished and failed runs are read back, interrupted ones go on from their
+// checkpoint.
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "campaign/point.hpp"
+
+namespace campaign {
+
+struct PointRun {
+  std::string path;  ///< of the run's file
+  int threads = 1;
+  bool keep_state = true;  ///< a steady run's file holds its last state too, to look at; another's always does
+  int frames = 0;          ///< moments kept as files for ParaView (dem/run/frame_file.hpp)
+  std::string frames_folder = {};
+  std::stop_token stop = {};
+  std::function<void(const dem::RunProgress&)> progress = {};
+};
+
+/// Whether the file holds this run, ended as it would end now.
+bool is_done(const Workspace& workspace, const Point& point, const std::string& path);
+
+/// The result, which the file holds too. A finished run of which the study now wants more, or less, goes on from its
+/// last state or is cut short: to the same bits as a new one. A file of another point, seed or setting is replaced.
+dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options);
+
+}  // namespace campaign

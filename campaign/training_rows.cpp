@@ -1,0 +1,92 @@
+#include "campaign/training_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "campaign/placeholder.hpp"
+#include "campaign/point.hpp"
+#include "campaign/training_table.hpp"
+#include "data/run_table_files.hpp"
+
+namespace campaign {
+namespace fs = std::filesystem;
+namespace {
+
+/// Lines of [training] leave_out at which no row stands.
+void tell_unknown_rows(const data::Study& study, TrainingRows& rows) {
+  const auto stands = [&](const std::string& label) {
+    const auto named = [&](const data::RunRow& row) { return data::names_row(label, row.place); };
+    return std::any_of(rows.table.rows.begin(), rows.table.rows.end(), named) ||
+           (rows.low && std::any_of(rows.low->rows.begin(), rows.low->rows.end(), named));
+  };
+  for (const std::string& label : study.training.leave_out)
+    if (!stands(label))
+      rows.findings.push_back({.kind = "rows left out",
+                               .place = study.training.place,
+                               .severity = data::Severity::warning,
+                               .what = fmt::format("leave_out names {}, where no row is read", label),
+                               .remedy = "name rows as the messages do: a line of the table, or \"FILE:LINE\"",
+                               .places = {}});
+}
+
+void leave_out_unsteady(const Workspace& workspace, TrainingRows& rows) {
+  if (workspace.unsteady == Unsteady::use) return;
+  std::map<std::string, int> left_out;
+  std::erase_if(rows.table.rows, [&](const data::RunRow& row) {
+    const bool unsteady = data::is_unsteady(row);
+    if (unsteady) ++left_out[row.state];
+    return unsteady;
+  });
+  for (const auto& [state, count] : left_out)
+    rows.notes.push_back(fmt::format(
+        "{} of {} runs are not of the steady flow ({}) and are left out: raise run.longest and train again, "
+        "or set training.unsteady = \"use\"",
+        count, rows.all.rows.size(), state));
+  for (std::string& note : data::drop_unreliable(rows.table)) rows.notes.push_back(std::move(note));
+}
+
+}  // namespace
+
+TrainingRows training_rows(const Workspace& workspace) {
+  const data::Study& study = workspace.study;
+  TrainingRows result{data::empty_table(study), {}, {}, {}};
+  std::map<std::string, std::string> settings;
+  for (const auto& [material, unused] : workspace.cases) settings[material] = settings_hash(workspace, material);
+  const auto add = [&](const std::string& path, const data::TableRead& read) {
+    for (const std::string& left_out : read.left_out) result.notes.push_back(left_out);
+    result.findings.insert(result.findings.end(), read.findings.begin(), read.findings.end());
+    data::RunTable usable = read.table;
+    const bool own = path != study.training.table;
+    std::size_t stale = std::erase_if(usable.rows, [&](const data::RunRow& row) {
+      const auto known = settings.find(row.material);
+      const bool other = known != settings.end() && !row.settings.empty() && row.settings != known->second;
+      if (other && own) result.kept.push_back(row);
+      return other;
+    });
+    if (stale > 0)
+      result.notes.push_back(
+          fmt::format("{}: {} of {} rows were simulated under other settings than the study's and are left out (demcal "
+                      "train makes them again)",
+                      path, stale, read.table.rows.size()));
+    result.all = data::merge(result.all, usable);
+  };
+  if (!study.training.table.empty()) add(study.training.table, data::read_table(study.training.table, study));
+  const std::string own = (fs::path(workspace.out) / "training.h5").string();
+  if (fs::exists(own)) add(own, read_own_table(workspace, result.notes));
+  result.table = result.all;
+  leave_out_unsteady(workspace, result);
+  if (!study.training.low.empty()) {
+    data::TableRead read = data::read_table(study.training.low, study);
+    for (std::string& left_out : read.left_out) result.notes.push_back(std::move(left_out));
+    result.findings.insert(result.findings.end(), read.findings.begin(), read.findings.end());
+    result.low = std::move(read.table);
+  }
+  tell_unknown_rows(study, result);
+  for (data::Finding& finding : placeholders(study)) result.findings.push_back(std::move(finding));
+  return result;
+}
+
+}  // namespace campaign

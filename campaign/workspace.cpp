@@ -1,0 +1,161 @@
+#include "campaign/workspace.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+#include "data/atomic_file.hpp"
+#include "data/csv.hpp"
+#include "dem/reading/read_case.hpp"
+#include "dem/reading/target.hpp"
+#include "dem/run/run.hpp"
+#include "uq/emulate/surrogate_settings.hpp"
+#include "uq/findings/results_file.hpp"
+
+namespace campaign {
+namespace fs = std::filesystem;
+namespace {
+
+/// Each parameter and control must name something the DEM has, in a range and unit that it can take.
+void check_target(const data::Section& section, const std::string& target_name, const data::Unit& unit, double low,
+                  double high) {
+  const std::optional<dem::Target> target = dem::find_target(target_name);
+  if (!target) {
+    std::string known;
+    for (const dem::Target& t : dem::targets()) known += (known.empty() ? "" : ", ") + t.name;
+    section.problem("target", fmt::format("the simulation has no quantity '{}'", target_name),
+                    "choose one of: " + known + ", contact.A-B.KEY, material.NAME.KEY");
+    return;
+  }
+  if (!data::convertible(unit.symbol, target->unit)) {
+    section.problem("unit", fmt::format("'{}' does not measure {} ({})", unit.symbol, target->name, target->unit),
+                    "use a unit of that dimension");
+    return;
+  }
+  const auto outside = [&](const char* key, double value) {
+    if (value >= target->low && value <= target->high) return;
+    section.problem(key,
+                    fmt::format("{} is outside the possible range [{:g}, {:g}] of {}", with_unit(value, unit),
+                                unit.from_si(target->low), unit.from_si(target->high), target->name),
+                    "choose a bound inside it");
+  };
+  outside("low", low);
+  outside("high", high);
+}
+
+std::string default_out(const data::Study& study) {
+  return fs::absolute(study.name + "-results").lexically_normal().string();
+}
+
+}  // namespace
+
+Workspace open_workspace(const StudyOptions& options) {
+  const data::StudyFile file = data::StudyFile::open(options.study, options.set);
+  Workspace workspace{.study = data::read_study(file), .cases = {}, .surrogates = {}, .out = {}, .plan = {}};
+  workspace.surrogates =
+      std::make_shared<const uq::SurrogateOptions>(uq::read_surrogate_options(file, workspace.study));
+  data::Study& study = workspace.study;
+  workspace.changes = options.set;
+  if (options.seed) {
+    study.seed = *options.seed;
+    workspace.changes.push_back(fmt::format("study.seed={}", study.seed));
+  }
+  if (file.root().child("rig").exists()) {
+    for (const data::Material& material : study.materials)
+      workspace.cases[material.name] = dem::read_case(file, material.name);
+    for (const data::Parameter& p : study.parameters)
+      check_target(file.root().child("parameters").child(p.name), p.target, p.unit, p.low, p.high);
+    for (const data::Control& c : study.controls)
+      check_target(file.root().child("controls").child(c.name), c.target, c.unit, c.low, c.high);
+    for (const data::Output& output : study.outputs)
+      if (!dem::has_output(output.name))
+        file.root().child("outputs").problem(output.name, fmt::format("the simulation has no output '{}'", output.name),
+                                             "choose one of: " + dem::output_names());
+  }
+  workspace.unsteady = file.root().child("training").choice("unsteady", {"leave_out", "use"}, "leave_out") == "use"
+                           ? Unsteady::use
+                           : Unsteady::leave_out;
+  workspace.plan = data::read_plan(file, study);
+  file.finish();
+  // How tables were read that are not plain CSV; what is wrong with them was said before.
+  for (const data::ObservationSet& set : study.observations)
+    if (const std::string how = data::read_csv(set.file).took_line(); !how.empty()) workspace.notes.push_back(how);
+  if (const std::string& table = study.training.table;
+      !table.empty() && fs::path(table).extension() == ".csv" && fs::exists(table))
+    if (const std::string how = data::read_csv(table).took_line(); !how.empty()) workspace.notes.push_back(how);
+  workspace.out = options.out.empty() ? default_out(study) : fs::absolute(options.out).lexically_normal().string();
+  return workspace;
+}
+
+void require_rig(const Workspace& workspace) {
+  if (!workspace.cases.empty()) return;
+  throw data::InputError(data::ExitStatus::bad_study,
+                         {workspace.study.file, "has no [rig], so there is nothing to simulate",
+                          "add a [rig] section (demcal new shows one)"});
+}
+
+void make_out(const Workspace& workspace, const std::string& subfolder) {
+  const fs::path out = workspace.out;
+  std::error_code failure;
+  if (fs::weakly_canonical(out, failure) == fs::weakly_canonical(workspace.study.folder, failure))
+    throw data::InputError(data::ExitStatus::cannot_write,
+                           {workspace.out, "is the study's own folder, and nothing is ever written there",
+                            "start demcal elsewhere, or give --out DIR"});
+  fs::create_directories(out / subfolder, failure);
+  if (failure)
+    throw data::InputError(
+        data::ExitStatus::cannot_write,
+        {(out / subfolder).string(), "cannot be made: " + failure.message(), "give another folder with --out DIR"});
+  if (::access((out / subfolder).c_str(), W_OK | X_OK) != 0)
+    throw data::InputError(data::ExitStatus::cannot_write,
+                           {(out / subfolder).string(), fmt::format("cannot be written: {}", std::strerror(errno)),
+                            "give another folder with --out DIR"});
+}
+
+namespace {
+
+/// Two studies of one name have one results folder by default, and the second must not replace the first's results.
+/// A study that was moved or renamed still owns its own.
+void require_own_results(const Workspace& workspace) {
+  const fs::path results = fs::path(workspace.out) / "results.json";
+  std::error_code failure;
+  if (!fs::exists(results, failure)) return;
+  std::string of;
+  try {
+    of = uq::load_results(results.string()).study_file;
+  } catch (const data::InputError&) {  // damaged or of another version: it says of nobody whose it is
+    return;
+  }
+  if (of.empty() || !fs::exists(of, failure) || fs::equivalent(of, workspace.study.file, failure)) return;
+  throw data::InputError(data::ExitStatus::cannot_write,
+                         {workspace.out, fmt::format("holds the results of another study, {}", of),
+                          "give another folder with --out DIR, give this study a name of its own ([study] name), or "
+                          "move those results away"});
+}
+
+}  // namespace
+
+std::unique_ptr<data::FolderLock> hold_out(const Workspace& workspace, Writes files, const std::string& command) {
+  make_out(workspace);
+  const char* const name = files == Writes::training ? "training" : files == Writes::results ? "results" : "run";
+  auto lock = std::make_unique<data::FolderLock>(workspace.out, name, "demcal " + command);
+  std::vector<std::string> written;
+  if (files == Writes::training) written = {"training.h5", "training.csv", "design.csv"};
+  if (files == Writes::results) {
+    require_own_results(workspace);
+    written = {"surrogate.h5", "results.json", "report.json", "report.html", "plan.json"};
+    for (const data::CalibrationCase& one : workspace.study.cases) written.push_back("posterior-" + one.name + ".nc");
+  }
+  for (const std::string& file : written) data::require_replaceable((fs::path(workspace.out) / file).string());
+  return lock;
+}
+
+std::string with_unit(double si, const data::Unit& unit) {
+  return fmt::format("{:.5g}{}{}", unit.from_si(si), unit.symbol.empty() ? "" : " ", unit.symbol);
+}
+
+}  // namespace campaign

@@ -1,0 +1,58 @@
+#pragma once
+// Which spheres a case's bed is made of.
+//
+// Mass fractions f_c of classes (one material and size, or one material with log-normal sizes) become numbers of
+// spheres n_c ~ f_c / m_c, m_c the mean mass of a sphere of the class; whole numbers by largest remainders, so that the
+// bed depends on no random number where sizes are listed. Log-normal sizes have the mass below a diameter d as
+// Phi(ln(d / median) / s), s = ln geometric_sd, cut off at low and high; the number below d is then log-normal too,
+// with ln median' = ln median - 3 s^2 (T. Hatch & S. Choate, J. Franklin Inst. 207:369 (1929)). They are drawn one from
+// each n-th part of the numbers, which keeps the mass of a bed close to what was asked for.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dem/case/case.hpp"
+
+namespace dem {
+
+/// The components of a bed; of one material it is that.
+std::vector<Component> components_of(const Case& c);
+std::vector<std::string> grain_names(const Case& c);
+/// "sand, steel", for messages.
+std::string listed(const std::vector<std::string>& names);
+
+/// Spheres of one component, of one size or of its log-normal distribution.
+struct GrainClass {
+  std::size_t component = 0;
+  double diameter = 0.0;   ///< m; 0 where drawn
+  double mean_mass = 0.0;  ///< kg
+  std::size_t count = 0;
+};
+
+struct BedSummary {
+  std::vector<GrainClass> classes;
+  std::size_t spheres = 0;
+  double mass = 0.0, volume = 0.0;       ///< kg, m3, of all spheres; expected where drawn
+  double smallest = 0.0, largest = 0.0;  ///< m, diameters
+  bool equal = false;                    ///< one class of one size
+};
+BedSummary summarise_bed(const Case& c);
+
+/// Smallest diameter of a material [m].
+double smallest_diameter(const Material& m);
+/// That of a sphere of mean mass [m].
+double mean_diameter(const Material& m);
+
+/// One for all, or one each, largest first.
+struct Grains {
+  std::vector<double> radius;           ///< m
+  std::vector<double> density;          ///< kg/m3
+  std::vector<std::uint32_t> material;  ///< component; empty: all 0
+};
+Grains draw_grains(const Case& c, std::uint64_t seed);
+
+/// Of `count` spheres [m3].
+double solid_volume(const Grains& grains, std::size_t count);
+
+}  // namespace dem

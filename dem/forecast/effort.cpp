@@ -1,0 +1,66 @@
+#include "dem/forecast/effort.hpp"
+
+#include <ctime>
+#include <numbers>
+
+#include "data/random.hpp"
+#include "dem/case/grains.hpp"
+
+namespace dem {
+namespace {
+
+double thread_time() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Spheres of the mean size that overlap by a ten-thousandth, at speeds up to that of a fall through one diameter, in a
+/// box that none leaves while this lasts.
+Setup lattice(const Case& c, const Derived& d) {
+  constexpr int side = 12;
+  const double size = d.diameter, step = size * (1.0 - 1e-4);
+  Setup s;
+  const double rim = 20.0 * size;
+  s.low = {-rim, -rim, -rim};
+  s.high = {side * step + rim, side * step + rim, side * step + rim};
+  s.periodic = {false, false, false};
+  data::RandomStream random(1, data::Purpose::packing, 3);
+  const double speed = std::sqrt(2.0 * c.run.gravity * size);
+  for (int k = 0; k < side * side * side; ++k) {
+    s.spheres.position.push_back(
+        {(k / (side * side) + 0.5) * step, (k / side % side + 0.5) * step, (k % side + 0.5) * step});
+    s.spheres.velocity.push_back(speed *
+                                 Vec3{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)});
+    if (d.bed.equal_radius > 0.0) continue;
+    s.spheres.radius.push_back(0.5 * size);
+    s.spheres.density.push_back(d.mass / (std::numbers::pi / 6.0 * size * size * size));
+    s.spheres.material.push_back(0);
+  }
+  if (d.bed.equal_radius > 0.0) {
+    s.spheres.radius = {d.bed.equal_radius};
+    s.spheres.density = {components_of(c)[0].material.density};
+  }
+  s.laws = make_force_pass(d.bed);
+  s.gravity = {};
+  s.time_step = d.time_step;
+  s.skin = d.skin;
+  return s;
+}
+
+}  // namespace
+
+Effort measure_effort(const Case& c, const Derived& d) {
+  Simulation simulation(lattice(c, d));
+  for (int k = 0; k < 20; ++k) simulation.step();
+  const double start = thread_time();
+  double steps = 0.0, passed = 0.0;
+  while (passed < 0.1 && steps < 20000.0) {
+    for (int k = 0; k < 10; ++k) simulation.step();
+    steps += 10.0;
+    passed = thread_time() - start;
+  }
+  return {steps * static_cast<double>(simulation.state().particles()) / passed, simulation.bytes_per_particle()};
+}
+
+}  // namespace dem

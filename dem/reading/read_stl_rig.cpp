@@ -1,0 +1,230 @@
+#include "dem/reading/read_stl_rig.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+
+#include "data/csv.hpp"
+#include "data/hash.hpp"
+#include "dem/walls/stl.hpp"
+
+namespace dem {
+namespace {
+
+using data::Section;
+
+/// Three quantities; nothing when the key is missing or wrong, which is then recorded.
+std::optional<Vec3> read_vector(const Section& s, std::string_view key, std::string_view unit) {
+  if (!s.has(key)) return {};
+  const std::vector<double> v = s.quantities(key, unit, data::any_number);
+  if (v.size() == 3) return Vec3{v[0], v[1], v[2]};
+  if (s.kind(key) != data::ValueKind::other) return {};  // no list: recorded as such
+  s.problem(key, fmt::format("has {} numbers", v.size()), "give three: x, y, z");
+  return {};
+}
+
+Vec3 demand_vector(const Section& s, std::string_view key, std::string_view unit, std::string_view example) {
+  if (!s.has(key)) s.problem(key, "is missing", fmt::format("add a line like {} = {}", key, example));
+  return read_vector(s, key, unit).value_or(Vec3{});
+}
+
+Vec3 read_direction(const Section& s, std::string_view key, Vec3 fallback) {
+  const Vec3 v = read_vector(s, key, "1").value_or(fallback);
+  if (length(v) > 0.0) return unit(v);
+  s.problem(key, "is no direction", "give a vector that is not zero");
+  return fallback;
+}
+
+/// The length that a unit's 1 stands for [m].
+double read_unit(const Section& s, std::string_view key, std::optional<std::string> fallback) {
+  const std::string name = s.text(key, std::move(fallback));
+  try {
+    if (data::convertible(name, "m")) return data::parse_unit(name).factor;
+  } catch (const std::invalid_argument&) {
+  }
+  if (!name.empty()) s.problem(key, fmt::format("'{}' is not a length", name), "give a unit like \"mm\"");
+  return 1.0;
+}
+
+std::string from_folder(const std::string& folder, const std::string& file) {
+  return (std::filesystem::path(folder) / file).lexically_normal().string();
+}
+
+/// What a file has wrong becomes a problem of the key that names it.
+void record(const Section& s, std::string_view key, const data::InputError& error) {
+  for (const data::Problem& p : error.problems) s.problem(key, fmt::format("{} {}", p.place, p.what), p.remedy);
+}
+
+Oscillation read_oscillation(const Section& s) {
+  Oscillation o;
+  o.kind = s.has("about") ? OscillationKind::about : OscillationKind::along;
+  const bool about = o.kind == OscillationKind::about;
+  if (about && s.has("along")) s.problem("along", "stands beside about", "keep one of them");
+  o.axis = read_direction(s, about ? "about" : "along", o.axis);
+  o.amplitude = s.quantity("amplitude", about ? "rad" : "m", data::non_negative);
+  o.frequency = s.quantity("frequency", "Hz", data::positive);
+  o.phase = s.quantity("phase", "rad", data::any_number, 0.0);
+  return o;
+}
+
+std::vector<SpeedPoint> read_programme(const Section& s) {
+  const std::vector<double> time = s.quantities("time", "s", data::non_negative);
+  const std::vector<double> speed = s.quantities("speed", "rad/s", data::any_number);
+  if (time.empty() || time.size() != speed.size()) {
+    s.problem("time", fmt::format("has {} entries and speed {}", time.size(), speed.size()),
+              "give as many times as speeds, at least one");
+    return {};
+  }
+  std::vector<SpeedPoint> programme;
+  for (std::size_t k = 0; k < time.size(); ++k) {
+    programme.push_back({time[k], speed[k]});
+    if (k > 0 && !(time[k] > time[k - 1]))
+      s.problem("time", fmt::format("goes from {:g} to {:g} s", time[k - 1], time[k]), "give ascending times");
+  }
+  return programme;
+}
+
+void read_motion(const Section& s, RigMesh& mesh) {
+  mesh.motion.axis = read_direction(s, "axis", mesh.motion.axis);
+  mesh.motion.point = read_vector(s, "point", "m").value_or(Vec3{});
+  const int ways = s.has("speed_ratio") + s.has("rpm") + s.has("programme");
+  if (ways > 1) s.problem("", "has more than one of speed_ratio, rpm and programme", "keep one of them");
+  mesh.speed_ratio = s.number("speed_ratio", data::any_number, 0.0);
+  if (s.has("rpm")) mesh.motion.programme = {{0.0, s.quantity("rpm", "rad/s", data::any_number)}};
+  if (s.has("programme")) mesh.motion.programme = read_programme(s.child("programme"));
+  for (const Section& o : s.array("oscillation")) mesh.motion.oscillations.push_back(read_oscillation(o));
+}
+
+void read_meshes(const Section& rig, const std::string& folder, StlRig& r) {
+  for (const Section& s : rig.array("mesh")) {
+    RigMesh mesh;
+    mesh.name = s.text("name");
+    for (const RigMesh& other : r.meshes) {
+      if (other.name == mesh.name)
+        s.problem("name", fmt::format("'{}' is taken by another mesh", mesh.name), "give each mesh a name of its own");
+    }
+    mesh.material = s.text("material", "wall");
+    const std::string file = s.text("file");
+    const double scale = read_unit(s, "unit", {});
+    read_motion(s, mesh);
+    if (file.empty()) continue;
+    try {
+      CheckedMesh checked = check_mesh(read_stl(from_folder(folder, file), scale), mesh.name, periods(r));
+      mesh.mesh = std::move(checked.mesh);
+      mesh.tolerance = checked.tolerance;
+      r.warnings.insert(r.warnings.end(), checked.warnings.begin(), checked.warnings.end());
+    } catch (const data::InputError& error) {
+      record(s, "file", error);
+      continue;
+    }
+    r.meshes.push_back(std::move(mesh));
+  }
+}
+
+void read_box(const Section& s, StlRig& r) {
+  r.low = demand_vector(s, "low", "m", R"(["0 mm", "-10 mm", "-10 mm"])");
+  r.high = demand_vector(s, "high", "m", R"(["20 mm", "10 mm", "10 mm"])");
+  for (const std::string& axis : s.texts("periodic")) {
+    if (axis == "x" || axis == "y" || axis == "z") {
+      r.periodic[static_cast<std::size_t>(axis[0] - 'x')] = true;
+    } else {
+      s.problem("periodic", fmt::format("'{}' is no axis", axis), R"(list some of "x", "y", "z")");
+    }
+  }
+}
+
+void read_region(const Section& s, StlRig& r) {
+  FillRegion& region = r.region;
+  if (s.has("radius")) {
+    region.shape = FillRegion::Shape::cylinder;
+    region.from = demand_vector(s, "from", "m", R"(["0 mm", "0 mm", "0 mm"])");
+    region.to = demand_vector(s, "to", "m", R"(["20 mm", "0 mm", "0 mm"])");
+    region.radius = s.quantity("radius", "m", data::positive);
+    region.inner_radius = s.quantity("inner_radius", "m", data::non_negative, 0.0);
+    if (!(length(region.to - region.from) > 0.0)) s.problem("to", "is the same point as from", "move one of them");
+  } else {
+    region.low = read_vector(s, "low", "m").value_or(r.low);
+    region.high = read_vector(s, "high", "m").value_or(r.high);
+  }
+}
+
+void read_packing(const Section& s, const std::string& folder, StlRig& r) {
+  const double scale = read_unit(s, "packing_unit", "m");
+  const std::string file = s.text("packing", "");
+  if (file.empty()) return;
+  try {
+    const data::Csv csv = data::read_csv(from_folder(folder, file));
+    const auto vector = [&](const data::CsvRow& row, const std::string& prefix) {
+      const auto at = [&](const char* axis) { return csv.number(row, csv.column(prefix + axis)); };
+      return Vec3{at("x"), at("y"), at("z")};
+    };
+    const bool moving = csv.find("vx") || csv.find("vy") || csv.find("vz");
+    const std::optional<std::size_t> frozen = csv.find("frozen");
+    for (const data::CsvRow& row : csv.rows) {
+      r.packing.push_back(scale * vector(row, ""));
+      if (moving) r.velocity.push_back(vector(row, "v"));
+      if (!frozen) continue;
+      const double flag = csv.number(row, *frozen);
+      if (flag != 0.0 && flag != 1.0)
+        s.problem("packing", fmt::format("{} is {:g}", csv.place(row, *frozen), flag), "write 1 for frozen, else 0");
+      r.frozen.push_back(flag == 1.0);
+    }
+    if (r.packing.empty())
+      s.problem("packing", fmt::format("{} has no row", file), "give positions in columns x, y, z");
+  } catch (const data::InputError& error) {
+    record(s, "packing", error);
+  }
+}
+
+void choose_measured(const Section& s, StlRig& r) {
+  const auto moving = std::find_if(r.meshes.begin(), r.meshes.end(),
+                                   [](const RigMesh& m) { return m.speed_ratio != 0.0 || moves(m.motion); });
+  if (moving != r.meshes.end()) r.measured = static_cast<std::size_t>(moving - r.meshes.begin());
+  const std::string name = s.text("torque_of", "");
+  if (name.empty()) return;
+  std::string known;
+  for (std::size_t k = 0; k < r.meshes.size(); ++k) {
+    if (r.meshes[k].name == name) {
+      r.measured = k;
+      return;
+    }
+    known += (known.empty() ? "" : ", ") + r.meshes[k].name;
+  }
+  s.problem("torque_of", fmt::format("there is no mesh '{}'", name), "choose one of: " + known);
+}
+
+/// Identity of what came from files, so that runs are made again when a file changes.
+std::string hash_content(const StlRig& r) {
+  std::string bytes;
+  const auto add = [&](const auto& rows) {
+    if (!rows.empty()) bytes.append(reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof rows[0]);
+  };
+  for (const RigMesh& m : r.meshes) {
+    add(m.mesh.vertices);
+    add(m.mesh.triangles);
+  }
+  add(r.packing);
+  add(r.velocity);
+  add(r.frozen);
+  return data::hash_text(bytes);
+}
+
+}  // namespace
+
+std::shared_ptr<const StlRig> read_stl_rig(const Section& s, const std::string& folder) {
+  StlRig r;
+  read_box(s.child("box"), r);
+  r.down = read_direction(s, "down", r.down);
+  read_meshes(s, folder, r);
+  read_region(s.child("region"), r);
+  read_packing(s, folder, r);
+  choose_measured(s, r);
+  r.content = hash_content(r);
+  return std::make_shared<const StlRig>(std::move(r));
+}
+
+}  // namespace dem

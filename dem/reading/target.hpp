@@ -1,0 +1,62 @@
+#pragma once
+// The names by which a study reaches the fields of a case, to calibrate or control them.
+//
+//   contact.KEY             of all contacts ("wall_" keys: of those with bodies)
+//   contact.A-B.KEY         of those between two materials, or of a material with a body, its material or "wall"
+//   material.KEY, rig.KEY   of the bed and of the rig
+//   material.NAME.KEY       of a mixture's component
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/error.hpp"
+#include "dem/case/case.hpp"
+
+namespace dem {
+
+struct Target {
+  std::string name;     ///< "contact.friction"; the last part alone will do, as no two names share it
+  std::string unit;     ///< SI
+  double low, high;     ///< SI, values that a simulation can take
+  std::string meaning;  ///< one line
+};
+
+/// The coefficients that a pair of materials may have of its own, by key.
+struct PairKey {
+  std::string_view key;
+  std::optional<double> PairContact::*field;
+};
+inline constexpr PairKey pair_keys[]{{"stiffness", &PairContact::stiffness},
+                                     {"restitution", &PairContact::restitution},
+                                     {"friction", &PairContact::friction},
+                                     {"rolling_friction", &PairContact::rolling_friction},
+                                     {"twisting_friction", &PairContact::twisting_friction},
+                                     {"hamaker", &PairContact::hamaker},
+                                     {"work_of_adhesion", &PairContact::work_of_adhesion}};
+
+/// Those that every case has; the others' names depend on the materials.
+const std::vector<Target>& targets();
+std::optional<Target> find_target(std::string_view name);  ///< none when there is none, whatever the materials
+Target target(std::string_view name);                      ///< throws std::out_of_range when there is none
+
+/// Sets the field to `si`. Throws data::InputError (78) for an unknown name, a value out of range, or a quantity that
+/// the case does not use.
+void set_target(Case& c, std::string_view name, double si);
+/// The field's value, or what it follows when it is not set.
+double get_target(const Case& c, std::string_view name);
+
+/// Why setting the quantity would change nothing in this case; empty where it would.
+std::string unused_because(const Case& c, std::string_view name);
+
+/// Names of all quantities set in this case: those of targets() that it uses, its components' and its pairs'.
+std::vector<std::string> quantities_of(const Case& c);
+
+/// Everything about a case that cannot be simulated.
+std::vector<data::Problem> problems(const Case& c);
+
+/// All resolved settings, one "name = value unit" a line in fixed order: hash it to know whether two runs are alike. A
+/// choice at its default is left out where it came after studies were run, so that their rows stay good.
+std::string settings_text(const Case& c);
+
+}  // namespace dem

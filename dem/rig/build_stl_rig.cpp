@@ -1,0 +1,249 @@
+// A rig of meshes from STL files, as a run sees it (dem/case/stl_rig.hpp).
+//
+// The spheres start at given positions, or on a cubic lattice of 1.1 diameters with a jitter of 0.04 diameters: of the
+// sites in the fill region that keep clear of every mesh, the largest set of sites next to each other (so that nothing
+// is put inside a shaft or a blade), filled from the bottom, the last layer thinned at random.
+//
+// The torque is that about the measured mesh's axis: what its drive must supply, positive when the powder resists, or,
+// for a mesh that does not turn, the powder's moment on it. The flow is positive along that axis.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "dem/rig/drive.hpp"
+#include "dem/rig/packing.hpp"
+#include "dem/rig/rig_kind.hpp"
+
+namespace dem {
+namespace {
+
+std::array<double, 3> components(Vec3 a) { return {a.x, a.y, a.z}; }
+constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
+std::string text(Vec3 a) { return fmt::format("({:.17g}, {:.17g}, {:.17g})", a.x, a.y, a.z); }
+std::string short_text(Vec3 a) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", a.x, a.y, a.z); }
+
+bool outside(const StlRig& rig, Vec3 p) {
+  return !(p.x >= rig.low.x && p.y >= rig.low.y && p.z >= rig.low.z && p.x <= rig.high.x && p.y <= rig.high.y &&
+           p.z <= rig.high.z);
+}
+
+[[noreturn]] void fail(std::string place, std::string what, std::string remedy) {
+  throw data::InputError(data::ExitStatus::bad_study, {std::move(place), std::move(what), std::move(remedy)});
+}
+
+/// Given positions must lie in the box and clear of the meshes, but for a tenth of a radius.
+void check_packing(const StlRig& rig, std::span<const Body> bodies, double radius) {
+  std::vector<Surface> surfaces;
+  for (const Body& b : bodies) surfaces.push_back(make_surface(b.mesh, radius));
+  for (std::size_t k = 0; k < rig.packing.size(); ++k) {
+    const Vec3 p = rig.packing[k];
+    if (outside(rig, p)) {
+      fail("rig.packing", fmt::format("has sphere {} at {} m, outside the box", k + 1, short_text(p)),
+           "move it inside, or make rig.box larger");
+    }
+    const double depth = depth_in_bodies(bodies, surfaces, p, radius);
+    if (depth > 0.1 * radius) {
+      fail("rig.packing",
+           fmt::format("has sphere {} at {} m, {:.2g} of a radius inside a mesh", k + 1, short_text(p), depth / radius),
+           "move it clear of the meshes");
+    }
+  }
+}
+
+void fill(const Case& c, std::uint64_t seed, BuiltRig& built) {
+  const StlRig& rig = *c.rig.stl;
+  const BedSummary bed = summarise_bed(c);
+  built.grains = draw_grains(c, seed);
+  const Parcels parcels = make_parcels(built.grains, bed.spheres);
+  std::vector<Vec3> sites = free_sites(
+      {rig.region, rig.low, rig.high, rig.periodic, rig.down, bed.largest, parcels.clearance}, built.bodies, seed);
+  if (sites.size() < parcels.sites()) {
+    const std::string parts = bed.equal ? "" : fmt::format(" ({} sites of the largest)", parcels.sites());
+    fail("rig.fill",
+         fmt::format("asks for {} spheres of {:g} m{}, but the fill region has room for {} clear of the meshes",
+                     bed.spheres, bed.largest, parts, sites.size()),
+         "lower the fill, or make rig.region larger");
+  }
+  built.position = place(parcels, jittered(std::move(sites), parcels.sites(), bed.largest, seed), bed.largest);
+}
+
+void check_mesh_in_box(const RigMesh& m, const Case& c, std::vector<data::Problem>& found) {
+  const StlRig& rig = *c.rig.stl;
+  const std::string place = fmt::format("rig.mesh.{}", m.name);
+  Vec3 low = m.mesh.vertices.at(0), high = low;
+  for (const Vec3 v : m.mesh.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  if (!(length(high - low) > summarise_bed(c).smallest)) {
+    found.push_back(
+        {place, fmt::format("is {:g} m across, smaller than a sphere", length(high - low)), "correct the mesh's unit"});
+  }
+  const auto from = components(low), to = components(high), first = components(rig.low), last = components(rig.high);
+  for (std::size_t a = 0; a < 3; ++a) {
+    // Along a periodic axis a mesh may hang over, as its images do at the other end.
+    const double over = rig.periodic[a] ? 0.5 * (last[a] - first[a]) : std::numeric_limits<double>::infinity();
+    if (from[a] < first[a] - over || to[a] > last[a] + over || to[a] < first[a] || from[a] > last[a]) {
+      found.push_back({place,
+                       fmt::format("spans {:.6g} to {:.6g} m along {}, beyond the box of {:.6g} to {:.6g} m", from[a],
+                                   to[a], axis_names[a], first[a], last[a]),
+                       rig.periodic[a] ? "give one box length of the mesh, or another rig.box"
+                                       : "correct the mesh's unit, or rig.box"});
+    }
+  }
+}
+
+void check_motion(const RigMesh& m, const Case& c, std::vector<data::Problem>& found) {
+  const StlRig& rig = *c.rig.stl;
+  const std::string place = fmt::format("rig.mesh.{}", m.name);
+  const Motion motion = motion_of(m, c.rig.angular_velocity);
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!rig.periodic[a]) continue;
+    const auto along = [&](Vec3 axis) { return std::abs(components(axis)[a]) > 1.0 - 1e-9; };
+    bool fits = motion.programme.empty() || along(motion.axis);
+    for (const Oscillation& o : motion.oscillations) fits = fits && (o.kind == OscillationKind::along || along(o.axis));
+    if (!fits) {
+      found.push_back({place,
+                       fmt::format("turns about an axis across {}, along which the box is periodic", axis_names[a]),
+                       "turn it about that axis, or make the box not periodic"});
+    }
+    for (const Oscillation& o : motion.oscillations) {
+      const double way = std::abs(components(o.axis)[a]) * o.amplitude;
+      const double size = components(rig.high - rig.low)[a];
+      if (o.kind == OscillationKind::along && way > 0.25 * size) {
+        found.push_back({place,
+                         fmt::format("oscillates by {:g} m along the periodic box of {:g} m, but at most a quarter of "
+                                     "the box is followed",
+                                     way, size),
+                         "lower the amplitude, or make the box longer"});
+      }
+    }
+  }
+}
+
+BuiltRig build(const Case& c, std::uint64_t seed) {
+  const StlRig& rig = *c.rig.stl;
+  BuiltRig built;
+  built.low = rig.low;
+  built.high = rig.high;
+  built.periodic = rig.periodic;
+  built.down = rig.down;
+  for (const RigMesh& m : rig.meshes)
+    built.bodies.push_back(
+        {m.name, with_copies(m.mesh, periods(rig), m.tolerance), motion_of(m, c.rig.angular_velocity)});
+  if (rig.packing.empty()) {
+    fill(c, seed, built);
+  } else {
+    built.grains = draw_grains(c, seed);
+    check_packing(rig, built.bodies, built.grains.radius[0]);
+    built.position = rig.packing;
+    built.velocity = rig.velocity;
+    built.frozen = rig.frozen;
+  }
+  const Motion measured = built.bodies.empty() ? Motion{} : built.bodies[rig.measured].motion;
+  const Vec3 axis = measured.axis, size = rig.high - rig.low;
+  built.sensor = {rig.measured, drive_sign(measured, c.run) * axis, axis,
+                  std::abs(axis.x) * size.x + std::abs(axis.y) * size.y + std::abs(axis.z) * size.z, period(measured)};
+  return built;
+}
+
+std::vector<data::Problem> problems_of(const Case& c) {
+  std::vector<data::Problem> found;
+  const StlRig& rig = *c.rig.stl;
+  const auto low = components(rig.low), high = components(rig.high);
+  const BedSummary bed = summarise_bed(c);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double size = high[a] - low[a], least = rig.periodic[a] ? 4.0 * (1.0 + c.run.skin) * bed.largest : 0.0;
+    if (!(size > least)) {
+      found.push_back({"rig.box",
+                       fmt::format("is {:g} m long along {}, but must be longer than {:g} m{}", size, axis_names[a],
+                                   least, rig.periodic[a] ? " (four spheres, as it is periodic)" : ""),
+                       "correct rig.box"});
+    }
+  }
+  if (rig.meshes.size() > max_bodies) {
+    found.push_back({"rig.mesh", fmt::format("comes {} times, but at most {}", rig.meshes.size(), max_bodies),
+                     "join meshes that move together into one file"});
+  }
+  if (!found.empty()) return found;
+  bool driven = false;
+  for (const RigMesh& m : rig.meshes) {
+    check_mesh_in_box(m, c, found);
+    check_motion(m, c, found);
+    driven = driven || m.speed_ratio != 0.0;
+  }
+  if (driven && c.rig.angular_velocity == 0.0)
+    found.push_back({"rig.rpm", "is zero: a mixer at rest has no torque to measure", "give a speed"});
+  if (!rig.packing.empty() && !bed.equal) {
+    found.push_back({"rig.packing", "says where spheres of one size start, and those of the bed differ",
+                     "remove packing, and give a fill"});
+  } else if (!rig.packing.empty() && bed.spheres != rig.packing.size()) {
+    found.push_back({"rig.fill",
+                     fmt::format("makes {} spheres, but rig.packing has {} positions", bed.spheres, rig.packing.size()),
+                     "leave fill away, or remove packing"});
+  }
+  return found;
+}
+
+std::string settings(const Case& c) {
+  const StlRig& rig = *c.rig.stl;
+  std::string lines = fmt::format("rig.box = {} {} {}{}{}\nrig.down = {}\nrig.content = {}\n", text(rig.low),
+                                  text(rig.high), rig.periodic[0] ? "x" : "", rig.periodic[1] ? "y" : "",
+                                  rig.periodic[2] ? "z" : "", text(rig.down), rig.content);
+  for (const RigMesh& m : rig.meshes) {
+    if (m.material != "wall") lines += fmt::format("rig.mesh.{}.material = {}\n", m.name, m.material);
+    lines += fmt::format("rig.mesh.{} = about {} through {} ratio {:.17g}", m.name, text(m.motion.axis),
+                         text(m.motion.point), m.speed_ratio);
+    for (const SpeedPoint& p : m.motion.programme)
+      lines += fmt::format(" [{:.17g}, {:.17g}]", p.time, p.angular_velocity);
+    for (const Oscillation& o : m.motion.oscillations) {
+      lines += fmt::format(" {} {} {:.17g} {:.17g} {:.17g}", o.kind == OscillationKind::along ? "along" : "about",
+                           text(o.axis), o.amplitude, o.frequency, o.phase);
+    }
+    lines += "\n";
+  }
+  lines += fmt::format("rig.torque_of = {}\n", rig.meshes.empty() ? "" : rig.meshes[rig.measured].name);
+  const FillRegion& r = rig.region;
+  if (!rig.packing.empty()) return lines;
+  if (r.shape == FillRegion::Shape::box)
+    return lines + fmt::format("rig.region = box {} {}\n", text(r.low), text(r.high));
+  return lines + fmt::format("rig.region = cylinder {} {} {:.17g} {:.17g}\n", text(r.from), text(r.to), r.radius,
+                             r.inner_radius);
+}
+
+std::vector<NamedMesh> meshes(const Case& c) {
+  std::vector<NamedMesh> all;
+  for (const RigMesh& m : c.rig.stl->meshes) all.push_back({m.name, m.mesh});
+  return all;
+}
+
+std::vector<BodyLabel> labels(const Case& c) {
+  std::vector<BodyLabel> all;
+  for (const RigMesh& m : c.rig.stl->meshes) all.push_back({m.name, m.material});
+  return all;
+}
+
+double fill_depth(const Case& c, double volume) {
+  const StlRig& rig = *c.rig.stl;
+  const Vec3 size = rig.high - rig.low, down = rig.down;
+  const double height = std::abs(down.x) * size.x + std::abs(down.y) * size.y + std::abs(down.z) * size.z;
+  const double box = size.x * size.y * size.z;
+  return box > 0.0 ? volume * height / box : 0.0;
+}
+
+}  // namespace
+
+const RigKind stl_rig{.name = "stl",
+                      .build = build,
+                      .meshes = meshes,
+                      .warnings = [](const Case& c) { return c.rig.stl->warnings; },
+                      .problems = problems_of,
+                      .settings = settings,
+                      .labels = labels,
+                      .tool_speed = [](const Case& c) { return mesh_speed(*c.rig.stl, c.rig.angular_velocity); },
+                      .fill_depth = fill_depth};
+
+}  // namespace dem

@@ -1,0 +1,23 @@
+#include "dem/rig/drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dem {
+
+double drive_sign(const Motion& motion, const RunControl& run) {
+  double fastest = 0.0;
+  for (const SpeedPoint& p : motion.programme) fastest = std::max(fastest, std::abs(p.angular_velocity));
+  const double turned = programme_angle(motion, run.longest) - programme_angle(motion, run.start_up);
+  return turned > 1e-9 * fastest * run.longest ? -1.0 : 1.0;
+}
+
+bool drive_sign_corrected(const Case& c) {
+  if (!c.rig.stl || c.rig.stl->meshes.empty()) return false;
+  const Motion motion = motion_of(c.rig.stl->meshes[c.rig.stl->measured], c.rig.angular_velocity);
+  const double at_last = programme_speed(motion, std::numeric_limits<double>::max()) > 0.0 ? -1.0 : 1.0;
+  return drive_sign(motion, c.run) != at_last;
+}
+
+}  // namespace dem

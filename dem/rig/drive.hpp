@@ -1,0 +1,17 @@
+#pragma once
+// The sign between the powder's moment on a mesh about its axis and the torque that its drive supplies.
+#include "dem/case/case.hpp"
+#include "dem/walls/motion.hpp"
+
+namespace dem {
+
+/// -1 where the mesh turns forward on the whole over the measured window, from run.start_up to run.longest, so that a
+/// torque that the powder resists with is positive; else +1. A mesh that turns as far back as forward, or not at all,
+/// has the moment itself as its torque.
+double drive_sign(const Motion& motion, const RunControl& run);
+
+/// Whether the measured mesh's sign differs from that of its programme's last speed, which decided once: runs of such a
+/// rig are not those of before.
+bool drive_sign_corrected(const Case& c);
+
+}  // namespace dem

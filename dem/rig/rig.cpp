@@ -1,0 +1,35 @@
+#include "dem/rig/rig.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "dem/rig/rig_kind.hpp"
+
+namespace dem {
+namespace {
+
+const RigKind& kind_of(const Case& c) { return c.rig.stl ? stl_rig : slice_rig; }
+
+}  // namespace
+
+const char* rig_kind(const Case& c) { return kind_of(c).name; }
+BuiltRig build_rig(const Case& c, std::uint64_t seed) { return kind_of(c).build(c, seed); }
+std::vector<NamedMesh> rig_meshes(const Case& c) { return kind_of(c).meshes(c); }
+std::vector<std::string> rig_warnings(const Case& c) { return kind_of(c).warnings(c); }
+std::vector<data::Problem> rig_problems(const Case& c) { return kind_of(c).problems(c); }
+std::string rig_settings(const Case& c) { return kind_of(c).settings(c); }
+std::vector<BodyLabel> body_labels(const Case& c) { return kind_of(c).labels(c); }
+double tool_speed(const Case& c) { return kind_of(c).tool_speed(c); }
+
+std::vector<std::string> body_names(const Case& c) {
+  std::vector<std::string> names{"wall"};
+  for (const BodyLabel& b : body_labels(c)) {
+    for (const std::string& name : {b.name, b.material})
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+double fill_depth(const Case& c) { return kind_of(c).fill_depth(c, summarise_bed(c).volume * 6.0 / std::numbers::pi); }
+
+}  // namespace dem

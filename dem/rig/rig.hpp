@@ -1,0 +1,73 @@
+#pragma once
+// A rig as a run sees it, whatever its kind: bodies, box, where the spheres start, and what is measured. The kinds are
+// listed in dem/rig/rig_kind.hpp.
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "data/error.hpp"
+#include "dem/case/case.hpp"
+#include "dem/case/grains.hpp"
+#include "dem/engine/simulation.hpp"
+
+namespace dem {
+
+/// What is measured.
+struct Sensor {
+  std::size_t body = 0;      ///< whose torque is the output
+  Vec3 torque_axis;          ///< torque = torque_axis . moment of the powder on that body
+  Vec3 flow_axis;            ///< axial flow = flow_axis . momentum / flow_length
+  double flow_length = 1.0;  ///< m, of the box along that axis
+  double period = 0.0;       ///< s of a turn of that body, 0 when it does not move
+};
+
+struct BuiltRig {
+  Vec3 low, high;  ///< m, the box
+  std::array<bool, 3> periodic{false, false, false};
+  Vec3 down{0.0, 0.0, -1.0};  ///< unit, direction of gravity
+  std::vector<Body> bodies;
+  Grains grains;
+  std::vector<Vec3> position;        ///< m, of the spheres at the start
+  std::vector<Vec3> velocity;        ///< m/s, empty: at rest
+  std::vector<std::uint8_t> frozen;  ///< 1: that sphere does not move; empty: none
+  Sensor sensor;
+};
+
+/// "slice", "stl": what rig.kind says.
+const char* rig_kind(const Case& c);
+
+/// Throws data::InputError (78) when the spheres do not fit or start outside.
+BuiltRig build_rig(const Case& c, std::uint64_t seed);
+
+/// One box length of each mesh, for the user to look at.
+struct NamedMesh {
+  std::string name;
+  TriangleMesh mesh;
+};
+std::vector<NamedMesh> rig_meshes(const Case& c);
+
+/// Of the meshes' check; the same for every run.
+std::vector<std::string> rig_warnings(const Case& c);
+
+/// What of the rig alone cannot be simulated.
+std::vector<data::Problem> rig_problems(const Case& c);
+
+/// Settings that no target names, one "name = value" a line.
+std::string rig_settings(const Case& c);
+
+/// What the rig's bodies are called and made of, in their order.
+struct BodyLabel {
+  std::string name, material;
+};
+std::vector<BodyLabel> body_labels(const Case& c);
+/// All by which a pair of materials may name a body: names, materials and "wall".
+std::vector<std::string> body_names(const Case& c);
+
+/// The highest speed of any point of a moving body [m/s].
+double tool_speed(const Case& c);
+
+/// How high the powder would stand in the box without bodies, its spheres on a cubic lattice [m].
+double fill_depth(const Case& c);
+
+}  // namespace dem

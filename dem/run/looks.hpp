@@ -1,0 +1,72 @@
+#pragma once
+// How long a run goes on, and what of it is measured: decided at a few looks from the series alone, so that a run that
+// was interrupted, or that went on for longer, is judged alike.
+//
+// Start-up. Dropped are run.start_up and run.start_up_turns at least, whichever is longer. Of what is left the front
+// goes in steps of a tenth of it, up to half (P. Heidelberger, P. D. Welch, Oper. Res. 31 (1983) 1109), until torque,
+// coordination and kinetic energy do not drift. Each is tested by data/steadiness.hpp, and together they call a steady
+// run drifting with a chance of `drift_level` at most.
+// A bed whose bonds align meanwhile (dem/engine/order.hpp) is not steady either, however steady its torque seems.
+// Measured are run.shortest and run.shortest_turns at least.
+//
+// Looks. The first comes when the shortest measurement is done, each next one when half as much again is (1983, alike).
+// The length is fixed once: at the first look at which the run is steady and its error known, as C. Stein, Ann. Math.
+// Stat. 16 (1945) 243 does with a first sample. With error e there and e0 wanted after n samples the run measures
+// n (e/e0)^2, and stops, whatever its error is then: an error that is not waited for is not biased by looking. Where it
+// drifts there, it is looked at again after half as much again.
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "data/steadiness.hpp"
+#include "dem/case/case.hpp"
+
+namespace dem {
+
+struct Series;
+
+enum class Steady {
+  yes,
+  drifting,  ///< it was not steady by the end
+  unclear,   ///< too short for its correlation: its error is not known, or what seems to drift may be chance
+};
+std::string_view name_of(Steady state);  ///< "steady", "drifting", "short"
+
+/// The rule in samples since the tool began to turn.
+struct LookRule {
+  std::size_t start_up = 0;  ///< dropped at least
+  std::size_t shortest = 1;  ///< measured at least
+  std::size_t longest = 1;   ///< start-up and measurement
+  double standard_error = 0.02;
+};
+/// `time` is that of a sample, `turn` that of a turn of the tool, 0 when it has none [s].
+LookRule look_rule(const RunControl& run, double time, double turn);
+
+inline constexpr double drift_level = 0.05;
+
+/// Of this file's rule: raised when it comes to stop elsewhere, so that runs kept in files are judged again.
+inline constexpr int look_rule_version = 1;
+
+/// What a look finds.
+struct Measured {
+  Steady state = Steady::unclear;
+  std::size_t first = 0, count = 0;  ///< samples measured: first ... first + count - 1
+  data::SeriesMean torque;
+  std::vector<double> drift_p;  ///< of torque, coordination, kinetic energy
+  double bonds_rise = 0.0;      ///< of the bond order meanwhile, 0 where none is seen
+};
+/// Of the first `samples` samples.
+Measured measure(const LookRule& rule, const Series& series, std::size_t samples);
+
+/// The looks one after the other.
+struct Looks {
+  std::size_t next = 0;  ///< samples at the next look
+  bool planned = false;  ///< its length is fixed
+  bool ended = false;
+  Measured last;
+};
+Looks begin_looks(const LookRule& rule);
+/// Takes the looks that the series reaches, if any.
+void take_looks(const LookRule& rule, const Series& series, Looks& looks);
+
+}  // namespace dem

@@ -1,0 +1,66 @@
+#include "dem/run/outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace dem {
+namespace {
+
+double one(const Sampling&) { return 1.0; }
+
+}  // namespace
+
+const std::vector<MeanOutput>& mean_outputs() {
+  static const std::vector<MeanOutput> all{
+      {"torque", "N m", &Series::torque,
+       [](const Sampling& of, const Simulation& now) {
+         return dot(of.sensor.torque_axis, now.sums().body[of.sensor.body].torque);
+       },
+       one},
+      {"axial_flow", "kg/s", &Series::axial_flow,
+       [](const Sampling& of, const Simulation& now) { return dot(of.sensor.flow_axis, now.carried().momentum); },
+       [](const Sampling& of) { return of.sensor.flow_length; }},
+      {"coordination", "1", &Series::coordination,
+       [](const Sampling&, const Simulation& now) { return static_cast<double>(now.sums().contacts); },
+       [](const Sampling& of) { return 0.5 * of.spheres; }},  // a contact has two spheres
+      {"kinetic_energy", "J", &Series::kinetic_energy,
+       [](const Sampling&, const Simulation& now) { return now.carried().kinetic_energy; }, one},
+      {"normal_stress", "Pa", &Series::normal_stress,
+       [](const Sampling&, const Simulation& now) { return now.sums().virial; },
+       [](const Sampling& of) { return 3.0 * of.solid_volume; }},
+  };
+  return all;
+}
+
+const std::vector<Output>& outputs() {
+  static const std::vector<Output> all = [] {
+    std::vector<Output> made;
+    for (const MeanOutput& o : mean_outputs()) {
+      made.push_back({o.name, o.unit});
+      if (made.size() == 1) made.push_back({"torque_fluctuation", o.unit});
+    }
+    return made;
+  }();
+  return all;
+}
+
+bool has_output(std::string_view name) {
+  return std::any_of(outputs().begin(), outputs().end(), [&](const Output& o) { return o.name == name; });
+}
+
+std::string output_names() {
+  std::string text;
+  for (const Output& o : outputs()) text += (text.empty() ? "" : ", ") + o.name;
+  return text;
+}
+
+const data::SeriesMean& output(const RunResult& result, std::string_view name) {
+  for (std::size_t k = 0; k < outputs().size(); ++k) {
+    if (outputs()[k].name == name) return result.summary.mean.at(k);
+  }
+  throw std::out_of_range(fmt::format("no output named {}", name));
+}
+
+}  // namespace dem

@@ -1,0 +1,134 @@
+#pragma once
+// One run of a case: fill, settle, turn, sample until the mean torque is known well enough.
+//
+// Every sample is the mean over the steps since the last one, so that nothing aliases; those of the settling are not
+// kept.
+//   torque              N m, what the drive must supply: minus the powder's moment on the mixer about its axis,
+//                       positive when the powder resists (a rig from STL says which mesh: dem/case/stl_rig.hpp)
+//   torque_fluctuation  N m, standard deviation of the torque averaged over windows of RunControl::window; its error is
+//                       that of n independent windows, sd / sqrt(2 (n - 1))
+//   axial_flow          kg/s, sum of m v_x over the box / its length, positive the way the helix conveys (a rig
+//                       from STL: along the axis)
+//   coordination        touching spheres per sphere, walls not counted
+//   kinetic_energy      J, translation and rotation, of the whole box
+//   normal_stress       Pa, sum over sphere contacts of normal force * distance of the centres / (3 * volume of the
+//                       spheres): the mean pressure divided by the solid fraction
+// What of the series is measured, and when the run has been long enough, is in dem/run/looks.hpp.
+#include <cstdint>
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/time_series.hpp"
+#include "dem/bed/derived.hpp"
+#include "dem/case/case.hpp"
+#include "dem/contact/state.hpp"
+#include "dem/engine/simulation.hpp"
+#include "dem/run/looks.hpp"
+
+namespace dem {
+
+struct Series {
+  std::vector<double> time;            ///< s since the mixer started to turn, end of the sample
+  std::vector<double> torque;          ///< N m
+  std::vector<double> axial_flow;      ///< kg/s
+  std::vector<double> coordination;    ///< 1
+  std::vector<double> kinetic_energy;  ///< J
+  std::vector<double> normal_stress;   ///< Pa
+  std::vector<double> look_time;       ///< s, of the looks at the bed, each 0.05 s
+  std::vector<double> bond_order;      ///< 1, dem/engine/order.hpp, at a look
+};
+
+struct Output {
+  std::string name, unit;
+};
+/// The outputs of a run, torque first.
+const std::vector<Output>& outputs();
+bool has_output(std::string_view name);
+std::string output_names();  ///< "torque, torque_fluctuation, ..."
+
+struct Diagnostics {
+  Derived derived;  ///< pull-off, Bond number, time step, ...
+  std::uint64_t steps = 0, rebuilds = 0;
+  std::uint64_t deep_contacts = 0;  ///< contact-steps with an overlap beyond half the limit
+  double max_overlap = 0.0;         ///< of a radius, while turning
+  double simulated = 0.0;           ///< s of turning
+  double bytes_per_particle = 0.0;  ///< of state and lists
+  double steps_per_second = 0.0;    ///< particle-steps per second of processor time
+  int threads = 1;
+  std::string isa;  ///< of the contact forces (isa.hpp)
+};
+
+struct Summary {
+  std::vector<data::SeriesMean> mean;  ///< in the order of outputs(); each with its own `reliable`
+  double cpu_seconds = 0.0;
+  bool reached_target = false;     ///< the standard error of torque is the wanted one or smaller
+  Steady state = Steady::unclear;  ///< whether the means are those of the steady flow
+  std::string why;                 ///< it is not steady: what drifts or lacks, and the remedy
+  double measured_from = 0.0;      ///< s of turning, the start of what is measured
+  double turns = 0.0;              ///< measured
+  std::vector<double> drift_p;     ///< of torque, coordination, kinetic energy (dem/run/looks.hpp)
+  std::string ordering;            ///< how the bed ordered; empty when it did not
+};
+
+/// What a run has summed since its last sample, and over all.
+struct Progressing {
+  std::uint64_t steps = 0;   ///< in the sample under way
+  std::vector<double> sums;  ///< in the order of mean_outputs() (dem/run/outputs.hpp)
+  std::uint64_t deep_contacts = 0;
+  double max_overlap = 0.0;
+  double cpu_seconds = 0.0;
+};
+
+/// Enough to go on as if nothing had happened, to the bit.
+struct Checkpoint {
+  State state;
+  Series series;
+  Progressing under_way;
+};
+
+enum class RunStatus { done, interrupted, failed };
+
+struct RunResult {
+  RunStatus status = RunStatus::done;
+  std::string reason;  ///< of a failure: what, where, when
+  std::vector<std::string> warnings;
+  std::uint64_t seed = 0;
+  Series series;
+  Summary summary;
+  Diagnostics diagnostics;
+  Checkpoint checkpoint;  ///< the last state; of a failed run a good one before
+};
+
+struct RunProgress {
+  double fraction = 0.0;   ///< of the longest run
+  double simulated = 0.0;  ///< s of turning
+  double torque = 0.0;     ///< N m, mean since the start-up
+  double relative_error = 1.0;
+};
+
+struct RunOptions {
+  int threads = 1;
+  std::stop_token stop = {};
+  std::function<void(const RunProgress&)> progress = {};  ///< about every 50 ms of simulated time
+  double checkpoint_interval = 60.0;                      ///< s of wall time
+  std::function<void(const Checkpoint&)> checkpoint = {};
+  const Checkpoint* resume = nullptr;  ///< go on from here
+  /// Moments to be kept, evenly spaced from the start of turning to the earliest end of the run; `frame` is called at
+  /// each with its number and the s of turning. A run that goes on from a checkpoint gives those that come after it.
+  int frames = 0;
+  std::function<void(int index, const Simulation& simulation, double time)> frame = {};
+};
+
+/// The steps of a run, settling included, at which its frames are.
+std::vector<std::uint64_t> frame_steps(const Case& c, int frames);
+
+/// Throws data::InputError (78) when the case has problems; a run that cannot go on is a result with status failed.
+RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options = {});
+
+/// Mean and standard error of an output by name. Throws std::out_of_range.
+const data::SeriesMean& output(const RunResult& result, std::string_view name);
+
+}  // namespace dem

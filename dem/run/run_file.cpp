@@ -1,0 +1,314 @@
+#include "dem/run/run_file.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <type_traits>
+
+#include "data/atomic_file.hpp"
+#include "data/error.hpp"
+#include "data/hdf5.hpp"
+#include "data/origin.hpp"
+#include "data/provenance.hpp"
+#include "dem/reading/target.hpp"
+#include "dem/run/outputs.hpp"
+
+namespace dem {
+namespace {
+
+constexpr std::int64_t format = 3;
+
+/// Calls visit(name, vector) for each vector of the state; rows are plain data.
+template <class AnyState, class Visit>
+void each_vector(AnyState& s, Visit&& visit) {
+  visit("position", s.position);
+  visit("motion", s.motion);
+  visit("half", s.half);
+  visit("load", s.load);
+  visit("reference", s.reference);
+  visit("id", s.id);
+  visit("ghost", s.ghost);
+  visit("pair", s.pair);
+  visit("partner_load", s.partner_load);
+  visit("in_range", s.in_range);
+  visit("history_at", s.history_at);
+  visit("chunk_first", s.chunk_first);
+  visit("chunk_pair", s.chunk_pair);
+  visit("chunk_wall", s.chunk_wall);
+  visit("halo_owner", s.halo_owner);
+  visit("halo_part", s.halo_part);
+  visit("wall", s.wall);
+  visit("features", s.features);
+  visit("feature_gap", s.feature_gap);
+}
+
+/// The chunks' pools, one after the other.
+template <class Row>
+struct Pooled {
+  std::vector<Row> rows;
+  std::vector<std::uint32_t> free, size;  ///< size: width, rows and places given back of each chunk
+};
+template <class Row>
+Pooled<Row> pooled(const std::vector<Pool<Row>>& pools) {
+  Pooled<Row> all;
+  for (const Pool<Row>& pool : pools) {
+    all.rows.insert(all.rows.end(), pool.rows.begin(), pool.rows.end());
+    all.free.insert(all.free.end(), pool.free.begin(), pool.free.end());
+    for (const std::size_t size : {std::size_t{pool.width}, pool.rows.size(), pool.free.size()})
+      all.size.push_back(static_cast<std::uint32_t>(size));
+  }
+  return all;
+}
+template <class Row>
+std::vector<Pool<Row>> unpooled(const Pooled<Row>& all) {
+  std::vector<Pool<Row>> pools;
+  auto row = all.rows.begin();
+  auto free = all.free.begin();
+  for (std::size_t k = 0; k + 2 < all.size.size(); k += 3) {
+    const auto rows = static_cast<std::ptrdiff_t>(all.size[k + 1]),
+               places = static_cast<std::ptrdiff_t>(all.size[k + 2]);
+    if (rows > all.rows.end() - row || places > all.free.end() - free) break;
+    pools.push_back({all.size[k], {row, row + rows}, {free, free + places}});
+    row += rows;
+    free += places;
+  }
+  return pools;
+}
+/// Calls visit(name, vector) for the parts of the two kinds of pool.
+template <class AnyHistory, class AnyMemory, class Visit>
+void each_pooled(AnyHistory& history, AnyMemory& memory, Visit&& visit) {
+  visit("history", history.rows);
+  visit("history_free", history.free);
+  visit("history_size", history.size);
+  visit("wall_memory", memory.rows);
+  visit("wall_memory_free", memory.free);
+  visit("wall_memory_size", memory.size);
+}
+
+template <class AnySeries, class Visit>
+void each_series(AnySeries& s, Visit&& visit) {
+  visit("time", "s", s.time);
+  for (const MeanOutput& output : mean_outputs()) visit(output.name, output.unit, s.*output.series);
+  visit("look_time", "s", s.look_time);
+  visit("bond_order", "1", s.bond_order);
+}
+
+void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
+  group.set("step", static_cast<std::int64_t>(now.state.step));
+  group.set("rebuilds", static_cast<std::int64_t>(now.state.rebuilds));
+  group.set("dissipated_J", now.state.dissipated);
+  group.set("rebuild_step", static_cast<std::int64_t>(now.state.rebuild_step));
+  const auto write = [&](const char* name, const auto& rows) {
+    const std::size_t row = sizeof(rows[0]);
+    std::vector<std::uint8_t> bytes(rows.size() * row);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      auto one = rows[i];
+      if constexpr (std::is_class_v<decltype(one)>) __builtin_clear_padding(&one);  // equal runs give equal files
+      std::memcpy(bytes.data() + i * row, &one, row);
+    }
+    group.write(name, bytes, {rows.size(), row});
+  };
+  each_vector(now.state, write);
+  const Pooled<VectorRow> history = pooled(now.state.history);
+  const Pooled<WallMemory> memory = pooled(now.state.wall_memory);
+  each_pooled(history, memory, write);
+  const Progressing& p = now.under_way;
+  group.write("under_way", std::vector<double>{static_cast<double>(p.steps), static_cast<double>(p.deep_contacts),
+                                               p.max_overlap, p.cpu_seconds});
+  group.write("sums_under_way", p.sums);
+}
+
+Checkpoint read_checkpoint(const data::Hdf5Group& group) {
+  Checkpoint now;
+  now.state.step = static_cast<std::uint64_t>(group.integer("step"));
+  now.state.rebuilds = static_cast<std::uint64_t>(group.integer("rebuilds"));
+  now.state.dissipated = group.number("dissipated_J");
+  now.state.rebuild_step = static_cast<std::uint64_t>(group.integer("rebuild_step"));
+  const auto read = [&](const char* name, auto& rows) {
+    const auto bytes = group.read<std::uint8_t>(name);
+    const std::size_t row = sizeof(rows[0]);
+    if (bytes.shape.size() != 2 || bytes.shape[1] != row) {
+      throw data::InputError(data::ExitStatus::bad_data, {group.place(name), "is a checkpoint of another build",
+                                                          "start the run again from the beginning"});
+    }
+    rows.resize(bytes.shape[0]);
+    if (!rows.empty()) std::memcpy(static_cast<void*>(rows.data()), bytes.values.data(), bytes.values.size());
+  };
+  each_vector(now.state, read);
+  Pooled<VectorRow> history;
+  Pooled<WallMemory> memory;
+  each_pooled(history, memory, read);
+  now.state.history = unpooled(history);
+  now.state.wall_memory = unpooled(memory);
+  const std::vector<double> p = group.read<double>("under_way").values;
+  if (p.size() != 4)
+    throw data::InputError(data::ExitStatus::bad_data, {group.place("under_way"), "is a checkpoint of another build",
+                                                        "start the run again from the beginning"});
+  now.under_way = {.steps = static_cast<std::uint64_t>(p[0]),
+                   .sums = group.read<double>("sums_under_way").values,
+                   .deep_contacts = static_cast<std::uint64_t>(p[1]),
+                   .max_overlap = p[2],
+                   .cpu_seconds = p[3]};
+  if (now.under_way.sums.size() != mean_outputs().size())
+    throw data::InputError(
+        data::ExitStatus::bad_data,
+        {group.place("sums_under_way"), "is a checkpoint of another build", "start the run again from the beginning"});
+  return now;
+}
+
+void write_diagnostics(const data::Hdf5Group& group, const Diagnostics& g) {
+  const Derived& d = g.derived;
+  const std::array<std::pair<const char*, double>, 18> numbers{
+      {{"sphere_mass_kg", d.mass},
+       {"weight_N", d.weight},
+       {"length_scale_m", d.length_scale},
+       {"pull_off_N", d.pull_off},
+       {"wall_pull_off_N", d.wall_pull_off},
+       {"bond_number", d.bond},
+       {"wall_bond_number", d.wall_bond},
+       {"hamaker_J", d.hamaker},
+       {"original_hamaker_J", d.original_hamaker},
+       {"contact_duration_s", d.contact_duration},
+       {"time_step_s", d.time_step},
+       {"skin_m", d.skin},
+       {"max_overlap_of_radius", g.max_overlap},
+       {"simulated_s", g.simulated},
+       {"particle_steps_per_second", g.steps_per_second},
+       {"state_bytes_per_particle", g.bytes_per_particle},
+       {"steps", static_cast<double>(g.steps)},
+       {"deep_contacts", static_cast<double>(g.deep_contacts)}}};
+  for (const auto& [name, value] : numbers) group.set(name, value);
+  group.set("spheres", static_cast<std::int64_t>(d.spheres));
+  group.set("rebuilds", static_cast<std::int64_t>(g.rebuilds));
+  group.set("threads", static_cast<std::int64_t>(g.threads));
+}
+
+void write_state(const data::Hdf5Group& group, const Summary& s) {
+  group.set("reached_target", static_cast<std::int64_t>(s.reached_target));
+  group.set("state", std::string(name_of(s.state)));
+  group.set("why", s.why);
+  group.set("ordering", s.ordering);
+  group.set("measured_from_s", s.measured_from);
+  group.set("turns", s.turns);
+  group.write("drift_p", s.drift_p);
+}
+
+void read_state(const data::Hdf5Group& group, Summary& s) {
+  s.reached_target = group.integer("reached_target") != 0;
+  for (const Steady state : {Steady::yes, Steady::drifting, Steady::unclear})
+    if (group.text("state") == name_of(state)) s.state = state;
+  s.why = group.text("why");
+  s.ordering = group.text("ordering");
+  s.measured_from = group.number("measured_from_s");
+  s.turns = group.number("turns");
+  s.drift_p = group.read<double>("drift_p").values;
+}
+
+}  // namespace
+
+void write_run(const std::string& path, const Case& c, const RunResult& result) {
+  data::write_atomically(path, [&](const std::string& temporary) {
+    const data::Hdf5Group file = data::create_hdf5(temporary);
+    file.set("format", format);
+    for (const auto& [name, value] : data::provenance()) file.set(name, value);
+    file.set("isa", result.diagnostics.isa);
+    file.set("seed", fmt::format("{}", result.seed));
+    file.set("status", static_cast<std::int64_t>(result.status));
+    file.set("reason", result.reason);
+    file.set("material", c.material.name);
+    file.set("settings", settings_text(c));
+    file.set("rule", std::int64_t{look_rule_version});
+    file.set("cpu_seconds", result.summary.cpu_seconds);
+    file.write_texts("warnings", result.warnings);
+    const data::Hdf5Group series = file.create_group("series");
+    each_series(result.series, [&](const char* name, const char* unit, const std::vector<double>& values) {
+      series.write(name, values);
+      series.set("unit", unit, name);
+    });
+    const data::Hdf5Group summary = file.create_group("summary");
+    std::vector<std::string> names, units;
+    std::array<std::vector<double>, 7> columns;
+    for (std::size_t k = 0; k < result.summary.mean.size(); ++k) {
+      const data::SeriesMean& m = result.summary.mean[k];
+      names.push_back(outputs()[k].name);
+      units.push_back(outputs()[k].unit);
+      const std::array<double, 7> row{m.mean,
+                                      m.standard_error,
+                                      m.sd,
+                                      m.integrated_time,
+                                      m.effective_samples,
+                                      static_cast<double>(m.dropped),
+                                      m.reliable ? 1.0 : 0.0};
+      for (std::size_t j = 0; j < row.size(); ++j) columns[j].push_back(row[j]);
+    }
+    summary.write_texts("names", names);
+    summary.write_texts("units", units);
+    constexpr std::array<const char*, 7> heads{
+        "mean", "standard_error", "sd", "integrated_time", "effective_samples", "dropped", "reliable"};
+    for (std::size_t j = 0; j < heads.size(); ++j) summary.write(heads[j], columns[j]);
+    write_state(summary, result.summary);
+    write_diagnostics(file.create_group("diagnostics"), result.diagnostics);
+    write_checkpoint(file.create_group("checkpoint"), result.checkpoint);
+    file.flush();
+  });
+}
+
+SavedRun read_run(const std::string& path) {
+  data::require_file(path);
+  data::require_unchanged(path, "remove it, and the run is made again", data::Strict::yes);
+  const data::Hdf5Group file = data::open_hdf5(path);
+  if (!file.has_attribute("format") || file.integer("format") != format) {
+    throw data::InputError(data::ExitStatus::bad_data,
+                           {path, "is not a run of this program", "remove it, and the run is made again"});
+  }
+  SavedRun saved;
+  RunResult& r = saved.result;
+  saved.settings = file.text("settings");
+  if (file.has_attribute("rule")) saved.rule = static_cast<int>(file.integer("rule"));
+  const std::string seed = file.text("seed");
+  if (const auto [rest, error] = std::from_chars(seed.data(), seed.data() + seed.size(), r.seed);
+      error != std::errc{} || rest != seed.data() + seed.size() || seed.empty())
+    throw data::InputError(data::ExitStatus::bad_data, {path + ": @seed", fmt::format("'{}' is not a seed", seed),
+                                                        "remove it, and the run is made again"});
+  r.status = static_cast<RunStatus>(file.integer("status"));
+  r.reason = file.text("reason");
+  r.warnings = file.read_texts("warnings");
+  r.summary.cpu_seconds = file.number("cpu_seconds");
+  const data::Hdf5Group series = file.group("series");
+  each_series(r.series, [&](const char* name, const char*, std::vector<double>& values) {
+    values = series.read<double>(name).values;
+  });
+  const data::Hdf5Group summary = file.group("summary");
+  const auto column = [&](const char* name) { return summary.read<double>(name).values; };
+  const std::vector<double> mean = column("mean"), error = column("standard_error"), sd = column("sd"),
+                            time = column("integrated_time"), samples = column("effective_samples"),
+                            dropped = column("dropped"), reliable = column("reliable");
+  for (const std::vector<double>* other : {&error, &sd, &time, &samples, &dropped, &reliable})
+    if (other->size() != mean.size())
+      throw data::InputError(
+          data::ExitStatus::bad_data,
+          {path + ": /summary", fmt::format("has columns of {} and {} values", mean.size(), other->size()),
+           "remove it, and the run is made again"});
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    r.summary.mean.push_back(
+        {mean[k], error[k], sd[k], time[k], samples[k], static_cast<std::size_t>(dropped[k]), reliable[k] != 0.0});
+  }
+  read_state(summary, r.summary);
+  r.checkpoint = read_checkpoint(file.group("checkpoint"));
+  r.checkpoint.series = r.series;
+  Diagnostics& g = r.diagnostics;
+  const data::Hdf5Group diagnostics = file.group("diagnostics");
+  g.steps = static_cast<std::uint64_t>(diagnostics.number("steps"));
+  g.rebuilds = static_cast<std::uint64_t>(diagnostics.integer("rebuilds"));
+  g.deep_contacts = static_cast<std::uint64_t>(diagnostics.number("deep_contacts"));
+  g.max_overlap = diagnostics.number("max_overlap_of_radius");
+  g.simulated = diagnostics.number("simulated_s");
+  g.steps_per_second = diagnostics.number("particle_steps_per_second");
+  g.threads = static_cast<int>(diagnostics.integer("threads"));
+  g.isa = file.text("isa");
+  return saved;
+}
+
+}  // namespace dem

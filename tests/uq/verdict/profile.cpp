@@ -1,0 +1,174 @@
+// Profile intervals against closed forms.
+#include "uq/verdict/profile.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/uq/closed_form.hpp"
+#include "uq/infer/mixture_sampler.hpp"
+#include "uq/posterior/posterior.hpp"
+#include "uq/verdict/identifiability.hpp"
+
+using namespace closed_form;
+
+namespace {
+
+/// A function of the parameters as a sum of squares: row i is (f_i(p) - target_i)^2.
+uq::CaseModel sum_of_squares(const std::vector<Unknown>& unknowns,
+                             const std::vector<std::function<double(const Eigen::VectorXd&)>>& terms,
+                             const Eigen::VectorXd& targets) {
+  const auto rows = static_cast<Eigen::Index>(terms.size());
+  const Formula formula = [terms](const Eigen::VectorXd& p, double row) {
+    return terms[static_cast<std::size_t>(std::lround(row))](p);
+  };
+  return make_case(unknowns, formula, Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(rows - 1)), targets,
+                   Eigen::VectorXd::Ones(rows));
+}
+
+/// Profiles at a deviance of 4, guided by points all over the box.
+uq::Profiles profiles(const uq::CaseModel& model) {
+  data::RandomStream random(5, data::Purpose::test, 3);
+  Eigen::MatrixXd points(200, model.dimension());
+  for (double& u : points.reshaped()) u = random.uniform();
+  uq::ProfileOptions options;
+  options.thresholds.profile_drop = 4.0;
+  return uq::profile_likelihood(model, {.draws = points, .log_likelihood = uq::log_likelihoods(model, points)},
+                                options);
+}
+
+double shown(const uq::CaseModel& model, const uq::Profile& profile, double u) {
+  return model.slots[static_cast<std::size_t>(profile.unknown)].value(u);
+}
+
+std::vector<Unknown> box(int count, double half) {
+  std::vector<Unknown> unknowns;
+  for (int k = 0; k < count; ++k) unknowns.push_back({"x" + std::to_string(k + 1), -half, half});
+  return unknowns;
+}
+
+void check_interval(const uq::CaseModel& model, const uq::Profile& profile, double low, double high) {
+  REQUIRE(profile.low);
+  REQUIRE(profile.high);
+  CHECK(shown(model, profile, *profile.low) == Approx(low).margin(2e-3));
+  CHECK(shown(model, profile, *profile.high) == Approx(high).margin(2e-3));
+}
+
+}  // namespace
+
+// LikelihoodProfiler.jl's analytic functions (models/AnalyticFuncs/analytic_funcs.jl), threshold 4, range +-20.
+
+TEST_CASE("profile intervals of LikelihoodProfiler.jl's separable functions have its end points", "[uq]") {
+  const auto x = [](int k) { return [k](const Eigen::VectorXd& p) { return p[k]; }; };
+  SECTION("f_1p and f_2p: (x1 - 3)^2 + (x2 - 4)^2") {
+    const uq::CaseModel model = sum_of_squares(box(2, 20.0), {x(0), x(1)}, Eigen::Vector2d(3.0, 4.0));
+    const uq::Profiles found = profiles(model);
+    check_interval(model, found.profiles[0], 1.0, 5.0);
+    check_interval(model, found.profiles[1], 2.0, 6.0);
+  }
+  SECTION("f_4p_2im: two that do nothing are open on both sides") {
+    const uq::CaseModel model = sum_of_squares(box(4, 20.0), {x(0), x(1)}, Eigen::Vector2d(3.0, 4.0));
+    const uq::Profiles found = profiles(model);
+    check_interval(model, found.profiles[0], 1.0, 5.0);
+    check_interval(model, found.profiles[1], 2.0, 6.0);
+    for (const std::size_t k : {2u, 3u}) {
+      CHECK(found.profiles[k].flat());
+      CHECK_FALSE(found.influence[k].some);
+    }
+  }
+  SECTION("f_3p_1im: (x1 - 3)^2 + (x1 - x2 - 1)^2 + 0 x3^2") {
+    const uq::CaseModel model = sum_of_squares(
+        box(3, 20.0), {x(0), [](const Eigen::VectorXd& p) { return p[0] - p[1]; }}, Eigen::Vector2d(3.0, 1.0));
+    const uq::Profiles found = profiles(model);
+    check_interval(model, found.profiles[0], 1.0, 5.0);
+    check_interval(model, found.profiles[1], 2.0 - 2.0 * std::sqrt(2.0), 2.0 + 2.0 * std::sqrt(2.0));
+    CHECK(found.profiles[2].flat());
+  }
+}
+
+TEST_CASE("profile intervals of LikelihoodProfiler.jl's curved functions have its end points", "[uq]") {
+  SECTION("f_3p_1im2: (x1 - 3)^2 + (exp x2 - 1)^2, open below in x2") {
+    const uq::CaseModel model = sum_of_squares(
+        box(3, 20.0),
+        {[](const Eigen::VectorXd& p) { return p[0]; }, [](const Eigen::VectorXd& p) { return std::exp(p[1]); }},
+        Eigen::Vector2d(3.0, 1.0));
+    const uq::Profiles found = profiles(model);
+    check_interval(model, found.profiles[0], 1.0, 5.0);
+    CHECK_FALSE(found.profiles[1].low);
+    REQUIRE(found.profiles[1].high);
+    CHECK(shown(model, found.profiles[1], *found.profiles[1].high) == Approx(std::log(3.0)).margin(2e-3));
+    CHECK(found.profiles[2].flat());
+  }
+  SECTION("rosenbrock: (1 - x1)^2 + 100 (x2 - x1^2)^2") {
+    const uq::CaseModel model = sum_of_squares(box(2, 10.0),
+                                               {[](const Eigen::VectorXd& p) { return p[0]; },
+                                                [](const Eigen::VectorXd& p) { return 10.0 * (p[1] - p[0] * p[0]); }},
+                                               Eigen::Vector2d(1.0, 0.0));
+    const uq::Profiles found = profiles(model);
+    check_interval(model, found.profiles[0], -1.0, 3.0);
+    REQUIRE(found.profiles[1].low);
+    REQUIRE(found.profiles[1].high);
+    CHECK(shown(model, found.profiles[1], *found.profiles[1].low) == Approx(-0.174).margin(2e-3));
+    CHECK(shown(model, found.profiles[1], *found.profiles[1].high) == Approx(9.0).margin(5e-3));
+  }
+  SECTION("f_5p: 20 (x1^2 - 3 x1 + 2)^2 + (x2 - 1)^2, two minima in one interval") {
+    const uq::CaseModel model =
+        sum_of_squares(box(2, 20.0),
+                       {[](const Eigen::VectorXd& p) { return std::sqrt(20.0) * (p[0] * p[0] - 3.0 * p[0] + 2.0); },
+                        [](const Eigen::VectorXd& p) { return p[1]; }},
+                       Eigen::Vector2d(0.0, 1.0));
+    const uq::Profiles found = profiles(model);
+    const double half = std::sqrt(9.0 - 4.0 * (2.0 - 1.0 / std::sqrt(5.0))) / 2.0;
+    check_interval(model, found.profiles[0], 1.5 - half, 1.5 + half);
+    check_interval(model, found.profiles[1], -1.0, 3.0);
+    CHECK(found.profiles[0].parts.size() == 1);
+  }
+}
+
+TEST_CASE("an interval in two parts has the ends of each, by its closed form", "[uq]") {
+  // 400 (x1^2 - 3 x1 + 2)^2: below 4 where |x1^2 - 3 x1 + 2| <= 0.1, which has four roots.
+  const uq::CaseModel model = sum_of_squares(
+      {{"x1", 0.0, 3.0}}, {[](const Eigen::VectorXd& p) { return 20.0 * (p[0] * p[0] - 3.0 * p[0] + 2.0); }},
+      Eigen::VectorXd::Zero(1));
+  const uq::Profiles found = profiles(model);
+  const uq::Profile& profile = found.profiles[0];
+  REQUIRE(profile.parts.size() == 2);
+  const double far = std::sqrt(0.25 + 0.1), near = std::sqrt(0.25 - 0.1);
+  CHECK(shown(model, profile, profile.parts[0].low) == Approx(1.5 - far).margin(1e-3));
+  CHECK(shown(model, profile, profile.parts[0].high) == Approx(1.5 - near).margin(1e-3));
+  CHECK(shown(model, profile, profile.parts[1].low) == Approx(1.5 + near).margin(1e-3));
+  CHECK(shown(model, profile, profile.parts[1].high) == Approx(1.5 + far).margin(1e-3));
+  REQUIRE(profile.barriers.size() == 1);
+  CHECK_FALSE(profile.barriers[0].in_doubt);
+}
+
+TEST_CASE("a narrow second maximum that no draw has seen is found, and its absence from the draws is told", "[uq]") {
+  // Wells of equal width at 0.2 and 0.8; the draws are all in the first.
+  const uq::CaseModel model =
+      sum_of_squares({{"x1", 0.0, 1.0}}, {[](const Eigen::VectorXd& p) { return 200.0 * (p[0] - 0.2) * (p[0] - 0.8); }},
+                     Eigen::VectorXd::Zero(1));
+  data::RandomStream random(6, data::Purpose::test, 4);
+  Eigen::MatrixXd draws(500, 1);
+  for (double& u : draws.reshaped()) u = 0.2 + random.normal() / 120.0;
+  const uq::Profiles found =
+      uq::profile_likelihood(model, {.draws = draws, .log_likelihood = uq::log_likelihoods(model, draws)});
+  CHECK(found.profiles[0].parts.size() == 2);
+  const std::vector<std::string> missed = uq::unvisited(model, found, draws);
+  REQUIRE(missed.size() == 1);
+  CHECK(missed[0].rfind("x1 near 0.8", 0) == 0);
+}
+
+TEST_CASE("PUQ's unidentifiable case: its contractions, one parameter known and one not", "[uq]") {
+  // Surer, Plumlee, Wild (2024): th on [-8, 8]^2, y = 0, variances (100, 1): contraction .083 and .953.
+  const Formula each = [](const Eigen::VectorXd& p, double row) { return row < 0.5 ? p[0] : p[1]; };
+  const uq::CaseModel model = make_case({{"t1", -8.0, 8.0}, {"t2", -8.0, 8.0}}, each, Eigen::Vector2d(0.0, 1.0),
+                                        Eigen::Vector2d::Zero(), Eigen::Vector2d(10.0, 1.0));
+  const uq::Draws draws =
+      uq::sample_mixture(uq::posterior_target(std::make_shared<const uq::CaseModel>(model)), {.seed = 1});
+  const uq::Identification found = uq::identify(model, draws.pooled());
+  CHECK(found.parameters[0].contraction == Approx(0.083).margin(0.04));
+  CHECK(found.parameters[1].contraction == Approx(0.953).margin(0.01));
+  CHECK(found.parameters[0].verdict == uq::Verdict::not_identified);
+  CHECK(found.parameters[0].reason == std::optional<std::string>("practical"));
+  CHECK(found.parameters[1].verdict == uq::Verdict::identified);
+  CHECK(found.traded.empty());
+}

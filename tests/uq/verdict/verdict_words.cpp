@@ -1,0 +1,154 @@
+// Every combination of facts has words that do not contradict each other.
+#include "uq/verdict/verdict_words.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+using namespace uq;
+
+namespace {
+
+bool has(const std::string& text, const std::string& piece) { return text.find(piece) != std::string::npos; }
+
+/// A parameter with one combination of facts, judged.
+ParameterReport judged(const std::string& name, const WordFacts& facts, const ParameterEvidence& more) {
+  ParameterEvidence evidence = more;
+  evidence.name = name;
+  evidence.mean = 0.5;
+  evidence.sd = 0.1;
+  evidence.q95 = 0.7;
+  evidence.range_high = 1.0;
+  evidence.facts = facts;
+  for (int i = 0; i < facts.parts; ++i)
+    evidence.parts.push_back({.low = 0.1 + 0.4 * i, .high = 0.3 + 0.4 * i, .weight = 0.5, .mean = 0.2, .sd = 0.05});
+  const VerdictThresholds thresholds;
+  const ParameterVerdict verdict = judge(evidence, {}, {}, thresholds);
+  ParameterReport report;
+  report.name = name;
+  report.contraction = facts.contraction;
+  report.verdict = verdict.verdict;
+  report.reason = verdict.reason;
+  report.sentence = verdict.sentence;
+  report.share_measurement = verdict.shares.measurement;
+  report.share_surrogate = verdict.shares.surrogate;
+  report.share_structure = verdict.shares.structure;
+  report.share_range = verdict.shares.range;
+  return report;
+}
+
+/// All combinations of facts of one parameter.
+std::vector<ParameterReport> all_parameters(const std::string& name) {
+  std::vector<ParameterReport> all;
+  for (const bool influences : {true, false})
+    for (const int parts : {1, 2})
+      for (const bool open_low : {false, true})
+        for (const bool open_high : {false, true})
+          for (const bool physical : {false, true})
+            for (const double contraction : {0.2, 0.7, 0.95})
+              for (const bool structural : {false, true})
+                for (const bool undecided : {false, true})
+                  for (const double surrogate : {0.0, 0.3, 0.8})
+                    for (const bool pinned : {false, true}) {
+                      ParameterEvidence more;
+                      more.structural = structural;
+                      more.undecided = undecided;
+                      more.surrogate_share = surrogate;
+                      if (pinned && open_high) more.high_pinned_by = "other";
+                      if (pinned && open_low) more.low_pinned_by = "other";
+                      all.push_back(judged(name,
+                                           {.influences = influences,
+                                            .parts = parts,
+                                            .open_low = open_low,
+                                            .open_high = open_high,
+                                            .physical_low = physical,
+                                            .contraction = contraction,
+                                            .contraction_within = contraction},
+                                           more));
+                    }
+  return all;
+}
+
+/// What no set of words may say together.
+void check_words(const std::vector<ParameterReport>& parameters, const Words& words) {
+  const bool all_known = std::all_of(parameters.begin(), parameters.end(),
+                                     [](const ParameterReport& p) { return p.verdict == Verdict::identified; });
+  CHECK(has(words.remedy, "None needed") == all_known);
+  if (all_known) CHECK(words.remedy == "None needed.");
+  CHECK_FALSE(words.remedy.empty());
+  CHECK_FALSE(words.consequence.empty());
+  bool practical = false, structural = false;
+  for (const ParameterReport& p : parameters) {
+    practical = practical || p.reason == "practical" || p.reason == "bound";
+    structural = structural || p.reason == "structural";
+    // A sentence names one reason.
+    CHECK(has(p.sentence, "noise hides it") + has(p.sentence, "surrogate's error") + has(p.sentence, "would not help") +
+              has(p.sentence, "say nothing") <=
+          1);
+    if (has(p.sentence, "is identified")) CHECK(p.verdict == Verdict::identified);
+    if (p.reason == "no influence") CHECK_FALSE(has(p.sentence, "would not help"));
+  }
+  // A smaller error is asked for only where it can help.
+  if (!practical) CHECK_FALSE(has(words.remedy, "educe the measurement error"));
+  if (!structural) CHECK_FALSE(has(words.remedy, "will not part them"));
+  if (has(words.consequence, "little better than the prior"))
+    CHECK(std::any_of(parameters.begin(), parameters.end(),
+                      [](const ParameterReport& p) { return p.contraction < 0.5; }));
+}
+
+}  // namespace
+
+TEST_CASE("no combination of one parameter's facts has words that contradict each other", "[uq]") {
+  for (const ParameterReport& parameter : all_parameters("a"))
+    check_words({parameter}, words_of({.parameters = {parameter}, .traded = {}, .parted_by = {}}));
+}
+
+TEST_CASE("no combination of two parameters' facts has words that contradict each other", "[uq]") {
+  // One of each verdict and reason.
+  std::vector<ParameterReport> kinds;
+  for (const ParameterReport& parameter : all_parameters("a"))
+    if (std::none_of(kinds.begin(), kinds.end(), [&](const ParameterReport& other) {
+          return other.verdict == parameter.verdict && other.reason == parameter.reason &&
+                 (other.contraction < 0.5) == (parameter.contraction < 0.5) &&
+                 (other.share_surrogate > 0.5) == (parameter.share_surrogate > 0.5);
+        }))
+      kinds.push_back(parameter);
+  CHECK(kinds.size() > 10);
+  for (const ParameterReport& first : kinds)
+    for (ParameterReport second : kinds) {
+      second.name = "b";
+      INFO(first.sentence << " | " << second.sentence);
+      const Words words = words_of({.parameters = {first, second}, .traded = {}, .parted_by = {}});
+      INFO(words.finding << " | " << words.consequence << " | " << words.remedy);
+      check_words({first, second}, words);
+    }
+}
+
+TEST_CASE("the first remedy is that of the largest share: training runs where the surrogate decides", "[uq]") {
+  ParameterEvidence more;
+  more.surrogate_share = 0.8;
+  const ParameterReport parameter = judged("a", {.contraction = 0.3, .contraction_within = 0.3}, more);
+  CHECK(parameter.reason == std::optional<std::string>("surrogate"));
+  const Words words = words_of({.parameters = {parameter}, .traded = {}, .parted_by = {}, .surrogate_share = 2.0});
+  CHECK(words.remedy.rfind("Make more training runs", 0) == 0);
+  CHECK_FALSE(has(words.remedy, "Reduce the measurement error"));
+}
+
+TEST_CASE("a parameter without influence is told neither structural nor hidden by noise, and gets one remedy", "[uq]") {
+  const ParameterReport known = judged("a", {.contraction = 0.95, .contraction_within = 0.95}, {});
+  const ParameterReport silent = judged("b", {.influences = false, .open_low = true, .open_high = true}, {});
+  CHECK(silent.reason == std::optional<std::string>("no influence"));
+  const Words words = words_of({.parameters = {known, silent}, .traded = {}, .parted_by = {}});
+  CHECK(words.finding == "The data determine a. They say nothing of b.");
+  CHECK(has(words.remedy, "that b moves"));
+  CHECK_FALSE(has(words.remedy, "measurement error"));
+}
+
+TEST_CASE("separate values are never averaged: the consequence says so, the remedy is what parts them", "[uq]") {
+  const ParameterReport two = judged("a", {.parts = 2, .contraction = 0.1, .contraction_within = 0.95}, {});
+  CHECK(two.verdict == Verdict::several_values);
+  CHECK(has(two.sentence, "two separate values"));
+  const Words words =
+      words_of({.parameters = {two}, .traded = {}, .parted_by = "measure torque at speed 50 rpm, where they part"});
+  CHECK(words.remedy == "Measure torque at speed 50 rpm, where they part.");
+  CHECK(has(words.consequence, "their mean fits nothing"));
+}

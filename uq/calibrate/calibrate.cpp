@@ -1,0 +1,248 @@
+#include "uq/calibrate/calibrate.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <set>
+
+#include "data/error.hpp"
+#include "data/random.hpp"
+#include "uq/calibrate/data_check.hpp"
+#include "uq/posterior/predictive.hpp"
+#include "uq/posterior/support.hpp"
+#include "uq/posterior/unused_data.hpp"
+
+namespace uq {
+namespace {
+
+void add_findings(CalibrationReport& report, const std::vector<data::Finding>& findings) {
+  for (const data::Finding& finding : findings) {
+    report.findings.push_back(
+        {finding.kind, finding.place, data::to_text(finding.severity), finding.what, finding.remedy, finding.places});
+    (finding.severity == data::Severity::note ? report.cautions : report.warnings).push_back(data::describe(finding));
+  }
+}
+
+/// What is suspected of units and errors comes before any other remedy.
+void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& findings) {
+  for (const data::Finding& finding : findings)
+    if (finding.severity == data::Severity::warning &&
+        (finding.kind == "unit" || finding.kind == "standard errors" || finding.kind == "no response")) {
+      report.remedy = fmt::format("First settle what is said of the data ({}: {}). Then: {}", finding.kind,
+                                  finding.place, report.remedy);
+      return;
+    }
+}
+
+/// The surrogates again without the runs that the others contradict; none where there are no such runs, or too few
+/// others.
+std::vector<FittedSurrogate> without_outlying(const data::Study& study, const data::RunTable& table,
+                                              SurrogateOptions options, const std::vector<FittedSurrogate>& fitted) {
+  std::set<std::string> places;
+  options.known.clear();
+  for (const FittedSurrogate& one : fitted) {
+    for (const OutlyingRun& run : one.report.outlying) places.insert(run.place);
+    if (one.report.outlying.empty()) options.known.push_back(one);
+  }
+  if (places.empty()) return {};
+  data::RunTable rest = table;
+  for (data::RunRow& row : rest.rows)
+    if (row.left_out.empty() && places.contains(row.place)) row.left_out = "contradicted by the others";
+  if (data::used_rows(rest) == data::used_rows(table)) return {};
+  try {
+    return fit_surrogates(study, rest, options);
+  } catch (const data::InputError&) {
+    return {};
+  }
+}
+
+/// The case with the surrogates of the other runs, where it rests on runs that they contradict; where that changes the
+/// result, nothing is identified until somebody has decided on the runs.
+std::optional<WithoutRuns> without_runs(const data::Study& study, const std::vector<FittedSurrogate>& fitted,
+                                        const std::vector<FittedSurrogate>& others, const SampledCase& sampled,
+                                        std::size_t index, CalibrateOptions& options) {
+  std::vector<std::string> places;
+  for (const RowGroup& group : sampled.model->groups)
+    for (const FittedSurrogate& one : fitted)
+      if (one.rows.material == group.emulator.material && one.rows.output == group.emulator.output)
+        for (const OutlyingRun& run : one.report.outlying) places.push_back(run.place);
+  if (places.empty()) return {};
+  CalibrateOptions plain = options;
+  plain.identify.unsupported.clear();
+  WithoutRuns without = calibrate_without(study, others, index, plain);
+  without.places = places;
+  const std::string which = data::list_places(places);
+  without.sentence = fmt::format("Without {}: {}", which, without.sentence);
+  if (!options.identify.unsupported.empty() || sampled.draws.chains.empty()) return without;
+  const Eigen::MatrixXd draws = sampled.draws.pooled();
+  bool matters = false;
+  for (std::size_t k = 0; k < without.mean.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    const Slot& slot = sampled.model->slots[k];
+    Eigen::VectorXd values = draws.col(column);
+    for (double& value : values) value = slot.prior.parameter().unit.from_si(slot.value(value));
+    const double sd = std::sqrt((values.array() - values.mean()).square().mean());
+    matters = matters || std::abs(values.mean() - without.mean[k]) > 0.5 * without.sd[k] || sd > 1.5 * without.sd[k] ||
+              sd < without.sd[k] / 1.5;
+  }
+  if (matters)
+    options.identify.unsupported.assign(
+        static_cast<std::size_t>(sampled.model->own_count()),
+        fmt::format("the result depends on {}, which all other runs contradict", which));
+  return without;
+}
+
+}  // namespace
+
+WithoutRuns calibrate_without(const data::Study& study, const std::vector<FittedSurrogate>& others,
+                              std::size_t case_index, const CalibrateOptions& options) {
+  WithoutRuns found;
+  const SampledCase sampled = sample_case(study, emulators_of(others), case_index, options);
+  if (sampled.draws.chains.empty()) {
+    found.sentence = "the posterior could not be sampled: " + sampled.draws.reason;
+    return found;
+  }
+  IdentifyOptions judged = options.identify;
+  judged.unsupported = unsupported_parameters(*sampled.model, sampled.support);
+  const Identification identified = identify(*sampled.model, sampled.draws.pooled(), judged);
+  found.fits = identified.fits;
+  for (const ParameterReport& parameter : identified.parameters) {
+    found.parameters.push_back(parameter.name);
+    found.verdicts.push_back(to_text(parameter.verdict));
+    found.mean.push_back(parameter.mean);
+    found.sd.push_back(parameter.sd);
+    const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+    found.sentence += fmt::format("{}{} {} +- {}{} ({})", found.sentence.empty() ? "" : ", ", parameter.name,
+                                  with_error(parameter.mean, parameter.sd), with_error(parameter.sd, parameter.sd),
+                                  unit, to_text(parameter.verdict));
+  }
+  if (!sampled.draws.converged) found.sentence += "; the chains have not converged";
+  found.sentence += ".";
+  return found;
+}
+
+std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& sampled, std::size_t case_index,
+                                   const CalibrateOptions& options) {
+  std::vector<ErrorScan> scans;
+  if (sampled.draws.chains.empty()) return scans;
+  const Eigen::VectorXd truth = mean_prediction(*sampled.model, sampled.draws.pooled());
+  data::RandomStream random(seed_of(study, options), data::Purpose::measurement_noise,
+                            static_cast<std::uint32_t>(case_index));
+  Eigen::VectorXd normal(truth.size());
+  for (double& value : normal) value = random.normal();
+  std::uint32_t index = 0;
+  for (const double error : options.error_scan) {
+    CalibrateOptions own = options;
+    own.seed = data::child_seed(seed_of(study, options), data::Purpose::error_scan_seed,
+                                static_cast<std::uint32_t>(case_index << 8) + index++);
+    const Eigen::VectorXd sd = error * truth.cwiseAbs();
+    const Eigen::VectorXd y = truth + sd.cwiseProduct(normal);
+    const auto model = std::make_shared<const CaseModel>(with_data(*sampled.model, y, sd.cwiseAbs2()));
+    const Draws draws = sample_model(study, sampled, model, own, 500);
+    ErrorScan scan;
+    scan.case_name = model->name;
+    scan.relative_error = error;
+    if (!draws.chains.empty()) {
+      const Identification found = identify(*model, draws.pooled(), options.identify);
+      scan.ppp = found.check.predictive_p;
+      for (const auto& parameter : found.parameters) {
+        scan.parameters.push_back(parameter.name);
+        std::string verdict = to_text(parameter.verdict);
+        if (parameter.reason) verdict += " (" + *parameter.reason + ")";
+        if (parameter.borderline) verdict += ", borderline";
+        scan.verdicts.push_back(verdict);
+        scan.mean.push_back(parameter.mean);
+        scan.sd.push_back(parameter.sd);
+      }
+    }
+    scans.push_back(std::move(scan));
+  }
+  return scans;
+}
+
+Calibration calibrate_all(const data::Study& study, const data::RunTable& table, const CalibrateOptions& options) {
+  if (study.cases.empty())
+    throw data::InputError(data::ExitStatus::bad_study, {study.file, "the study has no [[calibrate]] case",
+                                                         "add one: what to free, given which observations"});
+  const auto begin = std::chrono::steady_clock::now();
+  const double steps = 1.0 + static_cast<double>(study.cases.size()) * (options.error_scan.empty() ? 1.0 : 2.0);
+  double done = 0.0;
+  auto tell = [&](const std::string& step) {
+    if (options.progress) options.progress(step, done / steps);
+    done += 1.0;
+  };
+  Calibration result;
+  CalibrationReport& report = result.report;
+  report.study_name = study.name;
+  report.study_description = study.description;
+  report.study_file = study.file;
+
+  tell("surrogates");
+  data::RunTable rows = table;
+  const std::vector<data::Finding> findings =
+      options.findings ? *options.findings
+                       : check_data(study, rows, options.surrogates.low, options.surrogates.log_outputs);
+  data::refuse(findings);
+  add_findings(report, findings);
+  SurrogateOptions surrogates = options.surrogates;
+  surrogates.fit.seed = seed_of(study, options);
+  surrogates.observed_only = true;
+  result.surrogates = fit_surrogates(study, rows, surrogates);
+  report.designs = designs_of(study, rows, result.surrogates);
+  const std::vector<Emulator> emulators = emulators_of(result.surrogates);
+  for (const auto& fitted : result.surrogates) {
+    report.surrogates.push_back(fitted.report);
+    for (const std::string& note : extrapolation_notes(study, fitted.rows))
+      report.surrogates.back().notes.push_back(note);
+  }
+  for (std::string& warning : surrogate_warnings(result.surrogates)) report.warnings.push_back(std::move(warning));
+  for (std::string& caution : surrogate_cautions(result.surrogates)) report.cautions.push_back(std::move(caution));
+  const std::vector<FittedSurrogate> others = without_outlying(study, rows, surrogates, result.surrogates);
+
+  for (std::size_t index = 0; index < study.cases.size(); ++index) {
+    tell("case " + study.cases[index].name);
+    CalibrateOptions sampling = options;
+    if (options.progress)
+      sampling.nuts.progress = [&](double share) {
+        options.progress("case " + study.cases[index].name, (done - 1.0 + 0.9 * share) / steps);
+      };
+    result.cases.push_back(sample_case(study, emulators, index, sampling));
+    const SampledCase& sampled = result.cases.back();
+    CalibrateOptions own = options;
+    own.identify.unsupported = unsupported_parameters(*sampled.model, sampled.support);
+    std::optional<WithoutRuns> without;
+    if (!others.empty()) without = without_runs(study, result.surrogates, others, sampled, index, own);
+    report.cases.push_back(report_case(study, sampled, own));
+    CaseReport& made = report.cases.back();
+    made.without = std::move(without);
+    put_suspicions_first(made, findings);
+    for (const data::Prediction& wanted : study.predictions) {
+      if (wanted.case_index != index || made.unusable || sampled.draws.chains.empty()) continue;
+      made.predictions.push_back(predict_unused(study, emulators, wanted, *sampled.model, sampled.draws.pooled()));
+      if (!made.predictions.back().predicts)
+        made.warnings.push_back(fmt::format("case {}: {}", made.name, made.predictions.back().sentence));
+    }
+    if (made.doubt.empty()) made.comparisons = compare_models(study, sampled, index, own);
+    report.warnings.insert(report.warnings.end(), made.warnings.begin(), made.warnings.end());
+    if (options.error_scan.empty()) continue;
+    tell("error scan of case " + study.cases[index].name);
+    if (!made.doubt.empty()) continue;  // what another error would give is as doubtful
+    for (auto& scan : scan_errors(study, sampled, index, own)) report.error_scan.push_back(std::move(scan));
+  }
+  report.warning = !report.warnings.empty();
+  report.thresholds = describe(options.identify.thresholds);
+  for (auto& threshold : describe(SupportThresholds{})) report.thresholds.push_back(std::move(threshold));
+  report.provenance.emplace_back("seed", std::to_string(seed_of(study, options)));
+  report.provenance.emplace_back("runs in the table", std::to_string(data::used_rows(rows)));
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+  report.provenance.emplace_back("calibration time", fmt::format("{:.1f} s", elapsed.count()));
+  if (options.progress) options.progress("done", 1.0);
+  return result;
+}
+
+CalibrationReport calibrate(const data::Study& study, const data::RunTable& table, const CalibrateOptions& options) {
+  return calibrate_all(study, table, options).report;
+}
+
+}  // namespace uq

@@ -1,0 +1,290 @@
+// All looks at the data, and those at the ranges and the outputs of the runs.
+#include "uq/calibrate/data_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "uq/calibrate/data_columns.hpp"
+#include "uq/posterior/prior.hpp"
+
+namespace uq {
+namespace {
+
+using data::Finding;
+using data::Severity;
+
+Finding about(const std::string& kind, Severity severity, const std::vector<std::string>& places) {
+  return {.kind = kind,
+          .place = data::list_places(places),
+          .severity = severity,
+          .what = {},
+          .remedy = {},
+          .places = places};
+}
+
+double share_inside(const Column& column, double low, double high, double factor = 1.0) {
+  const double slack = 0.01 * (high - low);
+  const auto inside = std::count_if(column.values.begin(), column.values.end(), [&](double value) {
+    return factor * value >= low - slack && factor * value <= high + slack;
+  });
+  return static_cast<double>(inside) / static_cast<double>(column.values.size());
+}
+
+/// Share of a range that values times a factor span.
+double span(const Column& column, double factor = 1.0) {
+  const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
+  return factor * (*most - *least) / (column.high - column.low);
+}
+
+/// A column that fills its range only when it is read in another unit.
+std::optional<Finding> other_unit(const Column& column) {
+  const double inside = share_inside(column, column.low, column.high);
+  if (!(span(column) > 0.0) || (inside > 0.5 && span(column) > 0.05)) return {};
+  for (const UnitFactor& known : unit_factors())
+    for (const double factor : {known.factor, 1.0 / known.factor}) {
+      if (share_inside(column, column.low, column.high, factor) < 0.95 || span(column, factor) < 0.4) continue;
+      const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
+      Finding finding{.kind = "unit",
+                      .place = column.places.front(),
+                      .severity = inside < 0.5 && column.is_parameter ? Severity::refusal : Severity::warning,
+                      .what = {},
+                      .remedy = {},
+                      .places = {}};
+      finding.what = fmt::format(
+          "the runs' {} lies from {:.4g} to {:.4g}{}, and its range from {:.4g} to {:.4g}: {} {:.4g} it would fill it. "
+          "Is another unit meant, {}?",
+          column.name, column.shown(*least), column.shown(*most), column.unit_text(), column.shown(column.low),
+          column.shown(column.high), factor > 1.0 ? "times" : "divided by", factor > 1.0 ? factor : 1.0 / factor,
+          known.between);
+      finding.remedy = fmt::format("write the column in the study's unit, or set {}.{}.unit",
+                                   column.is_parameter ? "parameters" : "controls", column.name);
+      return finding;
+    }
+  return {};
+}
+
+/// Two columns of which each fits the other's range and not both their own.
+std::optional<Finding> exchanged(const Column& a, const Column& b, double share) {
+  const double own = std::min(share_inside(a, a.low, a.high), share_inside(b, b.low, b.high));
+  // The numbers as written: a header says nothing of units.
+  const auto in_range_of = [](const Column& column, const Column& other) {
+    const double low = other.shown(other.low), high = other.shown(other.high), slack = 0.01 * (high - low);
+    const auto inside = std::count_if(column.values.begin(), column.values.end(), [&](double value) {
+      return column.shown(value) >= low - slack && column.shown(value) <= high + slack;
+    });
+    return static_cast<double>(inside) / static_cast<double>(column.values.size());
+  };
+  if (own > 0.5 || in_range_of(a, b) < share || in_range_of(b, a) < share) return {};
+  const auto range = [](const Column& column) {
+    const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
+    return fmt::format("{:.4g} to {:.4g}", column.shown(*least), column.shown(*most));
+  };
+  return Finding{
+      .kind = "exchanged columns",
+      .place = a.places.front(),
+      .severity = Severity::refusal,
+      .what = fmt::format("the columns {} and {} look exchanged: the runs' {} lies from {} and their {} from "
+                          "{}, each in the other's range ({:.4g} to {:.4g}, and {:.4g} to {:.4g})",
+                          a.name, b.name, a.name, range(a), b.name, range(b), a.shown(a.low), a.shown(a.high),
+                          b.shown(b.low), b.shown(b.high)),
+      .remedy = "exchange the two names in the header",
+      .places = {}};
+}
+
+/// A control's column that holds what was measured of an output, and the output's column that holds the control.
+std::optional<Finding> exchanged_output(const data::Study& study, const data::RunTable& table, const Column& control) {
+  if (share_inside(control, control.low, control.high) > 0.5) return {};
+  for (std::size_t k = 0; k < study.outputs.size(); ++k) {
+    const data::Unit& unit = study.outputs[k].unit;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const data::ObservationSet& set : study.observations)
+      for (std::size_t c = 0; c < set.outputs.size(); ++c)
+        for (const data::Observation& point : set.points) {
+          if (set.outputs[c] != k) continue;
+          low = std::min(low, unit.from_si(point.values[c]));
+          high = std::max(high, unit.from_si(point.values[c]));
+        }
+    Column output{study.outputs[k].name, unit, 0.0, 1.0, false, {}, {}};
+    std::size_t inside = 0;
+    for (const data::RunRow& row : table.rows) {
+      if (!row.left_out.empty() || !std::isfinite(row.outputs[k])) continue;
+      output.values.push_back(row.outputs[k]);
+      const double number = unit.from_si(row.outputs[k]);
+      inside += number >= control.shown(control.low) && number <= control.shown(control.high);
+    }
+    const auto as_measured = std::count_if(control.values.begin(), control.values.end(), [&](double value) {
+      return control.shown(value) > low / 3.0 && control.shown(value) < high * 3.0;
+    });
+    if (output.values.empty() || 20 * inside < 19 * output.values.size() ||
+        20 * static_cast<std::size_t>(as_measured) < 19 * control.values.size())
+      continue;
+    return Finding{
+        .kind = "exchanged columns",
+        .place = control.places.front(),
+        .severity = Severity::refusal,
+        .what = fmt::format("the columns {} and {} look exchanged: the runs' {} lies where {} was measured "
+                            "({:.4g} to {:.4g}), and their {} in the range of {}",
+                            control.name, output.name, control.name, output.name, low, high, output.name, control.name),
+        .remedy = "exchange the two names in the header",
+        .places = {}};
+  }
+  return {};
+}
+
+}  // namespace
+
+const std::vector<UnitFactor>& unit_factors() {
+  static const std::vector<UnitFactor> factors{
+      {1000.0, "one prefix (m, k) more or less"},
+      {1e6, "two prefixes (u, M) more or less"},
+      {60.0, "minutes against seconds"},
+      {60.0 / (2.0 * std::numbers::pi), "rpm against rad/s"},
+      {2.0 * std::numbers::pi, "turns against radians"},
+      {180.0 / std::numbers::pi, "degrees against radians"},
+      {100.0, "percent, or cm against m"},
+      {1e4, "cm2 against m2"},
+      {9.80665, "kgf against N"},
+      {1e9, "three prefixes (n, G) more or less"},
+  };
+  return factors;
+}
+
+std::optional<UnitFactor> known_factor(double typical, double expected, double slack) {
+  if (!(typical * expected > 0.0)) return {};
+  const double wanted = std::abs(std::log(expected / typical));
+  std::optional<UnitFactor> best;
+  double nearest = std::log(slack);
+  for (const UnitFactor& known : unit_factors())
+    if (const double off = std::abs(wanted - std::log(known.factor)); off < nearest) {
+      nearest = off;
+      best = known;
+    }
+  return best;
+}
+
+std::vector<Finding> check_ranges(const data::Study& study, data::RunTable& table, const DataCheckThresholds& t) {
+  std::vector<Finding> findings;
+  std::vector<Column> columns = input_columns(study, table);
+  std::erase_if(columns, [](const Column& column) { return column.values.empty(); });
+  std::vector<bool> told(columns.size(), false);
+  for (std::size_t a = 0; a < columns.size(); ++a)
+    for (std::size_t b = a + 1; b < columns.size(); ++b)
+      if (auto found = exchanged(columns[a], columns[b], t.exchanged)) {
+        findings.push_back(std::move(*found));
+        told[a] = told[b] = true;
+      }
+  for (std::size_t a = 0; a < columns.size(); ++a)
+    if (auto found = told[a] || columns[a].is_parameter ? std::nullopt : exchanged_output(study, table, columns[a])) {
+      findings.push_back(std::move(*found));
+      told[a] = true;
+    }
+  for (std::size_t a = 0; a < columns.size(); ++a)
+    if (auto found = told[a] ? std::nullopt : other_unit(columns[a])) {
+      findings.push_back(std::move(*found));
+      told[a] = true;
+    }
+  for (std::size_t a = 0; a < columns.size(); ++a) {
+    const Column& column = columns[a];
+    if (!column.is_parameter || told[a]) continue;
+    const data::Parameter& parameter = study.parameters[*study.parameter_index(column.name)];
+    std::vector<std::string> near, far;
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (data::RunRow& row : table.rows) {
+      const double value = row.inputs[input_column(table, column.name)];
+      if (!row.left_out.empty() || is_held(study, row, column.name)) continue;
+      if (parameter.scale == data::Scale::log && !(value > 0.0)) continue;
+      const double u = parameter.axis().to_unit(value);
+      if (u >= -t.outside && u <= 1.0 + t.outside) continue;
+      least = std::min(least, value);
+      most = std::max(most, value);
+      const bool is_far = u < -t.far_outside || u > 1.0 + t.far_outside;
+      (is_far ? far : near).push_back(row.place);
+      if (is_far) row.left_out = fmt::format("{} lies far outside its range", column.name);
+    }
+    if (near.empty() && far.empty()) continue;
+    std::vector<std::string> places = far;
+    places.insert(places.end(), near.begin(), near.end());
+    Finding finding = about("outside the range", Severity::warning, places);
+    finding.what = fmt::format(
+        "{} of {} rows have {} outside its range, {:.4g} to {:.4g}{} ({}{:.4g})", places.size(), column.values.size(),
+        column.name, column.shown(column.low), column.shown(column.high), column.unit_text(),
+        least < most ? fmt::format("from {:.4g} to ", column.shown(least)) : "", column.shown(most));
+    if (!far.empty())
+      finding.what += fmt::format("; {} of them further than the range is wide, and left out", far.size());
+    finding.remedy =
+        fmt::format("correct the rows, leave them out ([training] leave_out), or widen parameters.{}", column.name);
+    findings.push_back(std::move(finding));
+  }
+  return findings;
+}
+
+std::vector<Finding> check_outputs(const data::Study& study, const data::RunTable& table,
+                                   const std::vector<std::string>& log_outputs) {
+  std::vector<Finding> findings;
+  for (std::size_t k = 0; k < study.outputs.size(); ++k) {
+    const data::Output& output = study.outputs[k];
+    const bool logarithmic = std::find(log_outputs.begin(), log_outputs.end(), output.name) != log_outputs.end();
+    std::vector<std::string> exact, no_logarithm;
+    std::size_t count = 0, with_error = 0;
+    double least = HUGE_VAL, most = -HUGE_VAL;
+    for (const data::RunRow& row : table.rows) {
+      const double value = row.outputs[k], error = row.standard_errors[k];
+      if (!row.left_out.empty() || !std::isfinite(value) || !std::isfinite(error)) continue;
+      ++count;
+      with_error += error > 0.0;
+      least = std::min(least, value);
+      most = std::max(most, value);
+      if (!(error > 0.0)) exact.push_back(row.place);
+      if (logarithmic && !(value > 0.0)) no_logarithm.push_back(row.place);
+    }
+    if (count == 0) continue;
+    if (!exact.empty() && 2 * with_error > count) {
+      Finding finding = about("standard error 0", Severity::warning, exact);
+      finding.what = fmt::format("{} {} a standard error of 0 for {}, where the other {} have one: {} taken as exact",
+                                 exact.size(), exact.size() == 1 ? "row has" : "rows have", output.name, with_error,
+                                 exact.size() == 1 ? "it is" : "they are");
+      finding.remedy = "give the standard error, or leave the rows out ([training] leave_out)";
+      findings.push_back(std::move(finding));
+    }
+    if (!no_logarithm.empty()) {
+      Finding finding = about("no logarithm", Severity::refusal, no_logarithm);
+      finding.what = fmt::format("{} is not above 0, and surrogate.log_outputs learns its logarithm", output.name);
+      finding.remedy = "leave the rows out ([training] leave_out), or leave the output out of log_outputs";
+      findings.push_back(std::move(finding));
+    }
+    if (count > 2 && !(most > least))
+      findings.push_back({.kind = "no response",
+                          .place = table.rows.front().place,
+                          .severity = Severity::warning,
+                          .what = fmt::format("{} is {:.5g}{}{} in all {} runs: it does not respond to any input, and "
+                                              "nothing can be learned from it",
+                                              output.name, output.unit.from_si(least),
+                                              output.unit.symbol.empty() ? "" : " ", output.unit.symbol, count),
+                          .remedy = "look at how the column was written",
+                          .places = {}});
+  }
+  return findings;
+}
+
+std::vector<Finding> check_data(const data::Study& study, data::RunTable& table,
+                                const std::optional<data::RunTable>& low, const std::vector<std::string>& log_outputs,
+                                const DataCheckThresholds& thresholds) {
+  std::vector<Finding> all;
+  const auto add = [&all](std::vector<Finding> found) {
+    for (Finding& one : found) all.push_back(std::move(one));
+  };
+  if (data::used_rows(table) > 0) {
+    add(check_ranges(study, table, thresholds));
+    add(check_outputs(study, table, log_outputs));
+    if (!data::has(all, Severity::refusal)) add(check_design(study, table, thresholds));
+  }
+  add(check_observations(study, table, thresholds));
+  if (!data::has(all, Severity::refusal)) add(check_cases(study, table, low));
+  return all;
+}
+
+}  // namespace uq

@@ -1,0 +1,59 @@
+#pragma once
+// Rows and observations looked at once, before anything is fitted: what cannot be meant, and what would give a wrong
+// answer without a word. `check` says it; `fit`, `sample` and `calibrate` say the same and stop at what they refuse.
+//
+//   refused   contradictions between the study, the runs and the observations, as building the cases finds them
+//             (uq/posterior/build_case.cpp): a control that the runs hold at another value than the measured one, a parameter
+//             fixed where no run is; one file observed twice in a case; two columns exchanged; a column in another unit
+//   warned    copies, rows outside the ranges, standard errors of 0 among others, an output that no run changes, inputs
+//             that move together, ranges that the runs do not cover, magnitudes that suggest another unit, standard
+//             errors that suggest a percentage
+// A factor between units is suspected where values times the factor fill their range, or meet the runs, and the values
+// themselves do not.
+#include <optional>
+#include <vector>
+
+#include "data/finding.hpp"
+#include "data/run_table.hpp"
+#include "data/study.hpp"
+
+namespace uq {
+
+struct DataCheckThresholds {
+  double outside = 1e-3;           ///< of a parameter's range: a row further out is named
+  double far_outside = 1.0;        ///< of the range: a row further out is not learnt from
+  double covered = 0.5;            ///< of a parameter's range, in u: runs that cover less are named
+  double together = 0.98;          ///< correlation of two inputs over the runs, of values or of ranks
+  double multiple = 0.98;          ///< squared multiple correlation of an input with all others
+  double exchanged = 0.95;         ///< share of values in the other column's range
+  double unlikely_scatter = 2e-3;  ///< probability that errors as stated scatter as little
+};
+
+/// All there is to say; nothing is thrown. A row that lies far outside is marked in `table`.
+std::vector<data::Finding> check_data(const data::Study& study, data::RunTable& table,
+                                      const std::optional<data::RunTable>& low = {},
+                                      const std::vector<std::string>& log_outputs = {},
+                                      const DataCheckThresholds& thresholds = {});
+
+// Its parts, each a look of its own.
+std::vector<data::Finding> check_ranges(const data::Study& study, data::RunTable& table,
+                                        const DataCheckThresholds& thresholds);
+std::vector<data::Finding> check_outputs(const data::Study& study, const data::RunTable& table,
+                                         const std::vector<std::string>& log_outputs);
+std::vector<data::Finding> check_design(const data::Study& study, const data::RunTable& table,
+                                        const DataCheckThresholds& thresholds);
+std::vector<data::Finding> check_observations(const data::Study& study, const data::RunTable& table,
+                                              const DataCheckThresholds& thresholds);
+std::vector<data::Finding> check_cases(const data::Study& study, const data::RunTable& table,
+                                       const std::optional<data::RunTable>& low);
+
+/// A factor between two ways to write a number, and what it is between.
+struct UnitFactor {
+  double factor = 1.0;
+  std::string between;  ///< "a prefix (m against none)"
+};
+
+/// The factor that takes values of about `typical` to about `expected`, within `slack` (a ratio), if one is known.
+std::optional<UnitFactor> known_factor(double typical, double expected, double slack);
+
+}  // namespace uq

@@ -1,0 +1,287 @@
+// Of the observations: copies, magnitudes beside the runs', standard errors that cannot be meant; and what building the
+// cases would refuse.
+//
+// Errors in percent: readings along one control are smooth, so their scatter about a line or a parabola in it says how
+// large their errors can be. With residuals r_i, errors s_i and as many degrees of freedom as the curve leaves,
+//   P(chi2 <= sum r_i^2 / s_i^2) below a threshold and s_i over 5 % of the value: a percentage is suspected;
+//   P(chi2 >= ...) as small, and not with s_i times the value: a share is suspected.
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "data/error.hpp"
+#include "uq/calibrate/data_columns.hpp"
+#include "uq/emulate/surrogates.hpp"
+#include "uq/posterior/case_model.hpp"
+
+namespace uq {
+namespace {
+
+using data::Finding;
+using data::Severity;
+
+std::string file_of(const data::ObservationSet& set) { return set.file.substr(set.file.rfind('/') + 1); }
+
+std::string place_of(const data::ObservationSet& set, const data::Observation& point) {
+  return fmt::format("{}:{}", file_of(set), point.line);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+struct Extent {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  std::vector<double> values;
+  void add(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+    values.push_back(value);
+  }
+};
+
+void check_copies(const data::ObservationSet& set, std::vector<Finding>& findings) {
+  if (set.copies.empty()) return;
+  Finding finding{.kind = "copied observations",
+                  .place = {},
+                  .severity = Severity::warning,
+                  .what = {},
+                  .remedy = {},
+                  .places = {}};
+  for (const data::ObservationCopy& copy : set.copies)
+    finding.places.push_back(fmt::format("{}:{}", file_of(set), copy.line));
+  finding.place = data::list_places(finding.places);
+  finding.what = fmt::format(
+      "{} of {} rows are copies of others to the last digit (line {} of line {}): each is counted once",
+      set.copies.size(), set.copies.size() + set.points.size(), set.copies.front().line, set.copies.front().of);
+  finding.remedy = "remove the copies; a repeated measurement differs in its last digits";
+  findings.push_back(std::move(finding));
+}
+
+/// Whether the meter's reading may be another multiple of the runs' output than one.
+bool is_scaled(const data::Study& study, const data::ObservationSet& set, std::size_t output) {
+  if (set.of_machine && study.scale) return true;
+  for (const data::CalibrationCase& one : study.cases) {
+    if (std::find(one.observe.begin(), one.observe.end(), set.name) == one.observe.end()) continue;
+    for (const data::Nuisance& nuisance : one.nuisances)
+      if ((nuisance.kind == data::NuisanceKind::offset || nuisance.kind == data::NuisanceKind::gain ||
+           nuisance.kind == data::NuisanceKind::scale) &&
+          (!nuisance.output || *nuisance.output == output))
+        return true;
+  }
+  return false;
+}
+
+/// Observed outputs beside those of all runs of the material.
+void check_magnitude(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
+                     std::vector<Finding>& findings) {
+  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    const data::Output& output = study.outputs[set.outputs[column]];
+    Extent runs, seen;
+    for (const data::RunRow& row : table.rows)
+      if (row.left_out.empty() && row.material == set.material && std::isfinite(row.outputs[set.outputs[column]]))
+        runs.add(row.outputs[set.outputs[column]]);
+    for (const data::Observation& point : set.points) seen.add(point.values[column]);
+    if (runs.values.size() < 5 || seen.values.empty() || is_scaled(study, set, set.outputs[column])) continue;
+    const double reach = runs.high - runs.low;
+    const double ratio = median(seen.values) / median(runs.values);
+    const bool apart = seen.high < runs.low || seen.low > runs.high;
+    const bool far = seen.high < runs.low - reach || seen.low > runs.high + reach || !(ratio > 0.2 && ratio < 5.0);
+    if (!(reach > 0.0) || !apart || !far) continue;
+    const auto shown = [&](double si) { return output.unit.from_si(si); };
+    const std::string unit = output.unit.symbol.empty() ? "" : " " + output.unit.symbol;
+    Finding finding{
+        .kind = "unit",
+        .place = place_of(set, set.points.front()) + ": " + output.name,
+        .severity = Severity::warning,
+        .what = fmt::format("observed {:.4g}{}{} lie{} outside all runs, {:.4g} to {:.4g}{}", shown(seen.low),
+                            seen.low < seen.high ? fmt::format(" to {:.4g}", shown(seen.high)) : "", unit,
+                            seen.low < seen.high ? "" : "s", shown(runs.low), shown(runs.high), unit),
+        .remedy = "",
+        .places = {}};
+    if (const auto known = known_factor(median(seen.values), median(runs.values), 2.0))
+      finding.what += fmt::format(": {:.3g} times the runs'. Is another unit meant, {}?", ratio, known->between);
+    finding.remedy = fmt::format(
+        "check the unit of {} in {} and in the run table, the fill and the geometry; where they are "
+        "right, the model as it was run does not reach this",
+        output.name, file_of(set));
+    findings.push_back(std::move(finding));
+  }
+}
+
+/// Observed controls beside those of the runs, where a factor between units would explain that they do not meet.
+void check_control_unit(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
+                        std::vector<Finding>& findings) {
+  for (std::size_t c = 0; c < study.controls.size(); ++c) {
+    const data::Control& control = study.controls[c];
+    Extent runs, seen;
+    for (const data::RunRow& row : table.rows)
+      if (row.left_out.empty() && row.material == set.material) runs.add(row.inputs[input_column(table, control.name)]);
+    for (const data::Observation& point : set.points) seen.add(point.controls[c]);
+    if (runs.values.empty() || seen.values.empty()) continue;
+    const double slack = 0.1 * (control.high - control.low);
+    const double typical = median(runs.values);
+    if (typical < control.low || typical > control.high) continue;  // then it is the runs' column that is odd
+    const auto met = std::count_if(seen.values.begin(), seen.values.end(), [&](double value) {
+      return value >= runs.low - 0.2 * slack && value <= runs.high + 0.2 * slack;
+    });
+    if (2 * static_cast<std::size_t>(met) >= seen.values.size()) continue;
+    const UnitFactor* known = nullptr;  // that takes all readings into the range
+    for (const UnitFactor& candidate : unit_factors())
+      for (const double factor : {candidate.factor, 1.0 / candidate.factor})
+        if (known == nullptr && factor * seen.low > control.low - 0.2 * slack &&
+            factor * seen.high < control.high + 0.2 * slack)
+          known = &candidate;
+    if (known == nullptr) continue;
+    findings.push_back(
+        {.kind = "unit",
+         .place = place_of(set, set.points.front()) + ": " + control.name,
+         .severity = Severity::warning,
+         .what = fmt::format(
+             "observed from {:.4g} to {:.4g} {}, the runs from {:.4g} to {:.4g}. Is another unit meant, {}?",
+             control.unit.from_si(seen.low), control.unit.from_si(seen.high), control.unit.symbol,
+             control.unit.from_si(runs.low), control.unit.from_si(runs.high), known->between),
+         .remedy = fmt::format("write both in the study's unit, or set controls.{}.unit", control.name),
+         .places = {}});
+  }
+}
+
+/// Coefficients of the curve about which readings scatter.
+Eigen::Index terms_of(Eigen::Index rows) { return rows < 7 ? 2 : 3; }
+
+/// Squared residuals about a line, or from seven points on a parabola, in the one control that varies; nothing where
+/// there is no such line of points.
+std::optional<Eigen::ArrayXd> residuals2(const data::Study& study, const data::ObservationSet& set,
+                                         std::size_t column) {
+  const auto rows = static_cast<Eigen::Index>(set.points.size());
+  if (rows < 5) return {};
+  std::size_t varied = study.controls.size();
+  for (std::size_t c = 0; c < study.controls.size(); ++c) {
+    Extent extent;
+    for (const data::Observation& point : set.points) extent.add(point.controls[c]);
+    if (!(extent.high - extent.low > 1e-9 * std::abs(extent.high))) continue;
+    if (varied < study.controls.size()) return {};  // a surface, not a line
+    varied = c;
+  }
+  if (varied == study.controls.size()) return {};
+  const Eigen::Index terms = terms_of(rows);
+  Eigen::MatrixXd basis(rows, terms);
+  Eigen::VectorXd y(rows);
+  const data::Control& control = study.controls[varied];
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const data::Observation& point = set.points[static_cast<std::size_t>(i)];
+    const double x = control.axis().to_unit(point.controls[varied]);
+    for (Eigen::Index k = 0; k < terms; ++k) basis(i, k) = std::pow(x, static_cast<double>(k));
+    y[i] = point.values[column];
+  }
+  const Eigen::VectorXd coefficients = basis.colPivHouseholderQr().solve(y);
+  return (y - basis * coefficients).array().square();
+}
+
+void check_errors(const data::Study& study, const data::ObservationSet& set, const DataCheckThresholds& t,
+                  std::vector<Finding>& findings) {
+  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    const auto found = residuals2(study, set, column);
+    if (!found) continue;
+    const data::Output& output = study.outputs[set.outputs[column]];
+    const Eigen::Index rows = found->size();
+    Eigen::ArrayXd error(rows), value(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      error[i] = set.points[static_cast<std::size_t>(i)].standard_errors[column] / output.unit.factor;
+      value[i] = std::abs(output.unit.from_si(set.points[static_cast<std::size_t>(i)].values[column]));
+    }
+    const double dof = static_cast<double>(rows - terms_of(rows));
+    const auto chi2 = [&](const Eigen::ArrayXd& s) {
+      return (*found / (output.unit.factor * output.unit.factor) / s.square()).sum();
+    };
+    const Eigen::ArrayXd percent = error * value / 100.0, share = error * value;
+    const double below = gsl_cdf_chisq_P(chi2(error), dof), above = gsl_cdf_chisq_Q(chi2(error), dof);
+    const double least = (error / value).minCoeff();
+    const bool too_large = below < t.unlikely_scatter && least > 0.05;
+    const bool percent_fits = gsl_cdf_chisq_Q(chi2(percent), dof) > 1e-3 && chi2(percent) > chi2(error);
+    const bool too_small = above < 1e-9 && gsl_cdf_chisq_Q(chi2(share), dof) > 1e-3 && value.minCoeff() > 1.5;
+    if (!(too_large && percent_fits) && !too_small) continue;
+    const double scatter = std::sqrt(chi2(error) / dof);
+    Finding finding{.kind = "standard errors",
+                    .place = fmt::format("{}: {}_se", place_of(set, set.points.front()), output.name),
+                    .severity = Severity::warning,
+                    .what = {},
+                    .remedy = {},
+                    .places = {}};
+    if (too_small) {
+      finding.what = fmt::format(
+          "the readings scatter {:.3g} times more than their standard errors ({:.3g} {}) say; as shares of the value "
+          "they "
+          "would fit. Are they relative?",
+          scatter, error.mean(), output.unit.symbol);
+      finding.remedy = fmt::format("multiply the column by {}", output.name);
+    } else {
+      finding.what = fmt::format(
+          "the readings scatter {:.3g} times less than their standard errors ({:.3g} {}, {:.0f} % of the value) say; "
+          "as "
+          "percentages they would fit. Are they in percent?",
+          1.0 / scatter, error.mean(), output.unit.symbol, 100.0 * (error / value).mean());
+      finding.remedy = fmt::format("multiply the column by {} / 100", output.name);
+    }
+    findings.push_back(std::move(finding));
+  }
+}
+
+}  // namespace
+
+std::vector<Finding> check_observations(const data::Study& study, const data::RunTable& table,
+                                        const DataCheckThresholds& thresholds) {
+  std::vector<Finding> findings;
+  for (const data::ObservationSet& set : study.observations) {
+    check_copies(set, findings);
+    if (set.points.empty()) continue;
+    check_magnitude(study, table, set, findings);
+    check_control_unit(study, table, set, findings);
+    check_errors(study, set, thresholds, findings);
+  }
+  return findings;
+}
+
+std::vector<Finding> check_cases(const data::Study& study, const data::RunTable& table,
+                                 const std::optional<data::RunTable>& low) {
+  std::vector<Finding> findings;
+  std::vector<Emulator> emulators;
+  try {
+    for (const TrainingRows& rows : training_rows(study, table, low)) {
+      Emulator emulator{.material = rows.material,
+                        .output = rows.output,
+                        .inputs = rows.inputs,
+                        .constants = rows.constants,
+                        .control_range = rows.control_range,
+                        .predict = {}};
+      emulators.push_back(std::move(emulator));
+    }
+  } catch (const data::InputError&) {
+    return findings;  // too few runs, which is said elsewhere
+  }
+  for (std::size_t i = 0; i < study.cases.size(); ++i) {
+    try {
+      build_case(study, emulators, i);
+    } catch (const data::InputError& error) {
+      for (const data::Problem& problem : error.problems) {
+        const bool told = std::any_of(findings.begin(), findings.end(), [&](const Finding& known) {
+          return known.place == problem.place && known.what == problem.what;
+        });
+        if (!told)
+          findings.push_back({.kind = "case",
+                              .place = problem.place,
+                              .severity = Severity::refusal,
+                              .what = problem.what,
+                              .remedy = problem.remedy,
+                              .places = {}});
+      }
+    }
+  }
+  return findings;
+}
+
+}  // namespace uq

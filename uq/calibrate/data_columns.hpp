@@ -1,0 +1,36 @@
+#pragma once
+// The run table by columns, for uq/data_check*.cpp alone: an input's values over the rows that are learnt from.
+#include <string>
+#include <vector>
+
+#include "data/run_table.hpp"
+#include "data/study.hpp"
+#include "uq/calibrate/data_check.hpp"
+
+namespace uq {
+
+struct Column {
+  std::string name;
+  data::Unit unit;
+  double low = 0.0, high = 1.0;  ///< the range, SI
+  bool is_parameter = true;
+  std::vector<double> values;  ///< SI
+  std::vector<std::string> places;
+
+  double shown(double si) const { return unit.from_si(si); }
+  std::string unit_text() const { return unit.symbol.empty() ? "" : " " + unit.symbol; }
+};
+
+/// Whether the row's material holds the parameter ([materials.X] fixed): its range does not concern the row.
+bool is_held(const data::Study& study, const data::RunRow& row, const std::string& name);
+
+/// Every parameter and control; rows left out, or whose material holds the parameter, are not in it.
+std::vector<Column> input_columns(const data::Study& study, const data::RunTable& table,
+                                  const std::string* material = nullptr);
+
+/// Place of a name in RunRow::inputs. The table has all of the study's names, or reading it failed.
+std::size_t input_column(const data::RunTable& table, const std::string& name);
+
+const std::vector<UnitFactor>& unit_factors();
+
+}  // namespace uq

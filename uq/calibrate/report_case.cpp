@@ -1,0 +1,322 @@
+// From a case's draws to what is told of it: verdicts, convergence, bands, warnings.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/calibrate/calibrate.hpp"
+#include "uq/calibrate/misfit.hpp"
+#include "uq/infer/diagnostics.hpp"
+#include "uq/infer/quadrature.hpp"
+#include "uq/posterior/discrepancy.hpp"
+#include "uq/posterior/posterior.hpp"
+#include "uq/posterior/support.hpp"
+#include "uq/verdict/contradiction.hpp"
+
+namespace uq {
+namespace {
+
+/// Convergence of each parameter, and the Monte Carlo error of its mean in the study's unit.
+void add_diagnostics(CaseReport& report, const SampledCase& sampled) {
+  for (std::size_t k = 0; k < report.parameters.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    ParameterReport& parameter = report.parameters[k];
+    parameter.rhat = sampled.draws.rhat[column];
+    parameter.ess_bulk = sampled.draws.ess_bulk[column];
+    parameter.ess_tail = sampled.draws.ess_tail[column];
+    const data::Parameter& source = sampled.model->slots[k].prior.parameter();
+    Eigen::MatrixXd values = sampled.draws.coordinate(static_cast<int>(k));
+    for (double& value : values.reshaped()) value = source.unit.from_si(source.axis().from_unit(value));
+    parameter.mcse = mean_mcse(values);
+  }
+}
+
+void add_nuisances(CaseReport& report, const SampledCase& sampled) {
+  for (int k = 0; k < sampled.model->dimension(); ++k)
+    if (sampled.model->slots[static_cast<std::size_t>(k)].nuisance != Acts::none)
+      report.nuisances.push_back(summary_of(sampled, k));
+}
+
+/// Separate regions of the posterior, in the study's units. Where the sampler has missed one, it has not converged.
+void add_modes(CaseReport& report, const CaseModel& model, const Identification& found) {
+  if (found.modes.size() > 1)
+    for (const Mode& mode : found.modes) {
+      ModeReport made{.weight = mode.weight, .mean = {}, .sd = {}};
+      for (int k = 0; k < model.own_count(); ++k) {
+        const Slot& slot = model.slots[static_cast<std::size_t>(k)];
+        const data::Unit& unit = slot.prior.parameter().unit;
+        made.mean[slot.label] = unit.from_si(slot.value(mode.mean[k]));
+        made.sd[slot.label] = mode.sd[k] * std::abs(slot.slope(mode.mean[k])) / unit.factor;
+      }
+      report.modes.push_back(std::move(made));
+    }
+  for (const std::string& place : found.unvisited) {
+    report.converged = false;
+    report.warnings.push_back(
+        fmt::format("case {}: the chains have not converged: {} fits the data as well, and no draw lies there",
+                    report.name, place));
+  }
+}
+
+/// Draws of the case's own parameters in the study's units, and their correlation.
+void add_draws(CaseReport& report, const CaseModel& model, const Eigen::MatrixXd& draws) {
+  const Eigen::Index own = model.own_count();
+  Eigen::MatrixXd values = draws.leftCols(own);
+  for (Eigen::Index k = 0; k < own; ++k) {
+    const data::Parameter& parameter = model.slots[static_cast<std::size_t>(k)].prior.parameter();
+    for (Eigen::Index i = 0; i < values.rows(); ++i)
+      values(i, k) = parameter.unit.from_si(parameter.axis().from_unit(values(i, k)));
+  }
+  const Eigen::MatrixXd centred = values.rowwise() - values.colwise().mean();
+  const Eigen::VectorXd length = centred.colwise().norm();
+  report.correlation.assign(static_cast<std::size_t>(own), std::vector<double>(static_cast<std::size_t>(own), 1.0));
+  for (Eigen::Index a = 0; a < own; ++a)
+    for (Eigen::Index b = 0; b < own; ++b)
+      if (a != b)
+        report.correlation[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =
+            centred.col(a).dot(centred.col(b)) / (length[a] * length[b]);
+  const Eigen::MatrixXd plotted = thinned(values, 1500);
+  for (Eigen::Index i = 0; i < plotted.rows(); ++i) {
+    std::vector<double> row;
+    for (Eigen::Index k = 0; k < own; ++k) row.push_back(plotted(i, k));
+    report.draws_for_plot.push_back(std::move(row));
+  }
+}
+
+/// Largest difference of mean and sd between draws and quadrature, in posterior sd.
+double difference(const Eigen::MatrixXd& draws, const Quadrature& exact) {
+  double largest = 0.0;
+  for (Eigen::Index k = 0; k < draws.cols(); ++k) {
+    const double mean = draws.col(k).mean();
+    const double sd = std::sqrt((draws.col(k).array() - mean).square().mean());
+    largest =
+        std::max({largest, std::abs(mean - exact.mean[k]) / exact.sd[k], std::abs(sd - exact.sd[k]) / exact.sd[k]});
+  }
+  return largest;
+}
+
+/// Whether a mean or a variance of the draws is further from quadrature's than five of its standard errors. The error
+/// of a variance is that of the squares: a far mode of little mass makes it many times a normal's.
+bool beyond_its_error(const Draws& draws, const Quadrature& exact) {
+  for (int k = 0; k < draws.dimension(); ++k) {
+    const Eigen::MatrixXd values = draws.coordinate(k), squares = (values.array() - exact.mean[k]).square();
+    if (std::abs(values.mean() - exact.mean[k]) > 5.0 * mean_mcse(values) + 0.01 * exact.sd[k]) return true;
+    const double variance = exact.sd[k] * exact.sd[k];
+    if (std::abs(squares.mean() - variance) > 5.0 * mean_mcse(squares) + 0.02 * variance) return true;
+  }
+  return false;
+}
+
+void add_quadrature(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
+                    const CalibrateOptions& options) {
+  const Quadrature exact = integrate(
+      posterior_target(sampled.model),
+      {.tolerance = 1e-4, .evaluations_max = 60000, .threads = options.threads, .guides = thinned(draws, 1000)});
+  if (!exact.resolved) return;
+  report.grid_difference = difference(draws, exact);
+  if (beyond_its_error(sampled.draws, exact))
+    report.warnings.push_back(fmt::format("case {}: sampler and grid quadrature differ by {:.2g} posterior sd",
+                                          report.name, *report.grid_difference));
+}
+
+/// What the second look saw, and how small a place it would have missed: n draws miss a share v with (1 - v)^n.
+std::string search_in_words(const Draws& draws) {
+  if (draws.scouts == 0) return "";
+  const std::string found = draws.found_modes == 0 ? "no maximum that the draws do not know"
+                            : draws.found_modes == 1
+                                ? "one maximum, which the draws then took in"
+                                : fmt::format("{} maxima, which the draws then took in", draws.found_modes);
+  return fmt::format(
+      "{} draws of the prior, and lines through the best fit along every axis and diagonal, gave {} starts uphill: "
+      "{}. A basin that holds less than {:.2g} % of the prior and lies on none of these lines could have escaped.",
+      draws.scouts, draws.searched_starts, found, 100.0 * (1.0 - std::pow(0.05, 1.0 / draws.scouts)));
+}
+
+/// What is known of a cut parameter is what its own case says.
+void take_cut_verdicts(Identification& found, const SampledCase& sampled, const CalibrateOptions& options) {
+  for (const auto& source : sampled.cut_sources) {
+    const Identification of_source = identify(*source->model, source->draws.pooled(), options.identify);
+    for (std::size_t k = 0; k < found.parameters.size(); ++k) {
+      if (sampled.model->slots[k].cut_from != source->model->name) continue;
+      for (const ParameterReport& known : of_source.parameters)
+        if (known.name == found.parameters[k].name) {
+          found.parameters[k] = known;
+          found.parameters[k].sentence += fmt::format(
+              " This is the posterior of case {}, cut: the data of this case do not change it.", source->model->name);
+        }
+    }
+  }
+}
+
+void add_sampler_warnings(CaseReport& report, const Draws& draws) {
+  for (const auto& chain : draws.chains)
+    if (chain.energy.size() > 0) {
+      const double fraction = energy_fraction(chain.energy);
+      if (!(report.energy_fraction <= fraction)) report.energy_fraction = fraction;
+    }
+  if (report.divergences > 0)
+    report.warnings.push_back(fmt::format(
+        "case {}: {} divergent trajectories: the draws may miss a sharp corner of the posterior (sampler = \"mixture\" "
+        "does not follow gradients)",
+        report.name, report.divergences));
+  if (report.energy_fraction < 0.3)
+    report.warnings.push_back(fmt::format("case {}: E-BFMI {:.2f} is below 0.3: the chains explore the energies slowly",
+                                          report.name, report.energy_fraction));
+  const bool has_evidence = !std::isnan(report.log_evidence);
+  if (has_evidence && !(report.log_evidence_error < 0.2))
+    report.warnings.push_back(
+        fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
+}
+
+/// Where the runs cannot carry a verdict, that is the finding, and what is printed beside it is no result.
+void doubt(CaseReport& report, Words& words, const data::Study& study) {
+  const bool own_engine = study.training.engine == "demcal";
+  words.finding = fmt::format("No verdict: {}.{}", report.doubt,
+                              report.fits ? "" : " As it stands, the surrogate does not reproduce the data either.");
+  if (const std::string off = farthest_off(report.predictive); !report.fits && !off.empty()) words.finding += " " + off;
+  report.traded.clear();
+  if (report.unusable) {
+    words.consequence = "What the surrogate gives for the parameters is not the model's, and is not shown.";
+    words.remedy = "See the surrogate's remedy above; then calibrate again.";
+  } else if (!report.support.supported) {
+    words.consequence = "The values are extrapolated, and no results.";
+    words.remedy =
+        fmt::format("Run {} of the posterior's points ({}), and calibrate again.", report.support.next_runs.size(),
+                    own_engine ? "demcal train STUDY --at-posterior N" : "next-runs.csv beside the report");
+  } else {
+    words.consequence = "The values with and without those runs are both shown; neither is a result yet.";
+    words.remedy = "Correct the runs or leave them out ([training] leave_out), and calibrate again.";
+  }
+}
+
+void add_warnings(CaseReport& report, const SampledCase& sampled) {
+  if (!report.doubt.empty() && !report.unusable)
+    report.warnings.push_back(fmt::format("case {}: {}", report.name, report.doubt));
+  if (!sampled.draws.converged)
+    report.warnings.push_back(
+        fmt::format("case {}: the chains have not converged: {}", report.name, sampled.draws.reason));
+  if (!report.fits) report.warnings.push_back(fmt::format("case {}: the model does not fit the data", report.name));
+  add_sampler_warnings(report, sampled.draws);
+  if (!report.discrepancies.empty()) {
+    double largest = 0.0;
+    for (const auto& band : report.discrepancies) largest = std::max(largest, band.share);
+    report.warnings.push_back(
+        fmt::format("case {}: a discrepancy competes with the parameters for the data (it takes {:.0f} % of the spread "
+                    "about the model); what it takes, the parameters need not explain",
+                    report.name, 100.0 * largest));
+  }
+  for (const auto& slot : sampled.model->slots)
+    if (slot.nuisance == Acts::none && slot.prior.kept_mass() < 0.99)
+      report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
+                                            slot.label, 100.0 * (1.0 - slot.prior.kept_mass())));
+}
+
+}  // namespace
+
+NuisanceReport summary_of(const SampledCase& sampled, int unknown) {
+  const Slot& slot = sampled.model->slots[static_cast<std::size_t>(unknown)];
+  const data::Unit& unit = slot.prior.parameter().unit;
+  Eigen::VectorXd values = sampled.draws.coordinate(unknown).reshaped();
+  for (double& value : values) value = unit.from_si(slot.value(value));
+  const double mean = values.mean();
+  return {.name = slot.label,
+          .unit = unit.symbol,
+          .prior_mean = unit.from_si(slot.prior.value_mean()),
+          .prior_sd = slot.prior.value_sd() / unit.factor,
+          .mean = mean,
+          .sd = std::sqrt((values.array() - mean).square().sum() / static_cast<double>(values.size() - 1)),
+          .q05 = quantile(values, 0.05),
+          .q50 = quantile(values, 0.50),
+          .q95 = quantile(values, 0.95),
+          .rhat = sampled.draws.rhat[unknown],
+          .ess_bulk = sampled.draws.ess_bulk[unknown],
+          .ess_tail = sampled.draws.ess_tail[unknown]};
+}
+
+CaseReport report_case(const data::Study& study, const SampledCase& sampled, const CalibrateOptions& options) {
+  const CaseModel& model = *sampled.model;
+  CaseReport report;
+  report.name = model.name;
+  report.linked = model.linked;
+  report.observed_sets = model.observed_sets;
+  for (const auto& name : model.observed_sets) {
+    std::string note;
+    for (const auto& line : study.observations[study.observation_index(name).value()].header)
+      note += (note.empty() ? "" : "\n") + line;
+    report.observed_notes.push_back(note);
+  }
+  report.converged = sampled.draws.converged;
+  report.chains = static_cast<int>(sampled.draws.chains.size());
+  report.divergences = sampled.draws.divergences;
+  report.sampler = sampled.draws.sampler;
+  report.search = search_in_words(sampled.draws);
+  for (const auto& slot : model.slots)
+    if (!slot.cut_from.empty()) report.cuts.push_back(slot.label + " from " + slot.cut_from);
+  report.log_evidence = sampled.draws.log_evidence;
+  report.log_evidence_error = sampled.draws.log_evidence_error;
+  if (sampled.draws.chains.empty()) {
+    // Nothing was drawn: no verdict, and the reason in the first lines.
+    report.fits = false;
+    report.warnings.push_back(fmt::format("case {}: sampling failed: {}", report.name, sampled.draws.reason));
+    report.finding = "The posterior could not be sampled: " + sampled.draws.reason + ".";
+    report.consequence = "There is no result for this case.";
+    report.remedy = "Check the priors and the measurement errors.";
+    return report;
+  }
+  report.draws = static_cast<int>(sampled.draws.chains.front().x.rows());
+
+  const Eigen::MatrixXd draws = sampled.draws.pooled();
+  report.support = sampled.support;
+  IdentifyOptions judged = options.identify;
+  if (judged.unsupported.empty()) judged.unsupported = unsupported_parameters(model, sampled.support);
+  if (!judged.unsupported.empty()) report.doubt = judged.unsupported.front();
+  report.unusable = !doubt_of(model).empty();
+  Identification found = identify(model, draws, judged);
+  report.surrogate_share = found.surrogate_share;
+  take_cut_verdicts(found, sampled, options);
+  report.chi2 = found.check.chi2;
+  report.dof = found.check.dof;
+  report.ppp = found.check.predictive_p;
+  report.fits = found.fits;
+  report.parameters = found.parameters;
+  report.fisher_condition = found.fisher.condition;
+  report.collinearity = found.fisher.collinearity;
+  report.traded = found.traded;
+  for (TradedPair& pair : report.traded)
+    for (const std::vector<double>& u : pair.equivalent_u)
+      for (PredictiveCurve& curve :
+           mean_curves(study, model, Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()))))
+        pair.curves.push_back(std::move(curve));
+  add_modes(report, model, found);
+  add_diagnostics(report, sampled);
+  add_nuisances(report, sampled);
+  add_draws(report, model, draws);
+  const auto item = std::find_if(study.cases.begin(), study.cases.end(),
+                                 [&](const data::CalibrationCase& one) { return one.name == model.name; });
+  const std::uint64_t seed = data::child_seed(seed_of(study, options), data::Purpose::report_seed,
+                                              static_cast<std::uint32_t>(item - study.cases.begin()));
+  report.predictive = predictive_points(study, model, draws, seed);
+  report.curves = predictive_curves(study, model, draws, seed);
+  report.discrepancies = discrepancy_bands(study, model, draws, seed);
+  if (options.quadrature && model.dimension() <= 2 && report.cuts.empty())
+    add_quadrature(report, sampled, draws, options);
+  report.modes_parted_by = parted_by(study, model, found.modes);
+  Words words = summarise(found, report.modes_parted_by);
+  if (!found.fits) {
+    if (const std::string off = farthest_off(report.predictive); !off.empty()) words.finding += " " + off;
+    const Contradiction sets =
+        describe_contradiction(fits_alone(study, model, found.best_fit.x), options.identify.thresholds.best_fit_p);
+    if (!sets.finding.empty()) {
+      words.finding += " " + sets.finding;
+      words.remedy = sets.remedy + " " + words.remedy;
+    }
+  }
+  if (!report.doubt.empty()) doubt(report, words, study);
+  report.finding = words.finding;
+  report.consequence = words.consequence;
+  report.remedy = words.remedy;
+  add_warnings(report, sampled);
+  return report;
+}
+
+}  // namespace uq

@@ -1,0 +1,71 @@
+#pragma once
+// What predicts one output of one material: a Gaussian process over the inputs that its runs vary, or any other
+// function. Inputs are in the unit cube: parameters by uq/posterior/prior.hpp's u, controls by (x - low) / (high - low).
+#include <Eigen/Dense>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "data/study.hpp"
+#include "surrogate/gaussian_process.hpp"
+
+namespace uq {
+
+enum class InputKind { parameter, control };
+
+struct EmulatorInput {
+  InputKind kind = InputKind::parameter;
+  std::size_t index = 0;  ///< in Study::parameters or Study::controls
+};
+
+/// The runs that an emulator has learnt from, as far as uq/posterior/support.hpp needs them.
+struct RunCloud {
+  Eigen::MatrixXd points;         ///< unit cube, one per row, both levels where there are two
+  Eigen::VectorXd length_scales;  ///< unit cube
+  double prior_variance = 0.0;    ///< of the process without any runs: SI^2, or of the logarithm
+  bool logarithmic = false;       ///< learnt as a logarithm
+};
+
+struct Emulator {
+  std::string material;
+  std::size_t output = 0;                   ///< in Study::outputs
+  std::vector<EmulatorInput> inputs;        ///< columns of the points
+  std::map<std::size_t, double> constants;  ///< parameters that the material's runs hold at one value, SI
+  std::map<std::size_t, std::pair<double, double>> control_range;  ///< SI, of the runs
+  std::function<surrogate::Prediction(const Eigen::MatrixXd& points)> predict;
+  /// Derivatives to a common shift of each coordinate of all rows; empty where there are none.
+  std::function<surrogate::PredictionGradient(const Eigen::MatrixXd& points, std::span<const int> coordinates)>
+      predict_with_gradient = {};
+  /// Points stacked in groups of `group` rows; empty where there is none.
+  std::function<std::vector<surrogate::Prediction>(const Eigen::MatrixXd& points, int group)> predict_batch = {};
+  std::shared_ptr<const RunCloud> runs = {};  ///< none: a function that no runs stand behind
+  std::string doubt = {};                     ///< why no verdict can rest on it; empty: it can
+};
+
+/// A process of the surrogate layer as an emulator; it is shared, not copied.
+template <class Process>
+Emulator make_emulator(std::shared_ptr<const Process> process, std::string material, std::size_t output,
+                       std::vector<EmulatorInput> inputs) {
+  Emulator emulator{.material = std::move(material),
+                    .output = output,
+                    .inputs = std::move(inputs),
+                    .constants = {},
+                    .control_range = {},
+                    .predict = {}};
+  emulator.predict = [process](const Eigen::MatrixXd& points) -> surrogate::Prediction {
+    return process->predict(points);
+  };
+  emulator.predict_with_gradient = [process](const Eigen::MatrixXd& points,
+                                             std::span<const int> coordinates) -> surrogate::PredictionGradient {
+    return process->predict_with_gradient(points, coordinates);
+  };
+  emulator.predict_batch = [process](const Eigen::MatrixXd& points, int group) -> std::vector<surrogate::Prediction> {
+    return process->predict_batch(points, group);
+  };
+  return emulator;
+}
+
+}  // namespace uq

@@ -1,0 +1,239 @@
+#include "uq/emulate/surrogate_report.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/emulate/outlying_runs.hpp"
+#include "uq/emulate/sensitivity.hpp"
+
+namespace uq {
+namespace {
+
+std::vector<double> in_unit(const Eigen::VectorXd& values, const data::Unit& unit) {
+  std::vector<double> shown;
+  for (const double value : values) shown.push_back(unit.from_si(value));
+  return shown;
+}
+
+const std::string& input_name(const data::Study& study, const EmulatorInput& input) {
+  return input.kind == InputKind::parameter ? study.parameters[input.index].name : study.controls[input.index].name;
+}
+
+/// What the two-level process found, and how its cheaper level did.
+void add_levels(SurrogateReport& report, const FittedSurrogate& fitted, const data::Output& output) {
+  const surrogate::TwoLevelProcess& two = *fitted.two_level;
+  report.low_runs = two.low().runs();
+  report.rho = two.mean_rho();
+  double spread = 0.0;
+  for (const surrogate::TwoLevelParameters& p : two.high().settings)
+    spread += p.weight * std::pow(p.rho - report.rho, 2);
+  report.rho_sd = std::sqrt(spread);
+  const double q2_low = surrogate::q2(fitted.rows.low->y, two.low().leave_one_out().mean);
+  report.notes.insert(
+      report.notes.begin(),
+      fmt::format(
+          "two levels: {} runs over {} of the cheaper level (Q2 {:.4f} left out); output = rho times the cheaper "
+          "level's plus a discrepancy, rho {:.3g} +- {:.2g}, discrepancy sd {:.3g} {}",
+          report.runs, report.low_runs, q2_low, report.rho, report.rho_sd,
+          two.parameters().discrepancy_sd / output.unit.factor, output.unit.symbol));
+  for (const std::string& note : surrogate::fit_notes(two.low().diagnostics()))
+    report.notes.push_back("cheaper level: " + note);
+}
+
+/// Runs that the others contradict, and whether the runs' errors say what they scatter.
+void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const surrogate::FitOptions& options,
+                  const data::Output& output) {
+  const TrainingRows& rows = fitted.rows;
+  const OutlyingRuns found = find_outlying(rows.set, *fitted.process, options);
+  for (std::size_t i = 0; i < found.runs.size(); ++i) {
+    const auto run = static_cast<std::size_t>(found.runs[i]);
+    report.outlying.push_back({.place = run < rows.places.size() && !rows.places[run].empty()
+                                            ? rows.places[run]
+                                            : fmt::format("run {}", run + 1),
+                               .observed = output.unit.from_si(rows.set.y[found.runs[i]]),
+                               .expected = output.unit.from_si(found.expected[i]),
+                               .deviations = found.deviations[i]});
+  }
+  if (!report.outlying.empty())
+    report.remedy = fmt::format("Correct {} or leave {} out first: {}. ",
+                                report.outlying.size() == 1 ? "the run that all others contradict"
+                                                            : "the runs that all others contradict",
+                                report.outlying.size() == 1 ? "it" : "them", leave_out_key(report.outlying)) +
+                    report.remedy;
+  std::vector<double> relative;
+  for (Eigen::Index i = 0; i < rows.set.y.size(); ++i)
+    if (rows.set.y[i] != 0.0) relative.push_back(std::sqrt(rows.set.noise_variance[i]) / std::abs(rows.set.y[i]));
+  if (relative.size() < 20) return;
+  std::nth_element(relative.begin(), relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2),
+                   relative.end());
+  const double typical = relative[relative.size() / 2];
+  if (found.scatter < 0.25 && typical > 0.03)
+    report.notes.push_back(
+        fmt::format("{}{:.2g} times what their standard errors say ({:.0f} % of the value): are the errors in percent?",
+                    overstated_errors, found.scatter, 100.0 * typical));
+}
+
+/// "length scale of input 2" by the input's own name, wherever the judgement speaks of it.
+void name_inputs(SurrogateReport& report) {
+  std::vector<std::string*> texts{&report.finding, &report.consequence, &report.remedy};
+  for (std::string& note : report.notes) texts.push_back(&note);
+  for (std::string* text : texts)
+    for (std::size_t k = report.inputs.size(); k-- > 0;) {  // input 12 before input 1
+      const std::string number = fmt::format("of input {}", k + 1), name = "of " + report.inputs[k];
+      for (std::size_t at = text->find(number); at != std::string::npos; at = text->find(number, at + name.size()))
+        text->replace(at, number.size(), name);
+    }
+}
+
+/// "friction 0.45, rpm 120 rpm": a point of the unit cube in the study's units.
+std::string point_text(const data::Study& study, const TrainingRows& rows, const Eigen::VectorXd& point) {
+  std::string text;
+  for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
+    const EmulatorInput& input = rows.inputs[k];
+    const double u = point[static_cast<Eigen::Index>(k)];
+    const bool is_parameter = input.kind == InputKind::parameter;
+    const data::Unit& unit = is_parameter ? study.parameters[input.index].unit : study.controls[input.index].unit;
+    const data::Axis axis = is_parameter ? study.parameters[input.index].axis() : study.controls[input.index].axis();
+    text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", input_name(study, input),
+                        unit.from_si(axis.from_unit(u)), unit.symbol.empty() ? "" : " ", unit.symbol);
+  }
+  return text;
+}
+
+}  // namespace
+
+surrogate::FitOptions options_for(const data::Study& study, const TrainingRows& rows, const SurrogateOptions& options) {
+  surrogate::FitOptions fit = options.fit;
+  const std::string& name = study.outputs[rows.output].name;
+  if (std::find(options.log_outputs.begin(), options.log_outputs.end(), name) != options.log_outputs.end())
+    fit.scale = surrogate::OutputScale::log;
+  return fit;
+}
+
+SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitted, const SurrogateOptions& options) {
+  const TrainingRows& rows = fitted.rows;
+  const data::Output& output = study.outputs[rows.output];
+  const surrogate::FitOptions fit_options = options_for(study, rows, options);
+  surrogate::ValidationOptions validation_options = options.validation;
+  validation_options.seed = options.fit.seed;
+  const surrogate::Validation found =
+      fitted.two_level ? surrogate::validate(*fitted.two_level, {.seed = options.fit.seed}, validation_options)
+                       : surrogate::validate(rows.set, fit_options, *fitted.process, validation_options);
+  SurrogateReport report;
+  report.output = output.name;
+  report.material = rows.material;
+  report.runs = found.runs;
+  report.unit = output.unit.symbol;
+  report.q2 = found.q2_leave_one_out;
+  report.q2_held_out = found.q2_held_out;
+  report.coverage95 = found.coverage_leave_one_out.observed[2];
+  report.coverage_left_out.assign(found.coverage_leave_one_out.observed.begin(),
+                                  found.coverage_leave_one_out.observed.end());
+  report.coverage_held_out.assign(found.coverage_held_out.observed.begin(), found.coverage_held_out.observed.end());
+  for (const surrogate::HeldOutFold& fold : found.folds) {
+    report.fold_distance.push_back(fold.mahalanobis);
+    report.fold_runs.push_back(static_cast<double>(fold.runs.size()));
+    report.fold_probability.push_back(fold.probability);
+    report.pivoted_errors.insert(report.pivoted_errors.end(), fold.pivoted_errors.begin(), fold.pivoted_errors.end());
+  }
+  const surrogate::HyperParameters hyper = fitted.process->hyper_parameters();
+  // On the log scale the nugget is relative; shown at the mean output.
+  const bool logarithmic = fit_options.scale == surrogate::OutputScale::log;
+  const double nugget_sd = fitted.two_level ? fitted.two_level->parameters().nugget_sd
+                                            : hyper.nugget_sd * (logarithmic ? std::abs(rows.set.y.mean()) : 1.0);
+  report.nugget_sd = nugget_sd / output.unit.factor;
+  for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
+    report.inputs.push_back(input_name(study, rows.inputs[k]));
+    report.length_scales.push_back(hyper.length_scales[static_cast<Eigen::Index>(k)]);
+  }
+  report.observed = in_unit(rows.set.y, output.unit);
+  report.predicted = in_unit(found.leave_one_out.mean, output.unit);
+  report.standardised.assign(found.leave_one_out.standardised.begin(), found.leave_one_out.standardised.end());
+  for (const double variance : rows.set.noise_variance)
+    report.observed_se.push_back(std::sqrt(variance) / output.unit.factor);
+  report.verdict = surrogate::to_text(found.verdict);
+  report.finding = found.finding;
+  report.consequence = found.consequence;
+  report.remedy = found.remedy;
+  // The surrogate's box is that of the runs; some of them may lie outside the study's.
+  const Eigen::MatrixXd next_points = found.next_points.cwiseMax(0.0).cwiseMin(1.0);
+  if (found.more_runs > 0 && next_points.rows() > 0) {
+    report.remedy += " Least is known at";
+    for (Eigen::Index i = 0; i < next_points.rows(); ++i)
+      report.remedy += fmt::format("{} {}", i > 0 ? ";" : "", point_text(study, rows, next_points.row(i)));
+    report.remedy += ".";
+  }
+  report.converged =
+      fitted.process->diagnostics().converged && (!fitted.two_level || fitted.two_level->high().diagnostics.converged);
+  report.notes = found.notes;
+  const auto& active = fitted.process->data();
+  if (active.points.rows() < active.z.size())
+    report.notes.push_back(fmt::format("{} runs at {} points: replicates are pooled with their own errors",
+                                       active.z.size(), active.points.rows()));
+  for (const SobolIndex& index :
+       sobol_indices(emulator_of(fitted).predict, static_cast<int>(rows.inputs.size()), {.seed = options.fit.seed})) {
+    report.first_order.push_back(index.first);
+    report.first_order_sd.push_back(index.first_sd);
+    report.total_order.push_back(index.total);
+    report.total_order_sd.push_back(index.total_sd);
+  }
+  if (rows.inputs.size() > static_cast<std::size_t>(sensitivity_inputs_max))
+    report.notes.push_back(fmt::format("no Sobol indices: they are for {} inputs at most, and this surrogate has {}",
+                                       sensitivity_inputs_max, rows.inputs.size()));
+  if (fitted.two_level)
+    add_levels(report, fitted, output);
+  else
+    add_outlying(report, fitted, fit_options, output);
+  name_inputs(report);
+  return report;
+}
+
+std::vector<std::string> extrapolation_notes(const data::Study& study, const TrainingRows& rows) {
+  std::vector<std::string> notes;
+  for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
+    const EmulatorInput& input = rows.inputs[k];
+    Eigen::VectorXd column = rows.set.x.col(static_cast<Eigen::Index>(k));
+    double low = column.minCoeff(), high = column.maxCoeff();
+    if (rows.low) {
+      column = rows.low->x.col(static_cast<Eigen::Index>(k));
+      low = std::min(low, column.minCoeff());
+      high = std::max(high, column.maxCoeff());
+    }
+    if (input.kind == InputKind::parameter) {
+      // A scrambled design of a few dozen runs stops several percent short of its range's ends.
+      constexpr double slack = 0.1;
+      const data::Parameter& parameter = study.parameters[input.index];
+      if (low > slack || high < 1.0 - slack)
+        notes.push_back(fmt::format(
+            "the runs cover {} from {:.3g} to {:.3g}{}{} only; in the rest of its range the surrogate extrapolates",
+            parameter.name, parameter.unit.from_si(parameter.axis().from_unit(low)),
+            parameter.unit.from_si(parameter.axis().from_unit(high)), parameter.unit.symbol.empty() ? "" : " ",
+            parameter.unit.symbol));
+      continue;
+    }
+    const data::Control& control = study.controls[input.index];
+    int outside = 0, points = 0;
+    for (const data::ObservationSet& set : study.observations) {
+      if (set.material != rows.material ||
+          std::find(set.outputs.begin(), set.outputs.end(), rows.output) == set.outputs.end())
+        continue;
+      for (const data::Observation& point : set.points) {
+        const double u = control.axis().to_unit(point.controls[input.index]);
+        ++points;
+        outside += u < low - 1e-9 || u > high + 1e-9;
+      }
+    }
+    if (outside > 0) {
+      const auto& [from, to] = rows.control_range.at(input.index);
+      notes.push_back(fmt::format(
+          "{} of {} observed points lie outside the runs' {}, {:.4g} to {:.4g} {}: the "
+          "surrogate extrapolates there",
+          outside, points, control.name, control.unit.from_si(from), control.unit.from_si(to), control.unit.symbol));
+    }
+  }
+  return notes;
+}
+
+}  // namespace uq

@@ -1,0 +1,16 @@
+#pragma once
+// How a fitted surrogate is judged, in the study's names and units.
+#include "uq/emulate/surrogates.hpp"
+
+namespace uq {
+
+/// The options of one surrogate's fit.
+surrogate::FitOptions options_for(const data::Study& study, const TrainingRows& rows, const SurrogateOptions& options);
+
+/// How a note begins that suspects the runs' standard errors.
+inline constexpr const char* overstated_errors = "the runs scatter only ";
+
+/// Validates the surrogate (its `report` is not looked at).
+SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitted, const SurrogateOptions& options);
+
+}  // namespace uq

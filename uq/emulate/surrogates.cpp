@@ -1,0 +1,168 @@
+#include "uq/emulate/surrogates.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/emulate/surrogate_report.hpp"
+
+namespace uq {
+namespace {
+
+/// Whether some case uses measurements of this material and output.
+bool is_observed(const data::Study& study, const TrainingRows& rows) {
+  for (const auto& one : study.cases)
+    for (const auto& name : one.observe) {
+      const data::ObservationSet& set = study.observations[study.observation_index(name).value()];
+      if (set.material == rows.material &&
+          std::find(set.outputs.begin(), set.outputs.end(), rows.output) != set.outputs.end())
+        return true;
+    }
+  return false;
+}
+
+FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const SurrogateOptions& options) {
+  const surrogate::FitOptions fit_options = options_for(study, rows, options);
+  FittedSurrogate fitted{.rows = std::move(rows), .process = {}, .two_level = {}, .report = {}};
+  surrogate::TrainingSet& many = fitted.rows.low ? *fitted.rows.low : fitted.rows.set;
+  const Eigen::Index all = many.y.size();
+  if (all > options.runs_most) {
+    const std::vector<int> kept = surrogate::thin(many, options.runs_most, options.fit.seed);
+    many = surrogate::chosen(many, kept);
+    std::vector<std::string>& places = fitted.rows.places;
+    if (!fitted.rows.low && std::ssize(places) == all) {
+      std::vector<std::string> left;
+      for (const int run : kept) left.push_back(std::move(places[static_cast<std::size_t>(run)]));
+      places = std::move(left);
+    }
+  }
+  const surrogate::TrainingSet& base = fitted.rows.low ? *fitted.rows.low : fitted.rows.set;
+  fitted.process = std::make_shared<const surrogate::GaussianProcess>(surrogate::fit(base, fit_options));
+  if (fitted.rows.low)
+    fitted.two_level = std::make_shared<const surrogate::TwoLevelProcess>(
+        surrogate::fit_two_level(*fitted.process, fitted.rows.set, {.seed = options.fit.seed}));
+  fitted.report = report_of(study, fitted, options);
+  if (many.y.size() < all)
+    fitted.report.notes.push_back(fmt::format(
+        "{} of {} runs train, chosen at random: a fit takes the cube of their number; [surrogate] runs_most "
+        "raises it",
+        many.y.size(), all));
+  return fitted;
+}
+
+/// "torque of carrier".
+std::string described(const SurrogateReport& report) {
+  return report.output + (report.material.empty() ? "" : " of " + report.material);
+}
+
+/// The runs as uq/posterior/support.hpp looks at them.
+std::shared_ptr<const RunCloud> cloud_of(const FittedSurrogate& fitted) {
+  const surrogate::HyperParameters hyper = fitted.process->hyper_parameters();
+  auto cloud = std::make_shared<RunCloud>();
+  cloud->points = fitted.rows.set.x;
+  cloud->length_scales = hyper.length_scales;
+  cloud->prior_variance = hyper.signal_sd * hyper.signal_sd;
+  cloud->logarithmic = fitted.process->data().scale == surrogate::OutputScale::log;
+  if (fitted.two_level) {
+    const Eigen::MatrixXd& low = fitted.rows.low->x;
+    cloud->points.conservativeResize(fitted.rows.set.x.rows() + low.rows(), Eigen::NoChange);
+    cloud->points.bottomRows(low.rows()) = low;
+    const surrogate::TwoLevelParameters& two = fitted.two_level->parameters();
+    cloud->prior_variance = two.rho * two.rho * cloud->prior_variance + two.discrepancy_sd * two.discrepancy_sd;
+  }
+  return cloud;
+}
+
+/// "runs.csv:31 (83.5 where the others say 8.35 mN m, 640 sd)".
+std::string outlying_text(const OutlyingRun& run, const std::string& unit) {
+  return fmt::format("{} ({:.4g} where the others say {:.4g}{}{}, {:.0f} sd off)", run.place, run.observed,
+                     run.expected, unit.empty() ? "" : " ", unit, std::abs(run.deviations));
+}
+
+std::string outlying_warning(const SurrogateReport& report) {
+  std::string list;
+  constexpr std::size_t most = 6;
+  for (std::size_t i = 0; i < std::min(report.outlying.size(), most); ++i)
+    list += (i > 0 ? ", " : "") + outlying_text(report.outlying[i], report.unit);
+  if (report.outlying.size() > most) list += fmt::format(" and {} more", report.outlying.size() - most);
+  const bool one = report.outlying.size() == 1;
+  return fmt::format("{} of {} {} contradicted by all others: {}. Correct {}, or leave {} out: {}",
+                     one ? "a run" : fmt::format("{} runs", report.outlying.size()), described(report),
+                     one ? "is" : "are", list, one ? "it" : "them", one ? "it" : "them",
+                     leave_out_key(report.outlying));
+}
+
+}  // namespace
+
+std::string leave_out_key(const std::vector<OutlyingRun>& runs) {
+  std::string key;
+  for (const OutlyingRun& run : runs) key += fmt::format("{}\"{}\"", key.empty() ? "" : ", ", run.place);
+  return "[training] leave_out = [" + key + "]";
+}
+
+std::vector<std::string> surrogate_warnings(const std::vector<FittedSurrogate>& fitted) {
+  std::vector<std::string> warnings;
+  for (const FittedSurrogate& one : fitted)
+    if (!one.report.outlying.empty()) warnings.push_back(outlying_warning(one.report));
+  for (const FittedSurrogate& one : fitted) {
+    const SurrogateReport& report = one.report;
+    if (report.verdict == "unusable")
+      warnings.push_back(
+          fmt::format("the surrogate of {} is unusable and cannot stand for the model ({} runs): ignore "
+                      "what rests on it. {}",
+                      described(report), report.runs, report.remedy));
+    for (const std::string& note : report.notes)
+      if (note.rfind(overstated_errors, 0) == 0) warnings.push_back(described(report) + ": " + note);
+    if (!report.converged)
+      warnings.push_back(fmt::format("the fit of the surrogate of {} did not converge", described(report)));
+  }
+  return warnings;
+}
+
+std::vector<std::string> surrogate_cautions(const std::vector<FittedSurrogate>& fitted) {
+  std::vector<std::string> cautions;
+  for (const FittedSurrogate& one : fitted)
+    if (one.report.verdict == "caution")
+      cautions.push_back(fmt::format("the surrogate of {} is to be used with caution: {}", described(one.report),
+                                     one.report.consequence));
+  return cautions;
+}
+
+std::vector<FittedSurrogate> fit_surrogates(const data::Study& study, const data::RunTable& table,
+                                            const SurrogateOptions& options) {
+  std::vector<FittedSurrogate> fitted;
+  for (TrainingRows& rows : training_rows(study, table, options.low)) {
+    if (options.observed_only && !is_observed(study, rows)) continue;
+    const auto known = std::find_if(options.known.begin(), options.known.end(), [&](const FittedSurrogate& item) {
+      return item.rows.material == rows.material && item.rows.output == rows.output;
+    });
+    fitted.push_back(known != options.known.end() ? *known : fit_one(study, std::move(rows), options));
+  }
+  return fitted;
+}
+
+std::string surrogate_name(const data::Study& study, const TrainingRows& rows) {
+  const std::string& output = study.outputs[rows.output].name;
+  return rows.material.empty() ? output : rows.material + " " + output;
+}
+
+Emulator emulator_of(const FittedSurrogate& fitted) {
+  const TrainingRows& rows = fitted.rows;
+  Emulator emulator = fitted.two_level ? make_emulator(fitted.two_level, rows.material, rows.output, rows.inputs)
+                                       : make_emulator(fitted.process, rows.material, rows.output, rows.inputs);
+  emulator.constants = rows.constants;
+  emulator.control_range = rows.control_range;
+  emulator.runs = cloud_of(fitted);
+  if (fitted.report.verdict == "unusable")
+    emulator.doubt = fmt::format("the surrogate of {} is unusable", described(fitted.report));
+  return emulator;
+}
+
+std::vector<Emulator> emulators_of(const std::vector<FittedSurrogate>& fitted) {
+  std::vector<Emulator> emulators;
+  for (const FittedSurrogate& item : fitted) emulators.push_back(emulator_of(item));
+  return emulators;
+}
+
+}  // namespace uq

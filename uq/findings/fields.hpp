@@ -1,0 +1,467 @@
+#pragma once
+// The fields of the result structs, in their order: visit(name, member). A field added to results.hpp is added here;
+// a test compares the sizes.
+#include <type_traits>
+
+#include "uq/findings/results.hpp"
+
+namespace uq {
+
+template <class T, class S>
+concept SameAs = std::is_same_v<std::remove_const_t<T>, S>;
+
+template <class Visit, SameAs<DataFinding> T>
+void visit_fields(Visit&& visit, T& f) {
+  visit("kind", f.kind);
+  visit("place", f.place);
+  visit("severity", f.severity);
+  visit("what", f.what);
+  visit("remedy", f.remedy);
+  visit("places", f.places);
+}
+
+template <class Visit, SameAs<OutlyingRun> T>
+void visit_fields(Visit&& visit, T& o) {
+  visit("place", o.place);
+  visit("observed", o.observed);
+  visit("expected", o.expected);
+  visit("deviations", o.deviations);
+}
+
+template <class Visit, SameAs<InputSupport> T>
+void visit_fields(Visit&& visit, T& i) {
+  visit("name", i.name);
+  visit("unit", i.unit);
+  visit("runs_low", i.runs_low);
+  visit("runs_high", i.runs_high);
+  visit("outside", i.outside);
+  visit("gap", i.gap);
+  visit("gap_low", i.gap_low);
+  visit("gap_high", i.gap_high);
+}
+
+template <class Visit, SameAs<NextRun> T>
+void visit_fields(Visit&& visit, T& n) {
+  visit("material", n.material);
+  visit("point", n.point);
+}
+
+template <class Visit, SameAs<SupportReport> T>
+void visit_fields(Visit&& visit, T& s) {
+  visit("known", s.known);
+  visit("supported", s.supported);
+  visit("unsupported", s.unsupported);
+  visit("outside", s.outside);
+  visit("gap", s.gap);
+  visit("empty", s.empty);
+  visit("uncertain", s.uncertain);
+  visit("distance", s.distance);
+  visit("variance_ratio", s.variance_ratio);
+  visit("inputs", s.inputs);
+  visit("sentence", s.sentence);
+  visit("next_runs", s.next_runs);
+}
+
+template <class Visit, SameAs<WithoutRuns> T>
+void visit_fields(Visit&& visit, T& w) {
+  visit("places", w.places);
+  visit("parameters", w.parameters);
+  visit("verdicts", w.verdicts);
+  visit("mean", w.mean);
+  visit("sd", w.sd);
+  visit("fits", w.fits);
+  visit("sentence", w.sentence);
+}
+
+template <class Visit, SameAs<SurrogateReport> T>
+void visit_fields(Visit&& visit, T& s) {
+  visit("output", s.output);
+  visit("material", s.material);
+  visit("runs", s.runs);
+  visit("q2", s.q2);
+  visit("q2_held_out", s.q2_held_out);
+  visit("coverage95", s.coverage95);
+  visit("nugget_sd", s.nugget_sd);
+  visit("unit", s.unit);
+  visit("verdict", s.verdict);
+  visit("finding", s.finding);
+  visit("consequence", s.consequence);
+  visit("remedy", s.remedy);
+  visit("inputs", s.inputs);
+  visit("length_scales", s.length_scales);
+  visit("first_order", s.first_order);
+  visit("first_order_sd", s.first_order_sd);
+  visit("total_order", s.total_order);
+  visit("total_order_sd", s.total_order_sd);
+  visit("observed", s.observed);
+  visit("predicted", s.predicted);
+  visit("standardised", s.standardised);
+  visit("observed_se", s.observed_se);
+  visit("coverage_left_out", s.coverage_left_out);
+  visit("coverage_held_out", s.coverage_held_out);
+  visit("fold_distance", s.fold_distance);
+  visit("fold_runs", s.fold_runs);
+  visit("fold_probability", s.fold_probability);
+  visit("pivoted_errors", s.pivoted_errors);
+  visit("notes", s.notes);
+  visit("converged", s.converged);
+  visit("low_runs", s.low_runs);
+  visit("rho", s.rho);
+  visit("rho_sd", s.rho_sd);
+  visit("outlying", s.outlying);
+}
+
+template <class Visit, SameAs<ValueRange> T>
+void visit_fields(Visit&& visit, T& v) {
+  visit("low", v.low);
+  visit("high", v.high);
+  visit("low_open", v.low_open);
+  visit("high_open", v.high_open);
+  visit("weight", v.weight);
+  visit("mean", v.mean);
+  visit("sd", v.sd);
+}
+
+template <class Visit, SameAs<ProfileHole> T>
+void visit_fields(Visit&& visit, T& h) {
+  visit("low", h.low);
+  visit("high", h.high);
+  visit("deviance", h.deviance);
+  visit("in_doubt", h.in_doubt);
+}
+
+template <class Visit, SameAs<WordProbability> T>
+void visit_fields(Visit&& visit, T& w) {
+  visit("verdict", w.verdict);
+  visit("probability", w.probability);
+}
+
+template <class Visit, SameAs<ParameterReport> T>
+void visit_fields(Visit&& visit, T& p) {
+  visit("name", p.name);
+  visit("unit", p.unit);
+  visit("prior_low", p.prior_low);
+  visit("prior_high", p.prior_high);
+  visit("prior_mean", p.prior_mean);
+  visit("prior_sd", p.prior_sd);
+  visit("mean", p.mean);
+  visit("sd", p.sd);
+  visit("mcse", p.mcse);
+  visit("q05", p.q05);
+  visit("q50", p.q50);
+  visit("q95", p.q95);
+  visit("map", p.map);
+  visit("rhat", p.rhat);
+  visit("ess_bulk", p.ess_bulk);
+  visit("ess_tail", p.ess_tail);
+  visit("contraction", p.contraction);
+  visit("profile_low", p.profile_low);
+  visit("profile_high", p.profile_high);
+  visit("low_is_bound", p.low_is_bound);
+  visit("high_is_bound", p.high_is_bound);
+  visit("profile_x", p.profile_x);
+  visit("profile_deviance", p.profile_deviance);
+  visit("verdict", p.verdict);
+  visit("reason", p.reason);
+  visit("borderline", p.borderline);
+  visit("sentence", p.sentence);
+  visit("intervals", p.intervals);
+  visit("holes", p.holes);
+  visit("low_pinned_by", p.low_pinned_by);
+  visit("high_pinned_by", p.high_pinned_by);
+  visit("word_probabilities", p.word_probabilities);
+  visit("share_measurement", p.share_measurement);
+  visit("share_surrogate", p.share_surrogate);
+  visit("share_structure", p.share_structure);
+  visit("share_range", p.share_range);
+}
+
+template <class Visit, SameAs<NuisanceReport> T>
+void visit_fields(Visit&& visit, T& n) {
+  visit("name", n.name);
+  visit("unit", n.unit);
+  visit("prior_mean", n.prior_mean);
+  visit("prior_sd", n.prior_sd);
+  visit("mean", n.mean);
+  visit("sd", n.sd);
+  visit("q05", n.q05);
+  visit("q50", n.q50);
+  visit("q95", n.q95);
+  visit("rhat", n.rhat);
+  visit("ess_bulk", n.ess_bulk);
+  visit("ess_tail", n.ess_tail);
+}
+
+template <class Visit, SameAs<DiscrepancyBand> T>
+void visit_fields(Visit&& visit, T& d) {
+  visit("output", d.output);
+  visit("unit", d.unit);
+  visit("control", d.control);
+  visit("control_unit", d.control_unit);
+  visit("observation_set", d.observation_set);
+  visit("share", d.share);
+  visit("x", d.x);
+  visit("mean", d.mean);
+  visit("q05", d.q05);
+  visit("q95", d.q95);
+}
+
+template <class Visit, SameAs<TradedPair> T>
+void visit_fields(Visit&& visit, T& t) {
+  visit("first", t.first);
+  visit("second", t.second);
+  visit("parameters", t.parameters);
+  visit("combination", t.combination);
+  visit("form", t.form);
+  visit("value", t.value);
+  visit("error", t.error);
+  visit("unit", t.unit);
+  visit("statement", t.statement);
+  visit("correlation", t.correlation);
+  visit("equivalent", t.equivalent);
+  visit("equivalent_u", t.equivalent_u);
+  visit("curves", t.curves);
+}
+
+template <class Visit, SameAs<ModeReport> T>
+void visit_fields(Visit&& visit, T& m) {
+  visit("weight", m.weight);
+  visit("mean", m.mean);
+  visit("sd", m.sd);
+}
+
+template <class Visit, SameAs<ModelComparison> T>
+void visit_fields(Visit&& visit, T& m) {
+  visit("held", m.held);
+  visit("log_bayes_factor", m.log_bayes_factor);
+  visit("error", m.error);
+  visit("sampling_error", m.sampling_error);
+  visit("surrogate_error", m.surrogate_error);
+  visit("sentence", m.sentence);
+}
+
+template <class Visit, SameAs<PredictivePoint> T>
+void visit_fields(Visit&& visit, T& p) {
+  visit("controls", p.controls);
+  visit("output", p.output);
+  visit("unit", p.unit);
+  visit("mean", p.mean);
+  visit("q05", p.q05);
+  visit("q95", p.q95);
+  visit("observed", p.observed);
+  visit("standard_error", p.standard_error);
+  visit("observation_set", p.observation_set);
+}
+
+template <class Visit, SameAs<PredictionReport> T>
+void visit_fields(Visit&& visit, T& p) {
+  visit("name", p.name);
+  visit("observed_sets", p.observed_sets);
+  visit("points", p.points);
+  visit("z", p.z);
+  visit("inside", p.inside);
+  visit("chi2", p.chi2);
+  visit("p", p.p);
+  visit("predicts", p.predicts);
+  visit("sentence", p.sentence);
+}
+
+template <class Visit, SameAs<PredictiveCurve> T>
+void visit_fields(Visit&& visit, T& c) {
+  visit("output", c.output);
+  visit("unit", c.unit);
+  visit("control", c.control);
+  visit("control_unit", c.control_unit);
+  visit("observation_set", c.observation_set);
+  visit("x", c.x);
+  visit("mean", c.mean);
+  visit("q05", c.q05);
+  visit("q95", c.q95);
+}
+
+template <class Visit, SameAs<VerifiedValue> T>
+void visit_fields(Visit&& visit, T& v) {
+  visit("inputs", v.inputs);
+  visit("material", v.material);
+  visit("output", v.output);
+  visit("unit", v.unit);
+  visit("label", v.label);
+  visit("predicted", v.predicted);
+  visit("predicted_sd", v.predicted_sd);
+  visit("simulated", v.simulated);
+  visit("standard_error", v.standard_error);
+  visit("z", v.z);
+}
+
+template <class Visit, SameAs<VerificationReport> T>
+void visit_fields(Visit&& visit, T& v) {
+  visit("runs", v.runs);
+  visit("points", v.points);
+  visit("chi2", v.chi2);
+  visit("dof", v.dof);
+  visit("p", v.p);
+  visit("z_limit", v.z_limit);
+  visit("agrees", v.agrees);
+  visit("sentence", v.sentence);
+  visit("values", v.values);
+}
+
+template <class Visit, SameAs<CaseReport> T>
+void visit_fields(Visit&& visit, T& c) {
+  visit("name", c.name);
+  visit("observed_sets", c.observed_sets);
+  visit("observed_notes", c.observed_notes);
+  visit("chi2", c.chi2);
+  visit("dof", c.dof);
+  visit("ppp", c.ppp);
+  visit("fits", c.fits);
+  visit("converged", c.converged);
+  visit("parameters", c.parameters);
+  visit("correlation", c.correlation);
+  visit("log_evidence", c.log_evidence);
+  visit("log_evidence_error", c.log_evidence_error);
+  visit("comparisons", c.comparisons);
+  visit("divergences", c.divergences);
+  visit("chains", c.chains);
+  visit("draws", c.draws);
+  visit("grid_difference", c.grid_difference);
+  visit("fisher_condition", c.fisher_condition);
+  visit("collinearity", c.collinearity);
+  visit("traded", c.traded);
+  visit("predictive", c.predictive);
+  visit("curves", c.curves);
+  visit("draws_for_plot", c.draws_for_plot);
+  visit("linked", c.linked);
+  visit("finding", c.finding);
+  visit("consequence", c.consequence);
+  visit("remedy", c.remedy);
+  visit("warnings", c.warnings);
+  visit("nuisances", c.nuisances);
+  visit("discrepancies", c.discrepancies);
+  visit("cuts", c.cuts);
+  visit("sampler", c.sampler);
+  visit("search", c.search);
+  visit("energy_fraction", c.energy_fraction);
+  visit("support", c.support);
+  visit("without", c.without);
+  visit("doubt", c.doubt);
+  visit("unusable", c.unusable);
+  visit("surrogate_share", c.surrogate_share);
+  visit("modes", c.modes);
+  visit("modes_parted_by", c.modes_parted_by);
+  visit("verification", c.verification);
+  visit("plan", c.plan);
+  visit("predictions", c.predictions);
+}
+
+template <class Visit, SameAs<PlannedParameter> T>
+void visit_fields(Visit&& visit, T& p) {
+  visit("name", p.name);
+  visit("unit", p.unit);
+  visit("information", p.information);
+  visit("information_error", p.information_error);
+  visit("sd_now", p.sd_now);
+  visit("sd_after", p.sd_after);
+  visit("words", p.words);
+  visit("repeats_needed", p.repeats_needed);
+  visit("floor", p.floor);
+}
+
+template <class Visit, SameAs<PlanCandidate> T>
+void visit_fields(Visit&& visit, T& c) {
+  visit("name", c.name);
+  visit("kind", c.kind);
+  visit("material", c.material);
+  visit("outputs", c.outputs);
+  visit("settings", c.settings);
+  visit("cost", c.cost);
+  visit("model_only", c.model_only);
+  visit("assumed_error", c.assumed_error);
+  visit("error", c.error);
+  visit("information", c.information);
+  visit("information_error", c.information_error);
+  visit("parameters", c.parameters);
+  visit("teaches", c.teaches);
+}
+
+template <class Visit, SameAs<PlanBatch> T>
+void visit_fields(Visit&& visit, T& b) {
+  visit("candidates", b.candidates);
+  visit("information", b.information);
+  visit("information_error", b.information_error);
+  visit("greedy", b.greedy);
+  visit("sd_after", b.sd_after);
+  visit("cost", b.cost);
+}
+
+template <class Visit, SameAs<PlannedRuns> T>
+void visit_fields(Visit&& visit, T& r) {
+  visit("points", r.points);
+  visit("seconds", r.seconds);
+  visit("variance_before", r.variance_before);
+  visit("variance_after", r.variance_after);
+  visit("parameters", r.parameters);
+}
+
+template <class Visit, SameAs<PlanArrow> T>
+void visit_fields(Visit&& visit, T& a) {
+  visit("output", a.output);
+  visit("parameter", a.parameter);
+  visit("setting", a.setting);
+  visit("change", a.change);
+}
+
+template <class Visit, SameAs<PlanReport> T>
+void visit_fields(Visit&& visit, T& p) {
+  visit("about", p.about);
+  visit("prior", p.prior);
+  visit("sentence", p.sentence);
+  visit("cost_unit", p.cost_unit);
+  visit("budget", p.budget);
+  visit("candidates", p.candidates);
+  visit("batches", p.batches);
+  visit("runs", p.runs);
+  visit("arrows", p.arrows);
+  visit("notes", p.notes);
+}
+
+template <class Visit, SameAs<ErrorScan> T>
+void visit_fields(Visit&& visit, T& e) {
+  visit("case_name", e.case_name);
+  visit("relative_error", e.relative_error);
+  visit("parameters", e.parameters);
+  visit("verdicts", e.verdicts);
+  visit("mean", e.mean);
+  visit("sd", e.sd);
+  visit("ppp", e.ppp);
+}
+
+template <class Visit, SameAs<DesignReport> T>
+void visit_fields(Visit&& visit, T& d) {
+  visit("material", d.material);
+  visit("inputs", d.inputs);
+  visit("units", d.units);
+  visit("runs", d.runs);
+  visit("left_out", d.left_out);
+  visit("reasons", d.reasons);
+}
+
+template <class Visit, SameAs<CalibrationReport> T>
+void visit_fields(Visit&& visit, T& r) {
+  visit("study_name", r.study_name);
+  visit("study_description", r.study_description);
+  visit("study_file", r.study_file);
+  visit("warning", r.warning);
+  visit("warnings", r.warnings);
+  visit("surrogates", r.surrogates);
+  visit("designs", r.designs);
+  visit("cases", r.cases);
+  visit("error_scan", r.error_scan);
+  visit("thresholds", r.thresholds);
+  visit("provenance", r.provenance);
+  visit("notes", r.notes);
+  visit("findings", r.findings);
+  visit("cautions", r.cautions);
+}
+
+}  // namespace uq

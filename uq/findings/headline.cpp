@@ -1,0 +1,121 @@
+#include "uq/findings/headline.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace uq {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// "a", "a and b", "a, b and c".
+std::string listed(const Names& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+std::string capital(std::string text) {
+  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
+/// What was measured, in the order of its points.
+Names measured(const CaseReport& result) {
+  Names outputs;
+  for (const PredictivePoint& point : result.predictive)
+    if (std::find(outputs.begin(), outputs.end(), point.output) == outputs.end()) outputs.push_back(point.output);
+  return outputs;
+}
+
+struct Standing {
+  Names fixed;   ///< with their values
+  Names open;    ///< not identified
+  Names silent;  ///< of which the data say nothing
+};
+
+Standing standing(const CaseReport& result, Typography typography) {
+  Standing found;
+  for (const ParameterReport& parameter : result.parameters) {
+    const Verdict verdict = shown_verdict(result, parameter);
+    const std::string value = parameter.name + " at " + format_estimate(parameter, typography);
+    if (verdict == Verdict::identified)
+      found.fixed.push_back(value);
+    else if (verdict == Verdict::weakly_identified)
+      found.fixed.push_back(value + " (weakly)");
+    else if (verdict == Verdict::several_values)
+      found.fixed.push_back(value + " (separate values)");
+    else if (parameter.reason == "no influence")
+      found.silent.push_back(parameter.name);
+    else
+      found.open.push_back(parameter.name);
+  }
+  return found;
+}
+
+/// Combinations whose value is known, and whether a curve ties the open parameters.
+Names known_together(const CaseReport& result, Typography typography) {
+  Names known;
+  for (const TradedPair& traded : result.traded)
+    if (std::isfinite(traded.value))
+      known.push_back(traded.combination + " at " +
+                      format_with_error(traded.value, traded.error, traded.unit, typography));
+  return known;
+}
+
+bool tied_by_a_curve(const CaseReport& result) {
+  return std::any_of(result.traded.begin(), result.traded.end(),
+                     [](const TradedPair& traded) { return !std::isfinite(traded.value); });
+}
+
+/// What to do next: the plan's first choice, where there is one.
+std::string next_step(const CaseReport& result, const Standing& found) {
+  if (found.open.empty()) return {};
+  if (!result.plan || result.plan->candidates.empty()) return " Next: demcal plan says what to measure.";
+  const PlanCandidate& first = result.plan->candidates.front();
+  if (!first.teaches) return " No candidate of the plan would teach more of " + result.plan->about + ".";
+  return " Next: measure " + first.name + (first.model_only ? ", if it means the same in the real powder." : ".");
+}
+
+}  // namespace
+
+bool is_synthetic(const CaseReport& result) {
+  return std::any_of(result.observed_notes.begin(), result.observed_notes.end(), [](const std::string& note) {
+    std::string start = note.substr(0, 9);
+    std::transform(start.begin(), start.end(), start.begin(), [](unsigned char c) { return std::tolower(c); });
+    return start == "synthetic";
+  });
+}
+
+std::string headline(const CaseReport& result, Typography typography) {
+  if (result.unusable)
+    return "Nothing can be said of the parameters: the surrogate is unusable. Ignore what follows, and do first what "
+           "the warning says.";
+  const Names outputs = measured(result);
+  const std::string subject = outputs.empty() ? "The data" : capital(listed(outputs));
+  const std::string s = outputs.size() == 1 ? "s" : "";
+  if (!result.fits)
+    return "No values of the parameters reproduce the measured " + (outputs.empty() ? "data" : listed(outputs)) + ".";
+  if (!result.doubt.empty()) return "No verdict yet: " + result.doubt + ".";
+  const Standing found = standing(result, typography);
+  Names fixed = known_together(result, typography);
+  fixed.insert(fixed.begin(), found.fixed.begin(), found.fixed.end());
+  std::string text;
+  if (fixed.empty() && tied_by_a_curve(result))
+    text = subject + " tie" + s + " " + listed(found.open) + " together along a curve, and fix" +
+           (s.empty() ? "" : "es") + (found.open.size() == 2 ? " neither." : " none of them.");
+  else if (fixed.empty())
+    text = subject + " fix" + (s.empty() ? "" : "es") + " none of " +
+           listed(found.open.empty() ? found.silent : found.open) + ".";
+  else
+    text =
+        subject + " fix" + (s.empty() ? "" : "es") + " " + listed(fixed) +
+        (found.open.empty() ? "."
+                            : ", not " + listed(found.open) + (found.open.size() == 1 ? " itself." : " themselves."));
+  if (!found.silent.empty() && !fixed.empty()) text += " Nothing is said of " + listed(found.silent) + ".";
+  return text + next_step(result, found);
+}
+
+}  // namespace uq

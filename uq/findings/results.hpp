@@ -1,0 +1,377 @@
+#pragma once
+// What a calibration found, as plain data: made by uq/calibrate/calibrate.cpp, written by uq/report/json.cpp, uq/report/html.cpp.
+// Values of parameters, controls and outputs are in the study's units (Parameter::unit and so on), not SI: this is the
+// reader's side of the border.
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace uq {
+
+enum class Verdict { identified, weakly_identified, several_values, not_identified, does_not_fit };
+/// "identified", "weakly identified", "several values", "not identified", "model does not fit"
+const char* to_text(Verdict verdict);
+
+/// What is odd in the data (data/finding.hpp), as told.
+struct DataFinding {
+  std::string kind, place;
+  std::string severity;  ///< "note", "warning"
+  std::string what, remedy;
+  std::vector<std::string> places;
+};
+
+/// A run that the others contradict (uq/emulate/outlying_runs.hpp).
+struct OutlyingRun {
+  std::string place;                      ///< "runs.csv:31"
+  double observed = 0.0, expected = 0.0;  ///< unit of the output
+  double deviations = 0.0;                ///< difference in robust standard deviations, signed
+};
+
+/// Validation of one surrogate.
+struct SurrogateReport {
+  std::string output, material;
+  int runs = 0;
+  double q2 = 0.0;           ///< leave-one-out
+  double q2_held_out = 0.0;  ///< held-out folds, hyper-parameters refitted
+  double coverage95 = 0.0;   ///< of leave-one-out intervals
+  double nugget_sd = 0.0;    ///< unit of the output
+  std::string unit;
+  std::string verdict;  ///< "good", "caution", "unusable"
+  std::string finding, consequence, remedy;
+  std::vector<std::string> inputs;                        ///< names of the active inputs
+  std::vector<double> length_scales;                      ///< in units of the input's range
+  std::vector<double> first_order, first_order_sd;        ///< Sobol indices of the inputs (uq/emulate/sensitivity.hpp)
+  std::vector<double> total_order, total_order_sd;        ///< with their sd from the surrogate's uncertainty
+  std::vector<double> observed, predicted, standardised;  ///< leave-one-out, per run
+  std::vector<double> observed_se;
+  std::vector<double> coverage_left_out, coverage_held_out;  ///< of the 50, 90 and 95 % intervals
+  // Held-out folds (Bastos & O'Hagan 2009): Mahalanobis distance, runs in the fold, tail probability of the distance.
+  std::vector<double> fold_distance, fold_runs, fold_probability;
+  std::vector<double> pivoted_errors;  ///< pivoted Cholesky errors, fold after fold, each in pivoting order
+  std::vector<std::string> notes;      ///< hyper-parameter on its bound, jitter, multi-start outcomes
+  bool converged = true;               ///< the maximisation of the likelihood
+  int low_runs = 0;                    ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
+  double rho = 0.0, rho_sd = 0.0;      ///< this level's output per the cheaper one's
+  std::vector<OutlyingRun> outlying;   ///< runs that the others contradict
+};
+
+/// One connected part of a parameter's 95 % profile interval, with the posterior inside it.
+struct ValueRange {
+  double low = 0.0, high = 0.0;               ///< the range's end where the part is open
+  bool low_open = false, high_open = false;   ///< the data do not end it: the range does, or another parameter's
+  double weight = 0.0, mean = 0.0, sd = 0.0;  ///< posterior probability of the part; mean and sd within it
+};
+
+/// Values between two parts of a profile interval.
+struct ProfileHole {
+  double low = 0.0, high = 0.0;
+  double deviance = 0.0;  ///< largest in between
+  bool in_doubt = false;  ///< the surrogate cannot tell what it predicts there from what it predicts beside it
+};
+
+/// What a word has for a chance when the measurement is repeated (uq/verdict/repeats.hpp).
+struct WordProbability {
+  std::string verdict;  ///< as to_text
+  double probability = 0.0;
+};
+
+/// What a candidate measurement is expected to teach of one parameter (uq/plan).
+struct PlannedParameter {
+  std::string name, unit;
+  double information = 0.0, information_error = 0.0;  ///< nats; the error is that of a 95 % interval
+  double sd_now = 0.0, sd_after = 0.0;                ///< posterior sd, and what it is expected to be
+  std::vector<WordProbability> words;                 ///< of the verdict afterwards; empty: not asked
+  std::optional<int> repeats_needed;                  ///< readings for "identified" with 90 % probability
+  std::string floor;  ///< why no number of readings is enough; empty: some is, or not asked
+};
+
+/// A measurement that could be made next.
+struct PlanCandidate {
+  std::string name;  ///< as the terminal shows it: "torque at 300 rpm"
+  std::string kind;  ///< "setting", "repeat", "output"
+  std::string material;
+  std::vector<std::string> outputs;
+  std::vector<std::map<std::string, double>> settings;  ///< controls of each of its points, their units
+  double cost = 1.0;
+  bool model_only = false;                            ///< the output need not mean the same in the real powder
+  bool assumed_error = false;                         ///< nobody stated an error of this output
+  std::string error;                                  ///< "2 %"
+  double information = 0.0, information_error = 0.0;  ///< about all parameters together, nats
+  std::vector<PlannedParameter> parameters;
+  bool teaches = true;  ///< about the parameter asked for
+};
+
+/// Several candidates together.
+struct PlanBatch {
+  std::vector<std::string> candidates;
+  double information = 0.0, information_error = 0.0;  ///< about the parameter asked for, nats
+  double greedy = 0.0;                                ///< of the batch that picks one after the other
+  double sd_after = 0.0;
+  double cost = 0.0;
+};
+
+/// Training runs instead of a measurement.
+struct PlannedRuns {
+  std::vector<std::string> points;                     ///< "carrier friction 0.4, hamaker 9e-18 J, rpm 50 rpm"
+  double seconds = 0.0;                                ///< of processor time, where the rows tell
+  double variance_before = 0.0, variance_after = 0.0;  ///< of the posterior density, shares of its mean square
+  std::vector<PlannedParameter> parameters;            ///< with a surrogate that is exact: the most that runs can do
+};
+
+/// How a reading changes when a parameter changes by its prior's sd, at the best fit (before any measurement: at the
+/// prior's mean), in errors of one reading.
+struct PlanArrow {
+  std::string output, parameter;
+  std::map<std::string, double> setting;
+  double change = 0.0;
+};
+
+struct PlanReport {
+  std::string about;      ///< parameter that it ranks by
+  bool prior = false;     ///< made before any measurement counts
+  std::string sentence;   ///< the answer
+  std::string cost_unit;  ///< "" where costs are plain numbers
+  std::optional<double> budget;
+  std::vector<PlanCandidate> candidates;  ///< best first: information about `about` per cost
+  std::vector<PlanBatch> batches;         ///< of two, three, ... candidates
+  PlannedRuns runs;
+  std::vector<PlanArrow> arrows;
+  std::vector<std::string> notes;
+};
+
+struct ParameterReport {
+  std::string name, unit;
+  double prior_low = 0.0, prior_high = 0.0, prior_mean = 0.0, prior_sd = 0.0;
+  double mean = 0.0, sd = 0.0, mcse = 0.0, q05 = 0.0, q50 = 0.0, q95 = 0.0;
+  double map = 0.0;
+  double rhat = 0.0, ess_bulk = 0.0, ess_tail = 0.0;
+  double contraction = 0.0;                          ///< 1 - posterior variance / prior variance
+  std::optional<double> profile_low, profile_high;   ///< 95 % profile-likelihood interval; none: open on that side
+  bool low_is_bound = false, high_is_bound = false;  ///< the range ended before the likelihood fell
+  std::vector<double> profile_x, profile_deviance;   ///< the profile itself: 2 (log L_max - log L)
+  Verdict verdict = Verdict::not_identified;
+  /// "structural", "practical", "surrogate", "one-sided", "bound", "no influence" (uq/verdict/verdict_words.hpp)
+  std::optional<std::string> reason;
+  bool borderline = false;
+  std::string sentence;                       ///< the verdict in words with its numbers
+  std::vector<ValueRange> intervals;          ///< the parts of the profile interval, rising; holes in doubt are filled
+  std::vector<ProfileHole> holes;             ///< between them, and those in doubt
+  std::string low_pinned_by, high_pinned_by;  ///< parameter whose range ends an open side; may be empty
+  std::vector<WordProbability> word_probabilities;        ///< falling; none where they were not asked for
+  double share_measurement = 0.0, share_surrogate = 0.0;  ///< of the interval's width, what brings it about
+  double share_structure = 0.0, share_range = 0.0;
+};
+
+/// The draws of one unknown. Of a report: one of the measurement, sampled with the parameters and integrated out.
+struct NuisanceReport {
+  std::string name, unit;
+  double prior_mean = 0.0, prior_sd = 0.0;
+  double mean = 0.0, sd = 0.0, q05 = 0.0, q50 = 0.0, q95 = 0.0;
+  double rhat = 0.0, ess_bulk = 0.0, ess_tail = 0.0;
+};
+
+/// What a case's discrepancy process makes of one observation set, against its first control.
+struct DiscrepancyBand {
+  std::string output, unit, control, control_unit, observation_set;
+  double share = 0.0;  ///< of the spread of the data about the model, 0 to 1
+  std::vector<double> x, mean, q05, q95;
+};
+
+/// The posterior predictive of a measurement at an observed point, its error included.
+struct PredictivePoint {
+  std::map<std::string, double> controls;
+  std::string output, unit;
+  double mean = 0.0, q05 = 0.0, q95 = 0.0, observed = 0.0, standard_error = 0.0;
+  std::string observation_set;  ///< that the point belongs to
+};
+
+/// A curve of the posterior predictive of the model (without measurement error) against one control.
+struct PredictiveCurve {
+  std::string output, unit, control, control_unit, observation_set;
+  std::vector<double> x, mean, q05, q95;
+};
+
+/// Parameters whose values are traded against each other: what the data know is a combination of them.
+struct TradedPair {
+  std::string first, second;            ///< of `parameters`, those that are traded most
+  std::vector<std::string> parameters;  ///< all of the combination
+  std::string combination;              ///< "friction * hamaker^0.9", "a + b + c", or that the relation is curved
+  std::string form;                     ///< "product", "sum", "curved"
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< of the combination, posterior mean; NaN of a curved one
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< posterior sd
+  std::string unit;                                         ///< of both
+  std::string statement;                                    ///< "a + b + c = 0.300 +- 0.006", or the combination alone
+  double correlation = 0.0;
+  std::vector<std::map<std::string, double>> equivalent;  ///< points along the ridge, each with every free parameter
+  std::vector<std::vector<double>> equivalent_u;  ///< the same with every unknown, scaled (uq/posterior/prior.hpp's u)
+  std::vector<PredictiveCurve> curves;            ///< what the model's mean is at them, point by point; no band
+};
+
+/// A separate region of the posterior.
+struct ModeReport {
+  double weight = 0.0;                 ///< posterior probability
+  std::map<std::string, double> mean;  ///< of each free parameter inside it
+  std::map<std::string, double> sd;
+};
+
+/// The case again with some free parameters held, beside the case itself.
+struct ModelComparison {
+  std::string held;               ///< "hamaker = 0 J"
+  double log_bayes_factor = 0.0;  ///< natural log of evidence(free) / evidence(held)
+  double error = 0.0;             ///< its standard error, of both kinds
+  double sampling_error = 0.0;    ///< Monte Carlo's
+  double surrogate_error = 0.0;   ///< of the surrogate, which more runs would make smaller
+  std::string sentence;           ///< the finding in words
+};
+
+/// How one input's runs lie about the posterior.
+struct InputSupport {
+  std::string name, unit;
+  double runs_low = 0.0, runs_high = 0.0;  ///< that the runs cover
+  double outside = 0.0;                    ///< share of the posterior beyond them
+  double gap = 0.0;                        ///< share of the posterior in a gap of them
+  double gap_low = 0.0, gap_high = 0.0;    ///< that gap; equal: there is none
+};
+
+/// A point to run next.
+struct NextRun {
+  std::string material;
+  std::map<std::string, double> point;  ///< every parameter and control of the study
+};
+
+/// Whether the runs speak where the posterior lies (uq/posterior/support.hpp).
+struct SupportReport {
+  bool known = false;                                             ///< the emulators are learnt from runs
+  bool supported = true;                                          ///< the unsupported share is below its threshold
+  double unsupported = 0.0;                                       ///< share of the draws
+  double outside = 0.0, gap = 0.0, empty = 0.0, uncertain = 0.0;  ///< of them: by which test
+  double distance = 0.0;        ///< median over the draws: to the nearest run, in length scales
+  double variance_ratio = 0.0;  ///< median over the draws: surrogate's variance over that without any runs
+  std::vector<InputSupport> inputs;
+  std::string sentence;            ///< what is not supported, and how far; empty where all is
+  std::vector<NextRun> next_runs;  ///< points of the posterior far from the runs, the first the most useful
+};
+
+/// The case again without the runs that the others contradict.
+struct WithoutRuns {
+  std::vector<std::string> places;
+  std::vector<std::string> parameters, verdicts;
+  std::vector<double> mean, sd;
+  bool fits = true;
+  std::string sentence;
+};
+
+/// One output of a run of the simulation at a point of the posterior, beside what the surrogate said before the run.
+struct VerifiedValue {
+  std::map<std::string, double> inputs;  ///< parameters and controls
+  std::string material, output, unit;
+  std::string label;  ///< "draw 3", "equivalent point 2"
+  double predicted = 0.0, predicted_sd = 0.0;
+  double simulated = 0.0, standard_error = 0.0;
+  double z = 0.0;
+};
+
+/// One round of verification (uq/refine/verification.hpp).
+struct VerificationReport {
+  int runs = 0, points = 0;
+  double chi2 = 0.0;
+  int dof = 0;
+  double p = 1.0, z_limit = 0.0;
+  bool agrees = false;
+  std::string sentence;
+  std::vector<VerifiedValue> values;
+};
+
+/// Data that a case has not used, beside what it predicts of them (uq/posterior/unused_data.hpp).
+struct PredictionReport {
+  std::string name;
+  std::vector<std::string> observed_sets;
+  std::vector<PredictivePoint> points;
+  std::vector<double> z;  ///< of each point: measured minus predicted, over the predictive standard deviation
+  int inside = 0;         ///< points inside their 90 % intervals
+  double chi2 = 0.0;      ///< of all together
+  double p = 1.0;         ///< that a prediction is as far off
+  bool predicts = true;   ///< p is above its threshold
+  std::string sentence;
+};
+
+struct CaseReport {
+  std::string name;
+  std::vector<std::string> observed_sets;  ///< names, with what the file's header says of each in observed_notes
+  std::vector<std::string> observed_notes;
+  double chi2 = 0.0;
+  int dof = 0;
+  double ppp = 0.0;  ///< posterior predictive p-value of chi2
+  bool fits = true;
+  bool converged = true;
+  std::vector<ParameterReport> parameters;
+  std::vector<std::vector<double>> correlation;
+  double log_evidence = 0.0, log_evidence_error = 0.0;
+  std::vector<ModelComparison> comparisons;
+  int divergences = 0;
+  int chains = 0, draws = 0;  ///< per chain
+  std::optional<double>
+      grid_difference;  ///< largest |mean or sd: sampler - quadrature| in posterior sd; two dimensions
+  double fisher_condition = 0.0, collinearity = 0.0;
+  std::vector<TradedPair> traded;
+  std::vector<PredictivePoint> predictive;
+  std::vector<PredictiveCurve> curves;
+  std::vector<std::vector<double>> draws_for_plot;  ///< some hundred to few thousand rows, one column per parameter
+  std::vector<std::string> linked;  ///< other cases sampled jointly (their data inform a shared parameter)
+  std::string finding, consequence, remedy;
+  std::vector<std::string> warnings;  ///< first lines of the report
+  std::vector<NuisanceReport> nuisances;
+  std::vector<DiscrepancyBand> discrepancies;
+  std::vector<std::string> cuts;  ///< "friction from zirconia-800": taken without feedback
+  std::string sampler;            ///< "mixture", "nuts", "cut"
+  SupportReport support;
+  std::optional<WithoutRuns> without;  ///< where runs are contradicted by the others
+  std::string doubt;                   ///< why no verdict can rest on the surrogate; empty: it can
+  bool unusable = false;               ///< the doubt is of the surrogate itself: the values are not shown
+  double surrogate_share = 0.0;        ///< surrogate's sd over the measurement's, median of the rows
+  std::string search;                  ///< what was looked for beside the chains, and what would have escaped
+  double energy_fraction = std::numeric_limits<double>::quiet_NaN();  ///< smallest of the chains (E-BFMI); NaN where
+                                                                      ///< the sampler has no energy
+  std::vector<ModeReport> modes;  ///< separate regions of the posterior, by falling weight; none where there is one
+  std::string modes_parted_by;    ///< the measurement that would tell the modes apart
+  std::vector<VerificationReport> verification;  ///< round by round, the last one decides; empty: not asked for
+  std::optional<PlanReport> plan = {};           ///< what to measure next, where it was asked
+  std::vector<PredictionReport> predictions;     ///< of data that it has not used
+};
+
+/// How the verdict changes when the measurement error is another one.
+struct ErrorScan {
+  std::string case_name;
+  double relative_error = 0.0;  ///< of the measured values
+  std::vector<std::string> parameters, verdicts;
+  std::vector<double> mean, sd;
+  double ppp = 0.0;
+};
+
+/// Where a material's runs lie: those that were learnt from, and those that were left out.
+struct DesignReport {
+  std::string material;
+  std::vector<std::string> inputs, units;           ///< those that vary
+  std::vector<std::vector<double>> runs, left_out;  ///< per run its inputs, in their units
+  std::vector<std::string> reasons;                 ///< of each that was left out
+};
+
+struct CalibrationReport {
+  std::string study_name, study_description, study_file;
+  bool warning = false;
+  std::vector<std::string> warnings;
+  std::vector<SurrogateReport> surrogates;
+  std::vector<DesignReport> designs;
+  std::vector<CaseReport> cases;
+  std::vector<ErrorScan> error_scan;
+  std::vector<std::pair<std::string, std::string>> thresholds;  ///< "contraction for identified" -> "0.9"
+  std::vector<std::pair<std::string, std::string>>
+      provenance;                     ///< version, hashes, instruction set, seeds, table, times
+  std::vector<std::string> notes;     ///< choices the source does not give, shown beside the verdicts
+  std::vector<DataFinding> findings;  ///< of rows and observations
+  std::vector<std::string> cautions;  ///< said on the first screen, without making the status a warning
+};
+
+}  // namespace uq

@@ -1,0 +1,278 @@
+#include "uq/infer/explore.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "uq/infer/climb.hpp"
+#include "uq/infer/parallel.hpp"
+
+namespace uq {
+namespace {
+
+constexpr double nowhere = -std::numeric_limits<double>::infinity();
+constexpr int trees = 5, leaf = 4;
+
+/// Log densities of all rows, in blocks over the threads.
+Eigen::VectorXd evaluate_all(const Target& target, const Eigen::MatrixXd& points, int threads) {
+  constexpr Eigen::Index block = 512;
+  Eigen::VectorXd values(points.rows());
+  const auto blocks = static_cast<int>((points.rows() + block - 1) / block);
+  for_each_index(blocks, threads, [&](int b) {
+    const Eigen::Index from = b * block, count = std::min(block, points.rows() - from);
+    values.segment(from, count) = evaluate(target, points.middleRows(from, count));
+  });
+  return values;
+}
+
+/// Counts, for each leaf of a tree over `order`, the best scout in it.
+void vote(std::vector<Eigen::Index>& order, const std::pair<std::size_t, std::size_t>& part,
+          const std::vector<Eigen::VectorXd>& heights, const Eigen::VectorXd& value, std::vector<int>& votes) {
+  const auto [from, to] = part;
+  if (to - from <= leaf) {
+    const auto best = std::max_element(order.begin() + static_cast<std::ptrdiff_t>(from),
+                                       order.begin() + static_cast<std::ptrdiff_t>(to),
+                                       [&](Eigen::Index a, Eigen::Index b) { return value[a] < value[b]; });
+    ++votes[static_cast<std::size_t>(*best)];
+    return;
+  }
+  // Along the direction in which this part is widest.
+  std::size_t widest = 0;
+  double width = -1.0;
+  for (std::size_t k = 0; k < heights.size(); ++k) {
+    double low = heights[k][order[from]], high = low;
+    for (std::size_t i = from; i < to; ++i) {
+      low = std::min(low, heights[k][order[i]]);
+      high = std::max(high, heights[k][order[i]]);
+    }
+    if (high - low > width) {
+      width = high - low;
+      widest = k;
+    }
+  }
+  const std::size_t middle = from + (to - from) / 2;
+  std::nth_element(order.begin() + static_cast<std::ptrdiff_t>(from),
+                   order.begin() + static_cast<std::ptrdiff_t>(middle), order.begin() + static_cast<std::ptrdiff_t>(to),
+                   [&](Eigen::Index a, Eigen::Index b) {
+                     return heights[widest][a] != heights[widest][b] ? heights[widest][a] < heights[widest][b] : a < b;
+                   });
+  vote(order, {from, middle}, heights, value, votes);
+  vote(order, {middle, to}, heights, value, votes);
+}
+
+/// A random rotation: the orthogonal factor of a matrix of normal numbers.
+Eigen::MatrixXd rotation(Eigen::Index dimension, data::RandomStream& random) {
+  Eigen::MatrixXd normal(dimension, dimension);
+  for (double& value : normal.reshaped()) value = random.normal();
+  return Eigen::HouseholderQR<Eigen::MatrixXd>(normal).householderQ();
+}
+
+/// Scouts that are the best of their leaf in every tree, the highest first.
+std::vector<Eigen::Index> peaks(const Scouts& scouts) {
+  const Eigen::Index n = scouts.x.rows(), d = scouts.x.cols();
+  const Eigen::VectorXd width = (scouts.high - scouts.low).cwiseMax(1e-300);
+  const Eigen::MatrixXd scaled = (scouts.x.rowwise() - scouts.low.transpose()) * width.cwiseInverse().asDiagonal();
+  std::vector<int> votes(static_cast<std::size_t>(n), 0);
+  data::RandomStream random(1, data::Purpose::search_directions);  // which directions matters to nobody
+  for (int tree = 0; tree < trees; ++tree) {
+    const Eigen::MatrixXd turned = tree == 0 ? scaled : Eigen::MatrixXd(scaled * rotation(d, random));
+    std::vector<Eigen::VectorXd> heights;
+    for (Eigen::Index k = 0; k < d; ++k) heights.emplace_back(turned.col(k));
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(n));
+    std::iota(order.begin(), order.end(), Eigen::Index{0});
+    vote(order, {0, order.size()}, heights, scouts.log_density, votes);
+  }
+  std::vector<Eigen::Index> found;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (votes[static_cast<std::size_t>(i)] == trees && scouts.log_density[i] > nowhere) found.push_back(i);
+  std::stable_sort(found.begin(), found.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return scouts.log_density[a] > scouts.log_density[b]; });
+  return found;
+}
+
+/// Maxima along lines through a point: the axes, and the diagonals of the scouts' box.
+Eigen::MatrixXd line_maxima(const Target& target, const Scouts& scouts, const Eigen::VectorXd& through,
+                            const ExploreOptions& options, std::int64_t& evaluations) {
+  const Eigen::Index d = scouts.x.cols();
+  const Eigen::VectorXd width = scouts.high - scouts.low;
+  std::vector<Eigen::VectorXd> directions;
+  for (Eigen::Index k = 0; k < d; ++k) directions.emplace_back(Eigen::VectorXd::Unit(d, k).cwiseProduct(width));
+  constexpr unsigned diagonals_max = 8;
+  for (unsigned signs = 0; d > 1 && signs < std::min(1U << std::min<Eigen::Index>(d - 1, 8), diagonals_max); ++signs) {
+    Eigen::VectorXd direction = width;
+    for (Eigen::Index k = 1; k < d; ++k)
+      if ((signs >> (k - 1) & 1U) != 0) direction[k] = -direction[k];
+    directions.push_back(direction);
+  }
+  const Eigen::Index points = options.line_points, count = static_cast<Eigen::Index>(directions.size());
+  Eigen::MatrixXd all(count * points, d);
+  for (Eigen::Index line = 0; line < count; ++line) {
+    const Eigen::VectorXd& direction = directions[static_cast<std::size_t>(line)];
+    // The part of the line inside the scouts' box.
+    double from = nowhere, to = -nowhere;
+    for (Eigen::Index k = 0; k < d; ++k) {
+      if (direction[k] == 0.0) continue;
+      const double a = (scouts.low[k] - through[k]) / direction[k], b = (scouts.high[k] - through[k]) / direction[k];
+      from = std::max(from, std::min(a, b));
+      to = std::min(to, std::max(a, b));
+    }
+    for (Eigen::Index i = 0; i < points; ++i)
+      all.row(line * points + i) =
+          (through + (from + (to - from) * (static_cast<double>(i) + 0.5) / static_cast<double>(points)) * direction)
+              .transpose();
+  }
+  const Eigen::VectorXd value = evaluate_all(target, all, options.threads);
+  evaluations += all.rows();
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index line = 0; line < count; ++line)
+    for (Eigen::Index i = 0; i < points; ++i) {
+      const Eigen::Index at = line * points + i;
+      const bool above = (i == 0 || value[at] > value[at - 1]) && (i + 1 == points || value[at] >= value[at + 1]);
+      if (above && value[at] > nowhere) kept.push_back(at);
+    }
+  std::stable_sort(kept.begin(), kept.end(), [&](Eigen::Index a, Eigen::Index b) { return value[a] > value[b]; });
+  kept.resize(std::min(kept.size(), static_cast<std::size_t>(options.climbs)));
+  return all(kept, Eigen::all);
+}
+
+bool same(const Peak& a, const Peak& b) {
+  const Eigen::VectorXd apart = a.x - b.x;
+  const auto near = [&](const Eigen::MatrixXd& covariance) {
+    const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+    return factor.info() == Eigen::Success && factor.matrixL().solve(apart).squaredNorm() < 4.0;
+  };
+  return near(a.covariance) || near(b.covariance);
+}
+
+}  // namespace
+
+int scouts_for(int dimension) {
+  constexpr std::array<int, 5> counts = {1000, 2000, 8000, 16000, 32000};
+  return counts[static_cast<std::size_t>(std::clamp(dimension, 1, 5) - 1)];
+}
+
+Scouts send_scouts(const Target& target, data::RandomStream& random, const ExploreOptions& options) {
+  const int count = options.scouts > 0 ? options.scouts : scouts_for(target.dimension);
+  Scouts scouts{.x = Eigen::MatrixXd(count, target.dimension), .log_density = {}, .low = {}, .high = {}};
+  for (int i = 0; i < count; ++i) scouts.x.row(i) = target.reference.draw(random).transpose();
+  scouts.log_density = evaluate_all(target, scouts.x, options.threads);
+  scouts.low = scouts.x.colwise().minCoeff();
+  scouts.high = scouts.x.colwise().maxCoeff();
+  return scouts;
+}
+
+Search search_unknown(const Target& target, const Scouts& scouts, const Knowledge& knowledge, const Origins& origins,
+                      const ExploreOptions& options) {
+  Search search;
+  const std::vector<Eigen::Index> high = peaks(scouts);
+  const Eigen::MatrixXd on_lines = line_maxima(target, scouts, origins.through, options, search.evaluations);
+  // The highest half of what may be followed, and of the rest an even choice: a narrow mode's scouts lie in its skirts.
+  std::vector<Eigen::Index> chosen;
+  const auto most = static_cast<std::size_t>(options.climbs);
+  for (std::size_t i = 0; i < std::min(high.size(), most / 2); ++i) chosen.push_back(high[i]);
+  const std::size_t rest = high.size() - chosen.size(), wanted = std::min(rest, most - chosen.size());
+  const std::size_t first = chosen.size();
+  for (std::size_t i = 0; i < wanted; ++i) chosen.push_back(high[first + i * rest / wanted]);
+  Eigen::MatrixXd starts(static_cast<Eigen::Index>(chosen.size()) + on_lines.rows() + origins.starts.rows(),
+                         target.dimension);
+  starts.topRows(static_cast<Eigen::Index>(chosen.size())) = scouts.x(chosen, Eigen::all);
+  starts.middleRows(static_cast<Eigen::Index>(chosen.size()), on_lines.rows()) = on_lines;
+  if (origins.starts.rows() > 0) starts.bottomRows(origins.starts.rows()) = origins.starts;
+
+  const Eigen::VectorXd width = scouts.high - scouts.low;
+  std::vector<Climb> climbs(static_cast<std::size_t>(starts.rows()));
+  for_each_index(static_cast<int>(starts.rows()), options.threads, [&](int i) {
+    climbs[static_cast<std::size_t>(i)] = climb(target, starts.row(i).transpose(), width, knowledge);
+  });
+  search.starts = static_cast<int>(climbs.size());
+  for (const Climb& found : climbs) {
+    search.evaluations += found.evaluations;
+    if (found.known || !(found.log_density > nowhere)) continue;
+    // Of the same maximum as one before, within its two standard deviations?
+    const bool seen = std::any_of(search.modes.begin(), search.modes.end(), [&](const Peak& mode) {
+      const Eigen::LLT<Eigen::MatrixXd> factor(mode.covariance);
+      return factor.info() == Eigen::Success && factor.matrixL().solve(found.x - mode.x).squaredNorm() < 4.0;
+    });
+    if (seen) continue;
+    Peak mode = laplace(target, found.x, 0.25 * width);
+    const bool twice =
+        std::any_of(search.modes.begin(), search.modes.end(), [&](const Peak& other) { return same(mode, other); });
+    if (!twice) search.modes.push_back(std::move(mode));
+  }
+  return search;
+}
+
+Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width) {
+  const Eigen::Index d = x.size();
+  const auto value = [&](const Eigen::VectorXd& at) {
+    if (!target.contains(at)) return nowhere;
+    const double found = target.log_density(at);
+    return std::isnan(found) ? nowhere : found;
+  };
+  Peak mode{.x = x, .log_density = value(x), .covariance = {}, .log_mass = 0.0};
+  // Steps along which the log density falls by about a half: one conditional standard deviation.
+  Eigen::VectorXd step = 0.1 * width;
+  std::vector<bool> at_bound(static_cast<std::size_t>(d), false);
+  const auto fall = [&](Eigen::Index k) {
+    double sum = 0.0;
+    int sides = 0;
+    for (const double sign : {-1.0, 1.0}) {
+      Eigen::VectorXd at = x;
+      at[k] += sign * step[k];
+      if (!target.contains(at)) continue;
+      sum += mode.log_density - value(at);
+      ++sides;
+    }
+    at_bound[static_cast<std::size_t>(k)] = sides < 2;
+    return sides == 0 ? std::numeric_limits<double>::infinity() : sum / sides;
+  };
+  for (Eigen::Index k = 0; k < d; ++k)
+    for (int i = 0; i < 30; ++i) {
+      const double found = fall(k);
+      if (found > 0.2 && found < 1.0) break;
+      if (!(found > 1e-4) && step[k] >= width[k]) break;
+      step[k] *= std::clamp(found > 0.0 ? std::sqrt(0.5 / found) : 3.0, 0.05, 3.0);
+      step[k] = std::min(step[k], width[k]);
+    }
+  // Curvature in units of the steps.
+  Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(d, d);
+  for (Eigen::Index k = 0; k < d; ++k) curvature(k, k) = std::max(2.0 * std::min(fall(k), 4.0), 0.0);
+  for (Eigen::Index k = 0; k < d; ++k)
+    for (Eigen::Index l = 0; l < k; ++l) {
+      if (at_bound[static_cast<std::size_t>(k)] || at_bound[static_cast<std::size_t>(l)]) continue;
+      double mixed = 0.0;
+      for (const double a : {-0.5, 0.5})
+        for (const double b : {-0.5, 0.5}) {
+          Eigen::VectorXd at = x;
+          at[k] += a * step[k];
+          at[l] += b * step[l];
+          mixed -= (a * b > 0.0 ? 1.0 : -1.0) * value(at);
+        }
+      if (std::isfinite(mixed)) curvature(k, l) = curvature(l, k) = mixed;
+    }
+  // No flatter than the width allows.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(curvature);
+  Eigen::VectorXd variance(d);
+  for (Eigen::Index k = 0; k < d; ++k) {
+    const Eigen::VectorXd direction = step.cwiseProduct(solver.eigenvectors().col(k));
+    const double flattest = direction.cwiseQuotient(width).squaredNorm();  // (length in widths)^2 of one unit
+    variance[k] = 1.0 / std::max(solver.eigenvalues()[k], flattest);
+  }
+  Eigen::MatrixXd root = step.asDiagonal() * solver.eigenvectors() * variance.cwiseSqrt().asDiagonal();
+  // Shorter where p falls faster than the curvature said.
+  for (Eigen::Index k = 0; k < d; ++k)
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::VectorXd there = x + root.col(k), back = x - root.col(k);
+      const double least = mode.log_density - std::max(value(there), value(back));
+      if (least <= 2.0) break;
+      root.col(k) *= 0.7;
+      variance[k] *= 0.49;
+    }
+  mode.covariance = root * root.transpose();
+  mode.log_mass = mode.log_density + 0.5 * static_cast<double>(d) * std::log(2.0 * std::numbers::pi) +
+                  0.5 * variance.array().log().sum() + step.array().log().sum();
+  return mode;
+}
+
+}  // namespace uq

@@ -1,0 +1,81 @@
+#pragma once
+// A search for what a sampler does not know: maxima of a density p that its mixture q (uq/infer/student_mixture.hpp) gives no mass.
+// A sampler that lost a mode while it tempered never sees it again, and its chains agree all the same; this search
+// shares neither its chains nor its tempering.
+//
+// 1. Scouts: draws of the reference with their log densities. A region with share v of the reference escapes n of them
+//    with probability (1 - v)^n.
+//    (A sampler adds draws of its own where p is more than q expects: a spike inside a wide mode is found by those.)
+// 2. Scouts higher than all around them are starts: the best of its leaf in each of several trees that halve the scouts
+//    along random directions. Further starts are the maxima along lines through a known point: every axis, and every
+//    diagonal of the scouts' box. Mirror images and repeated modes lie on such lines in any dimension.
+// 3. From each start uphill, by a trust region with a BFGS model so that no step jumps into another basin. It ends
+//    where p is as high as in the bulk of the draws and q knows the place, p(x) <= level q(x), or at a maximum.
+// 4. The mass of an unknown maximum is Laplace's, p(m) (2 pi)^(d/2) |S|^(1/2). S is the inverse of the curvature,
+//    shortened along its axes to where p still is of the maximum's order: on a curved ridge it is the mass of a
+//    straight piece.
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "uq/infer/log_density.hpp"
+#include "uq/infer/student_mixture.hpp"
+
+namespace uq {
+
+struct ExploreOptions {
+  int scouts = 0;         ///< 0: by the dimension, see scouts_for
+  int climbs = 48;        ///< starts followed at most
+  int line_points = 160;  ///< along each line
+  int threads = 0;
+};
+
+/// 1,000 in one dimension to 32,000 in five or more.
+int scouts_for(int dimension);
+
+struct Scouts {
+  Eigen::MatrixXd x;  ///< rows
+  Eigen::VectorXd log_density;
+  Eigen::VectorXd low, high;  ///< of the scouts, each coordinate
+};
+Scouts send_scouts(const Target& target, data::RandomStream& random, const ExploreOptions& options = {});
+
+struct Peak {
+  Eigen::VectorXd x;
+  double log_density = 0.0;
+  Eigen::MatrixXd covariance;  ///< Laplace's
+  double log_mass = 0.0;       ///< Laplace's
+};
+
+/// Laplace's approximation at x; `width` bounds its standard deviations.
+Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width);
+
+/// What is known: p(x) <= exp(log_level) q(x) for every mixture. In the far tails of q that holds of anything, so a way
+/// uphill goes on to where p is at least exp(log_bulk).
+struct Knowledge {
+  std::vector<Mixture> mixtures;
+  std::vector<double> log_levels;
+  double log_bulk = -std::numeric_limits<double>::infinity();  ///< density that most draws have
+  bool knows(const Eigen::VectorXd& x, double log_density) const {
+    for (std::size_t i = 0; i < mixtures.size(); ++i)
+      if (!(log_density - mixtures[i].log_density(x) <= log_levels[i])) return false;
+    return true;
+  }
+};
+
+struct Search {
+  std::vector<Peak> modes;  ///< unknown maxima, each once
+  int starts = 0;           ///< that were followed
+  std::int64_t evaluations = 0;
+};
+
+/// Where the search begins beside the scouts.
+struct Origins {
+  Eigen::VectorXd through;      ///< the point that the lines are laid through
+  Eigen::MatrixXd starts = {};  ///< rows: further starts
+};
+
+Search search_unknown(const Target& target, const Scouts& scouts, const Knowledge& knowledge, const Origins& origins,
+                      const ExploreOptions& options = {});
+
+}  // namespace uq

@@ -1,0 +1,30 @@
+#pragma once
+// The halves of the mixture sampler's chains and their proposals (uq/infer/mixture_sampler.hpp, step 2).
+#include <string>
+#include <vector>
+
+#include "uq/infer/mixture_sampler.hpp"
+
+namespace uq {
+
+/// Chains that share a proposal, which was adapted to their own populations alone.
+struct Half {
+  std::vector<std::size_t> chains;
+  data::RandomStream random;
+  Eigen::MatrixXd archive;  ///< the populations of its chains
+  Adaptation proposal;
+  Evidence evidence = {};
+};
+
+/// Two halves, or one where there are not four chains to share.
+std::vector<Half> make_halves(const std::vector<Population>& populations, const MixtureSamplerOptions& options);
+
+/// Begins the proposals, or goes on with them after modes were added.
+void adapt_halves(const Target& target, std::vector<Half>& halves, const MixtureSamplerOptions& options);
+
+/// Maxima that the proposals do not know join them, until none that matters is left; what is left then in words.
+/// `best`: the population with the highest density. Counts what was searched into `result`.
+std::string find_unknown(const Target& target, const Scouts& scouts, const Population& best, std::vector<Half>& halves,
+                         const MixtureSamplerOptions& options, Draws& result);
+
+}  // namespace uq

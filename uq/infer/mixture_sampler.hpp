@@ -1,0 +1,53 @@
+#pragma once
+// The gradient-free sampler: independent chains that mix global proposals with local ones; made for two to six
+// dimensions and for ridges, bounds and several modes, where local moves alone give under a hundredth of an independent
+// draw each.
+//
+// 1. Scouts are drawn from the reference (uq/infer/explore.hpp). Each chain tempers a population of its own from its share of
+//    them (uq/infer/tempering.hpp): over-dispersed starts.
+// 2. The chains are two halves. For each a proposal is adapted to the populations of its own chains (uq/infer/proposal.hpp),
+//    so that what one lost the other may have. Maxima that a search finds and the proposals do not know join both.
+//    After this nothing adapts.
+// 3. A chain starts at a point of its own population. Each move is, by chance, an independence proposal from the
+// mixture
+//    (Metropolis-Hastings ratio p(x') q(x) / p(x) q(x')) or a symmetric local step: along the difference of two points
+//    of the populations, or of the shape of one of the mixture's components. Proposals of the mixture do not depend on
+//    the chain's state, so they are evaluated in batches.
+// 4. Draws go on until R-hat and effective sample sizes are met and the halves' means and spreads agree, or the largest
+//    number of draws is reached, which is said. The evidence is the importance-sampling mean of p / q over all global
+//    proposals made in step 3, with its standard error.
+// 5. Second checks, which share no chain: a maximum that stays unknown, weights without a variance, or halves whose
+//    evidences differ, each end as "not converged" with their reason.
+//
+// A result depends on (seed, chain) alone, never on the number of threads.
+#include <cstdint>
+
+#include "uq/infer/draws.hpp"
+#include "uq/infer/log_density.hpp"
+#include "uq/infer/proposal.hpp"
+#include "uq/infer/tempering.hpp"
+
+namespace uq {
+
+struct MixtureSamplerOptions {
+  int chains = 4;
+  int draws = 1000;             ///< per chain in the first round; each further round doubles the number
+  int draws_max = 32000;        ///< per chain, at which sampling stops without convergence
+  int burn_in = 64;             ///< draws of each chain that are left out
+  double local_share = 0.2;     ///< chance that a move is a local one
+  double unknown_ratio = 30.0;  ///< p / (Z q) from which a place is unknown to a proposal
+  double unknown_mass = 1e-4;   ///< of the whole, from which an unknown maximum joins the proposal
+  double missing_mass = 2e-3;   ///< of the whole, that may stay unknown after the last search
+  int search_rounds = 3;        ///< in which unknown maxima are added
+  double apart_max = 4.5;       ///< standard errors by which the halves may differ
+  TemperingOptions tempering = {};
+  ProposalOptions proposal = {};
+  ExploreOptions explore = {};
+  StopRule stop = {};
+  int threads = 0;  ///< 0: as many as the machine has
+  std::uint64_t seed = 1;
+};
+
+Draws sample_mixture(const Target& target, const MixtureSamplerOptions& options = {});
+
+}  // namespace uq

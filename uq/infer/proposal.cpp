@@ -1,0 +1,94 @@
+#include "uq/infer/proposal.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/infer/factor.hpp"
+
+namespace uq {
+namespace {
+
+/// Keeps at most `count` points, by systematic resampling of their shares.
+void thin(Adaptation& state, Eigen::Index count, data::RandomStream& random) {
+  if (state.points.rows() <= count) return;
+  std::vector<Eigen::Index> kept;
+  const double spacing = state.shares.sum() / static_cast<double>(count);
+  double position = random.uniform() * spacing, sum = state.shares[0];
+  Eigen::Index i = 0;
+  std::vector<double> weight;
+  for (Eigen::Index j = 0; j < count; ++j, position += spacing) {
+    while (sum < position && i + 1 < state.points.rows()) sum += state.shares[++i];
+    if (!kept.empty() && kept.back() == i) {
+      weight.back() += 1.0;
+    } else {
+      kept.push_back(i);
+      weight.push_back(1.0);
+    }
+  }
+  state.points = Eigen::MatrixXd(state.points(kept, Eigen::all));
+  state.shares = Eigen::Map<const Eigen::VectorXd>(weight.data(), static_cast<Eigen::Index>(weight.size())) /
+                 static_cast<double>(count);
+}
+
+}  // namespace
+
+Adaptation begin_proposal(const Eigen::MatrixXd& points, data::RandomStream& random, const ProposalOptions& options) {
+  const Eigen::VectorXd even = Eigen::VectorXd::Constant(points.rows(), 1.0 / static_cast<double>(points.rows()));
+  Adaptation state{.current = fit_mixture(points, even, random, options.mixture), .best = {}};
+  state.best = state.current;
+  state.points = points;
+  state.shares = even;
+  return state;
+}
+
+void adapt(const Target& target, Adaptation& state, data::RandomStream& random, const ProposalOptions& options) {
+  int misses = 0;
+  const Eigen::Index first_points = state.points.rows();
+  for (int refit = 0;; ++refit) {
+    const bool poor = state.efficiency < options.poor;
+    const int count = options.refit_draws * (poor && refit > 3 ? 4 : 1);
+    const Proposals made = propose(target, state.current, count, random);
+    state.evaluations += count;
+    const Weights weights = importance_weights(made);
+    const bool better = weights.efficiency > state.efficiency;
+    if (better) {
+      state.best = state.current;
+      state.efficiency = weights.efficiency;
+      state.log_evidence = weights.log_evidence;
+    }
+    misses = better ? 0 : misses + 1;
+    const bool hard = state.efficiency < options.poor && misses < 4;
+    if (state.efficiency > 0.85 || (refit > 1 && !better && !hard) || weights.efficiency == 0.0) break;
+    if (refit >= (hard ? options.hard_refits_max : options.refits_max)) break;
+    // Weighted draws join what is known, in proportion to how well they stand for the density; large weights are cut at
+    // sqrt(n) times the mean (E. L. Ionides, J. Comput. Graph. Stat. 17 (2008) 295), so that one of them cannot make a
+    // component of its own.
+    const double cut = weights.values.mean() * std::sqrt(static_cast<double>(count));
+    const Eigen::VectorXd cut_weights = weights.values.cwiseMin(cut);
+    const double trust = std::max(weights.efficiency, 0.05) * count;
+    const double before =
+        refit == 0 ? 0.5 * static_cast<double>(first_points) : static_cast<double>(state.points.rows());
+    Eigen::MatrixXd all(state.points.rows() + made.x.rows(), target.dimension);
+    all << state.points, made.x;
+    Eigen::VectorXd shares(all.rows());
+    shares << state.shares * before / (before + trust), cut_weights * (trust / (before + trust) / cut_weights.sum());
+    state.points = std::move(all);
+    state.shares = std::move(shares);
+    thin(state, options.points_max, random);
+    state.current = fit_mixture(state.points, state.shares, random, options.mixture, &state.current);
+  }
+}
+
+void add_modes(Adaptation& state, const std::vector<Peak>& modes, double share) {
+  std::vector<MixtureComponent> added;
+  for (const Peak& mode : modes)
+    added.push_back({.weight = share / static_cast<double>(modes.size()),
+                     .mean = mode.x,
+                     .factor = factor_for_proposal(mode.covariance)});
+  state.current = with_components(state.best, added);
+  // Nothing is known of how good it is.
+  state.best = state.current;
+  state.efficiency = 0.0;
+}
+
+}  // namespace uq

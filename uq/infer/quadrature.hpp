@@ -1,0 +1,33 @@
+#pragma once
+// Mean, standard deviation and log evidence of a density in one or two dimensions by brute integration: the independent
+// check of a sampler. Each cell is integrated by Gauss-Legendre points (three per side, degree 5); a cell is split in
+// halves per side while its integral differs from that of its parts, and where a guide (a point known to lie in the
+// density, e.g. a draw) falls into a cell whose points see little of it: a ridge a thousandth of the box wide falls
+// between the points of the first grid.
+#include <Eigen/Dense>
+#include <cstdint>
+
+#include "uq/infer/log_density.hpp"
+
+namespace uq {
+
+struct QuadratureOptions {
+  int first_cells = 24;     ///< per side before refinement
+  int levels = 9;           ///< halvings at most
+  double tolerance = 1e-5;  ///< of a cell's integral, relative to the whole, below which it is not split
+  std::int64_t evaluations_max = 400000;
+  int threads = 0;
+  Eigen::MatrixXd guides = {};  ///< rows; may be empty
+};
+
+struct Quadrature {
+  Eigen::VectorXd mean, sd;
+  double correlation = 0.0;   ///< two dimensions
+  double log_evidence = 0.0;  ///< log integral of the density
+  std::int64_t evaluations = 0;
+  bool resolved = true;  ///< no cell was left above the tolerance
+};
+
+Quadrature integrate(const Target& target, const QuadratureOptions& options = {});
+
+}  // namespace uq

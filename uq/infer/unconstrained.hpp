@@ -1,0 +1,18 @@
+#pragma once
+// A target on the whole space: each bounded coordinate by a map whose Jacobian enters the density.
+//   both ends finite  x = l + (h - l) s(z),  s = 1 / (1 + exp(-z)),  log dx/dz = log(h - l) + log s + log(1 - s)
+//   one end finite    x = l + exp(z)  or  x = h - exp(z),            log dx/dz = z
+//   neither           x = z
+#include <Eigen/Dense>
+
+#include "uq/infer/log_density.hpp"
+
+namespace uq {
+
+Eigen::VectorXd to_unconstrained(const Target& target, const Eigen::VectorXd& x);
+Eigen::VectorXd from_unconstrained(const Target& target, const Eigen::VectorXd& z);
+
+/// Log density of z and its gradient. Needs target.log_density_gradient.
+Evaluation unconstrained_density(const Target& target, const Eigen::VectorXd& z);
+
+}  // namespace uq

@@ -1,0 +1,122 @@
+#include "uq/posterior/build_measurement.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace uq {
+namespace {
+
+/// Column of a control among the emulator's inputs; none: the runs do not vary it.
+std::optional<int> column_of(const Emulator& emulator, std::size_t control) {
+  const auto found = std::find_if(
+      emulator.inputs.begin(), emulator.inputs.end(),
+      [control](const EmulatorInput& input) { return input.kind == InputKind::control && input.index == control; });
+  if (found == emulator.inputs.end()) return {};
+  return static_cast<int>(found - emulator.inputs.begin());
+}
+
+/// A control's error as a covariance: common to all rows where the control has one value.
+SettingShift shift_of(const data::Control& control, const data::ObservationSet& set, const data::SettingError& error,
+                      int column) {
+  const auto rows = static_cast<Eigen::Index>(set.points.size());
+  SettingShift shift{.column = column, .error = Eigen::VectorXd(rows)};
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double value = set.points[static_cast<std::size_t>(i)].controls[error.control];
+    shift.error[i] = std::hypot(error.spread.absolute, error.spread.relative * value) / control.axis().slope(0.0);
+    shift.common = shift.common && value == set.points.front().controls[error.control];
+  }
+  return shift;
+}
+
+/// Unknowns of a discrepancy process; -1: none.
+struct DiscrepancyUnknowns {
+  int sd = -1, length = -1;
+};
+
+/// The case's discrepancy over the rows just added, one process with the case's other rows of the group.
+void add_discrepancy(RowGroup& group, const data::Study& study, const SetRows& rows,
+                     const DiscrepancyUnknowns& unknowns) {
+  auto& all = group.measurement.discrepancies;
+  if (all.empty() || all.back().sd != unknowns.sd)
+    all.push_back({.first = rows.first, .sd = unknowns.sd, .length = unknowns.length, .controls = {}});
+  DiscrepancyRows& part = all.back();
+  const Eigen::Index count = group.base.rows() - rows.first;
+  part.controls.conservativeResize(part.count + count, static_cast<Eigen::Index>(study.controls.size()));
+  for (Eigen::Index i = 0; i < count; ++i)
+    for (std::size_t c = 0; c < study.controls.size(); ++c)
+      part.controls(part.count + i, static_cast<Eigen::Index>(c)) =
+          study.controls[c].axis().to_unit(rows.set.points[static_cast<std::size_t>(i)].controls[c]);
+  part.count += count;
+}
+
+bool is_plain(const ReadSet& read) {
+  return read.factor == 1.0 && read.factors.empty() && read.offset < 0 && read.noise < 0 &&
+         read.common_absolute == 0.0 && read.common_relative == 0.0 && read.settings.empty();
+}
+
+}  // namespace
+
+std::vector<data::Problem> add_measurement(RowGroup& group, const data::Study& study, const data::CalibrationCase& item,
+                                           const SetRows& rows, const MeterUnknowns& unknowns) {
+  const data::ObservationSet& set = rows.set;
+  ReadSet read{.first = rows.first, .count = group.base.rows() - rows.first, .factors = {}, .settings = {}};
+  if (unknowns.scale >= 0) {
+    read.factors.push_back(unknowns.scale);
+  } else if (set.of_machine && study.scale) {
+    read.factor = study.scale->value;
+  }
+  DiscrepancyUnknowns discrepancy;
+  for (std::size_t k = 0; k < item.nuisances.size(); ++k) {
+    const data::Nuisance& nuisance = item.nuisances[k];
+    if (nuisance.output.value_or(rows.output) != rows.output) continue;
+    const int s = unknowns.nuisances[k];
+    switch (nuisance.kind) {
+      case data::NuisanceKind::offset:
+        read.offset = s;
+        break;
+      case data::NuisanceKind::gain:
+        read.factors.push_back(s);
+        break;
+      case data::NuisanceKind::noise_scale:
+      case data::NuisanceKind::noise_sd:
+        read.noise = s;
+        read.noise_is_sd = nuisance.kind == data::NuisanceKind::noise_sd;
+        break;
+      case data::NuisanceKind::discrepancy_sd:
+        discrepancy.sd = s;
+        break;
+      case data::NuisanceKind::discrepancy_length:
+        discrepancy.length = s;
+        break;
+      case data::NuisanceKind::scale:
+      case data::NuisanceKind::setting:
+        break;  // of the rig or the set, not of the case
+    }
+  }
+  for (const auto& error : set.common_errors)
+    if (error.output == rows.output) {
+      read.common_absolute = error.spread.absolute;
+      read.common_relative = error.spread.relative;
+    }
+  std::vector<data::Problem> problems;
+  for (const auto& error : set.setting_errors) {
+    const data::Control& control = study.controls[error.control];
+    const std::optional<int> column = column_of(group.emulator, error.control);
+    if (!column)
+      problems.push_back({error.place,
+                          fmt::format("the runs of material '{}' do not vary {}, so its uncertainty's effect is not "
+                                      "known",
+                                      set.material, control.name),
+                          fmt::format("vary it in training, or state its effect as common_error of '{}'", set.name)});
+    else if (!error.unknown)
+      read.settings.push_back(shift_of(control, set, error, *column));
+  }
+  if (!is_plain(read)) group.measurement.sets.push_back(read);
+  if (discrepancy.sd >= 0) add_discrepancy(group, study, rows, discrepancy);
+  return problems;
+}
+
+}  // namespace uq

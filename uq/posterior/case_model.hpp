@@ -1,0 +1,92 @@
+#pragma once
+// What a calibration case says, resolved: which unknowns there are, and which rows of measurement each emulator must
+// explain.
+//
+// Linked cases. Where a case takes another's posterior as a parameter's prior, both share the parameter, and both sets
+// of data are used: sampled jointly, the likelihood is the product over all linked cases and the unknowns are the union
+// of theirs. It is Bayes' rule without approximation; the posterior of one case passed on as a density would forget
+// what the cases' surrogates have in common. Rows of all linked cases that the same emulator predicts are stacked, so
+// its errors, correlated between them, are counted once.
+//
+// Cut. A posterior taken with `cut` comes without its data: the unknown keeps the law that the other case gave it
+// (uq/infer/cut.hpp).
+//
+// Nuisances of the measurement (uq/posterior/measurement.hpp) are unknowns like the parameters, with priors; the rig's scale is
+// one unknown of all cases that need it.
+#include <Eigen/Dense>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data/study.hpp"
+#include "uq/emulate/emulator.hpp"
+#include "uq/posterior/measurement.hpp"
+#include "uq/posterior/slot.hpp"
+
+namespace uq {
+
+/// Where one measured number comes from.
+struct RowOrigin {
+  std::size_t set = 0, point = 0;  ///< in Study::observations and its points
+  std::size_t output = 0;          ///< in Study::outputs
+};
+
+/// What rows measured again at the same settings tell of their own errors (uq/posterior/distinct.hpp).
+struct Repeats {
+  int noise = -1;             ///< unknown that their standard errors are multiplied by, -1: none
+  int extra = 0;              ///< rows beyond one per setting
+  double scatter = 0.0;       ///< chi squared about the settings' means, at a factor of one
+  double log_constant = 0.0;  ///< of their log likelihood
+};
+
+/// The rows that one emulator predicts.
+struct RowGroup {
+  Emulator emulator;
+  Eigen::MatrixXd base;      ///< rows x inputs, unit cube; entries of unknowns are overwritten
+  Eigen::MatrixXi slot;      ///< rows x inputs, index of the unknown or -1
+  Eigen::VectorXd observed;  ///< SI
+  Eigen::VectorXd variance;  ///< SI^2, of the stated standard errors
+  std::vector<RowOrigin> origin;
+  /// Per slot, the input it sets in every row; nothing where it sets none. Meaningful when `uniform`.
+  std::vector<std::optional<int>> coordinate;
+  bool uniform = true;  ///< each unknown sets the same input in all rows, or none
+  Measurement measurement = {};
+  std::vector<Eigen::Index> distinct_row = {};  ///< of each row, in the model of distinct rows; empty: itself
+  std::vector<Repeats> repeats = {};            ///< in the model of distinct rows: what was averaged
+};
+
+struct CaseModel {
+  std::string name;
+  std::vector<Slot> slots;  ///< the case's own parameters first, in its order, then its nuisances
+  std::vector<RowGroup> groups;
+  std::vector<std::string> linked;                 ///< names of the other cases that are sampled with it
+  std::vector<std::string> observed_sets;          ///< of the case itself
+  std::shared_ptr<const CaseModel> distinct = {};  ///< rows of equal settings as one; none where all differ
+
+  int dimension() const { return static_cast<int>(slots.size()); }
+  int own_count() const;  ///< parameters free in the case itself
+  int row_count() const;
+  Eigen::VectorXd lower() const;
+  Eigen::VectorXd upper() const;
+};
+
+/// Throws data::InputError (78 or 65) naming every contradiction: a cycle of posteriors, data that would count twice, a
+/// free parameter that no run varies, a parameter neither free nor fixed, one fixed where no run is, observations
+/// outside the runs.
+CaseModel build_case(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index);
+
+/// Fills `coordinate` and `uniform`; called by build_case, needed for groups made by hand.
+void find_coordinates(RowGroup& group, int slots);
+
+/// The same model for other data: stacked values and variances in the order of the groups' rows.
+CaseModel with_data(const CaseModel& model, const Eigen::VectorXd& observed, const Eigen::VectorXd& variance);
+
+/// The case whose surrogates were exact at their means.
+CaseModel without_surrogate_error(const CaseModel& model);
+
+Eigen::VectorXd observed(const CaseModel& model);
+Eigen::VectorXd observed_variance(const CaseModel& model);
+std::vector<RowOrigin> origins(const CaseModel& model);
+
+}  // namespace uq

@@ -1,0 +1,43 @@
+#pragma once
+// A case's posterior with some unknowns held, over the others alone: the same data and the same priors on both sides of
+// a comparison, whatever the held unknown is linked with.
+//   log p(rest | held, y) = sum over the rest of log prior + log L(held, rest) + const,   evidence = integral over the
+//   rest
+//
+// What a surrogate's error makes of a Bayes factor. Both evidences integrate the surrogate's functions f out; with f
+// known the factor would be another. With f = mean + delta, delta ~ N(0, C) jointly at the rows of both sides' most
+// likely points, and the response linear around each of them (J, columns of the free unknowns), a side's log evidence
+// is
+//   ln Z(delta) = -1/2 (r - delta)' M (r - delta) + const,   r = y - mean,
+//   M = S^-1 - S^-1 J (J' S^-1 J + I)^-1 J' S^-1,            S: the measurement's covariance,
+// I for the priors, which are about as wide as the unit cube. The data say something of delta, too: given them and the
+// first side it is normal with covariance C' = (C^-1 + M)^-1 and mean m = C' M r. The difference of two such forms,
+// delta' A delta + g' delta + const, has the variance h' C' h + 2 tr(A C' A C'), h = g + 2 A m.
+#include <memory>
+#include <vector>
+
+#include "uq/infer/log_density.hpp"
+#include "uq/infer/optimise.hpp"
+#include "uq/posterior/case_model.hpp"
+
+namespace uq {
+
+/// `held`: unknowns and their values in u. At least one unknown must be left.
+Target held_target(std::shared_ptr<const CaseModel> model, const std::vector<Held>& held);
+
+/// Points of all unknowns from points of the rest.
+Eigen::MatrixXd with_held(const Eigen::MatrixXd& rest, const std::vector<Held>& held);
+
+/// One side of a comparison.
+struct ComparedSide {
+  Eigen::VectorXd best;  ///< most likely point, all unknowns, u
+  std::vector<int> free;
+};
+
+/// Standard deviation of the log Bayes factor over the surrogates' functions; zero for an emulator without error.
+double surrogate_part(const CaseModel& model, const ComparedSide& first, const ComparedSide& second);
+
+/// Unknowns that are not held.
+std::vector<int> unknowns_left(int dimension, const std::vector<Held>& held);
+
+}  // namespace uq

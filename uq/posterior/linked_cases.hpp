@@ -1,0 +1,45 @@
+#pragma once
+// The cases that are sampled as one: the wanted case and those whose posteriors it takes (uq/posterior/case_model.hpp, linked
+// cases), and where in them an unknown is at home. A posterior taken with `cut` brings its law, not its case.
+#include <string>
+#include <vector>
+
+#include "data/error.hpp"
+#include "data/study.hpp"
+
+namespace uq {
+
+/// Case that an unknown belongs to, links followed, and its name there; no case: the whole study's.
+struct Home {
+  const data::CalibrationCase* owner = nullptr;
+  std::string name;
+  bool operator==(const Home&) const = default;
+};
+
+class LinkedCases {
+ public:
+  /// Both must outlive the object.
+  LinkedCases(const data::Study& study, const data::CalibrationCase& wanted);
+
+  const std::vector<const data::CalibrationCase*>& cases() const { return cases_; }  ///< the wanted one first
+  /// Circles, posteriors that do not exist, cuts at one remove. The functions below need that there are none.
+  const std::vector<data::Problem>& problems() const { return problems_; }
+
+  /// Of a parameter or nuisance of a case, as the case states it.
+  const data::Prior& prior_of(const data::CalibrationCase& item, const std::string& name) const;
+  Home home(const data::CalibrationCase& item, const std::string& name) const;
+  /// The density that an unknown had before any data: through cuts, too.
+  const data::Prior& first_prior(const data::CalibrationCase& item, const std::string& name) const;
+  const data::Nuisance& first_nuisance(const data::CalibrationCase& item, const std::string& name) const;
+
+ private:
+  void include(const data::CalibrationCase& item, std::vector<std::string> path);
+  void follow(const std::string& name, const data::Prior& prior, const std::vector<std::string>& path);
+
+  const data::Study& study_;
+  const data::CalibrationCase& wanted_;
+  std::vector<const data::CalibrationCase*> cases_;
+  std::vector<data::Problem> problems_;
+};
+
+}  // namespace uq

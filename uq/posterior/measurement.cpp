@@ -1,0 +1,233 @@
+#include "uq/posterior/measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace uq {
+namespace {
+
+double factor_of(const ReadSet& set, const std::vector<Slot>& slots, const Eigen::VectorXd& u) {
+  double factor = set.factor;
+  for (const int s : set.factors) factor *= slots[static_cast<std::size_t>(s)].value(u[s]);
+  return factor;
+}
+
+Eigen::VectorXd factors_of(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& u,
+                           Eigen::Index rows) {
+  Eigen::VectorXd factors = Eigen::VectorXd::Ones(rows);
+  for (const ReadSet& set : measurement.sets)
+    factors.segment(set.first, set.count).setConstant(factor_of(set, slots, u));
+  return factors;
+}
+
+/// Half the change of the prediction between the two shifted copies number `shift` of all rows, without the factor.
+Eigen::VectorXd half_change(const Eigen::VectorXd& extended, Eigen::Index rows, std::size_t shift) {
+  const auto at = static_cast<Eigen::Index>(1 + 2 * shift) * rows;
+  return 0.5 * (extended.segment(at, rows) - extended.segment(at + rows, rows));
+}
+
+/// Calls add(set, shift number, setting) for each uncertain control.
+template <class Add>
+void for_each_setting(const Measurement& measurement, const Add& add) {
+  for (const ReadSet& set : measurement.sets)
+    for (std::size_t q = 0; q < set.settings.size(); ++q) add(set, q, set.settings[q]);
+}
+
+/// Adds a b' + b a' of a set's rows, or its diagonal alone.
+void add_pair(Eigen::MatrixXd& sum, const ReadSet& set, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+              double weight, bool whole) {
+  const Eigen::VectorXd x = a.segment(set.first, set.count), y = b.segment(set.first, set.count);
+  if (whole) {
+    sum.block(set.first, set.first, set.count, set.count) += weight * (x * y.transpose() + y * x.transpose());
+  } else {
+    sum.diagonal().segment(set.first, set.count) += 2.0 * weight * x.cwiseProduct(y);
+  }
+}
+
+/// d correlation / d length.
+Eigen::MatrixXd correlation_slope(const Eigen::MatrixXd& controls, double length) {
+  Eigen::MatrixXd slope(controls.rows(), controls.rows());
+  for (Eigen::Index i = 0; i < controls.rows(); ++i)
+    for (Eigen::Index j = 0; j < controls.rows(); ++j) {
+      const double r = std::sqrt(5.0) * (controls.row(i) - controls.row(j)).norm() / length;
+      slope(i, j) = r * r / (3.0 * length) * (1.0 + r) * std::exp(-r);
+    }
+  return slope;
+}
+
+/// Change of mean and covariance with factors df, prediction dm (rows and copies) and emulator covariance dC.
+struct Change {
+  Eigen::VectorXd factors, mean;
+  Eigen::MatrixXd covariance;
+};
+
+struct State {
+  const Measurement& measurement;
+  Eigen::VectorXd factors, mean;  // mean: of the emulator, rows and copies
+  Eigen::MatrixXd covariance;     // of the emulator, rows alone
+};
+
+void add_change(const State& state, const Change& change, LawGradient& sum) {
+  const Eigen::Index rows = state.factors.size();
+  const Eigen::VectorXd& f = state.factors;
+  const Eigen::VectorXd& df = change.factors;
+  const Eigen::VectorXd m = state.mean.head(rows), dm = change.mean.head(rows);
+  const Eigen::VectorXd read = f.cwiseProduct(m), dread = df.cwiseProduct(m) + f.cwiseProduct(dm);
+  const Eigen::MatrixXd mixed = df * f.transpose();
+  Eigen::MatrixXd covariance =
+      (mixed + mixed.transpose()).cwiseProduct(state.covariance) + (f * f.transpose()).cwiseProduct(change.covariance);
+  for (const ReadSet& set : state.measurement.sets)
+    if (set.common_relative > 0.0)
+      add_pair(covariance, set, read, dread, set.common_relative * set.common_relative, true);
+  for_each_setting(state.measurement, [&](const ReadSet& set, std::size_t q, const SettingShift& setting) {
+    const Eigen::VectorXd h = half_change(state.mean, rows, q), dh = half_change(change.mean, rows, q);
+    const Eigen::VectorXd t = f.cwiseProduct(h), dt = df.cwiseProduct(h) + f.cwiseProduct(dh);
+    add_pair(covariance, set, t, dt, 1.0, setting.common);
+  });
+  sum.mean.push_back(dread);
+  sum.covariance.push_back(std::move(covariance));
+}
+
+bool contains(const std::vector<int>& list, int value) {
+  return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+}  // namespace
+
+int Measurement::shifts() const {
+  std::size_t most = 0;
+  for (const ReadSet& set : sets) most = std::max(most, set.settings.size());
+  return static_cast<int>(2 * most);
+}
+
+void place_shifts(const Measurement& measurement, Eigen::MatrixXd& points, Eigen::Index first, Eigen::Index rows) {
+  for (Eigen::Index copy = 1; copy <= measurement.shifts(); ++copy)
+    points.middleRows(first + copy * rows, rows) = points.middleRows(first, rows);
+  for_each_setting(measurement, [&](const ReadSet& set, std::size_t q, const SettingShift& setting) {
+    const Eigen::Index up = first + static_cast<Eigen::Index>(1 + 2 * q) * rows + set.first;
+    points.col(setting.column).segment(up, set.count) += setting.error;
+    points.col(setting.column).segment(up + rows, set.count) -= setting.error;
+  });
+}
+
+Eigen::MatrixXd discrepancy_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double length) {
+  Eigen::MatrixXd correlation(a.rows(), b.rows());
+  for (Eigen::Index i = 0; i < a.rows(); ++i)
+    for (Eigen::Index j = 0; j < b.rows(); ++j) {
+      const double r = std::sqrt(5.0) * (a.row(i) - b.row(j)).norm() / length;
+      correlation(i, j) = (1.0 + r + r * r / 3.0) * std::exp(-r);
+    }
+  return correlation;
+}
+
+Meter meter_at(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& u,
+               Eigen::Index row) {
+  for (const ReadSet& set : measurement.sets) {
+    if (row < set.first || row >= set.first + set.count) continue;
+    const double offset = set.offset < 0 ? 0.0 : slots[static_cast<std::size_t>(set.offset)].value(u[set.offset]);
+    return {.factor = factor_of(set, slots, u), .offset = offset};
+  }
+  return {};
+}
+
+Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Slot>& slots,
+                         const Eigen::VectorXd& variance, const Eigen::VectorXd& u) {
+  Eigen::VectorXd noise = variance;
+  for (const ReadSet& set : measurement.sets) {
+    if (set.noise < 0) continue;
+    const double k = slots[static_cast<std::size_t>(set.noise)].value(u[set.noise]);
+    if (set.noise_is_sd) {
+      noise.segment(set.first, set.count).setConstant(k * k);
+    } else {
+      noise.segment(set.first, set.count) *= k * k;
+    }
+  }
+  return noise;
+}
+
+GroupLaw law_of(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& variance,
+                const surrogate::Prediction& prediction, const Eigen::VectorXd& u) {
+  const Eigen::Index rows = variance.size();
+  const auto value = [&](int s) { return slots[static_cast<std::size_t>(s)].value(u[s]); };
+  const Eigen::VectorXd f = factors_of(measurement, slots, u, rows);
+  GroupLaw law{.mean = f.cwiseProduct(prediction.mean.head(rows)),
+               .covariance = (f * f.transpose()).cwiseProduct(prediction.covariance.topLeftCorner(rows, rows)),
+               .noise = noise_of(measurement, slots, variance, u)};
+  for (const ReadSet& set : measurement.sets) {
+    if (set.common_relative > 0.0)
+      add_pair(law.covariance, set, law.mean, law.mean, 0.5 * set.common_relative * set.common_relative, true);
+    law.covariance.block(set.first, set.first, set.count, set.count).array() +=
+        set.common_absolute * set.common_absolute;
+  }
+  for_each_setting(measurement, [&](const ReadSet& set, std::size_t q, const SettingShift& setting) {
+    const Eigen::VectorXd t = f.cwiseProduct(half_change(prediction.mean, rows, q));
+    add_pair(law.covariance, set, t, t, 0.5, setting.common);
+  });
+  for (const DiscrepancyRows& part : measurement.discrepancies)
+    law.covariance.block(part.first, part.first, part.count, part.count) +=
+        std::pow(value(part.sd) * part.magnitude, 2) *
+        discrepancy_correlation(part.controls, part.controls, value(part.length));
+  for (const ReadSet& set : measurement.sets)  // last: a relative error is of the meter's reading without its offset
+    if (set.offset >= 0) law.mean.segment(set.first, set.count).array() += value(set.offset);
+  return law;
+}
+
+LawGradient law_gradient(const Measurement& measurement, const std::vector<Slot>& slots,
+                         const Eigen::VectorXd& variance, const surrogate::PredictionGradient& prediction,
+                         const std::pair<std::vector<int>, Eigen::VectorXd>& unknowns_and_u) {
+  const auto& [unknowns, u] = unknowns_and_u;
+  const Eigen::Index rows = variance.size(), extended = prediction.value.mean.size();
+  const State state{.measurement = measurement,
+                    .factors = factors_of(measurement, slots, u, rows),
+                    .mean = prediction.value.mean,
+                    .covariance = prediction.value.covariance.topLeftCorner(rows, rows)};
+  LawGradient found{.unknowns = unknowns, .mean = {}, .covariance = {}};
+  for (std::size_t k = 0; k < unknowns.size(); ++k)
+    add_change(state,
+               {.factors = Eigen::VectorXd::Zero(rows),
+                .mean = prediction.mean_gradient[k],
+                .covariance = prediction.covariance_gradient[k].topLeftCorner(rows, rows)},
+               found);
+
+  for (int s = 0; s < static_cast<int>(slots.size()); ++s) {
+    const Slot& slot = slots[static_cast<std::size_t>(s)];
+    if (slot.nuisance == Acts::none || contains(unknowns, s)) continue;
+    const double value = slot.value(u[s]), slope = slot.slope(u[s]);
+    Eigen::VectorXd factors = Eigen::VectorXd::Zero(rows), offset = Eigen::VectorXd::Zero(rows);
+    Eigen::VectorXd noise = Eigen::VectorXd::Zero(rows);
+    for (const ReadSet& set : measurement.sets) {
+      if (contains(set.factors, s))
+        factors.segment(set.first, set.count) = state.factors.segment(set.first, set.count) * (slope / value);
+      if (set.offset == s) offset.segment(set.first, set.count).setConstant(slope);
+      if (set.noise != s) continue;
+      if (set.noise_is_sd) {
+        noise.segment(set.first, set.count).setConstant(2.0 * value * slope);
+      } else {
+        noise.segment(set.first, set.count) = 2.0 * value * slope * variance.segment(set.first, set.count);
+      }
+    }
+    found.unknowns.push_back(s);
+    add_change(
+        state,
+        {.factors = factors, .mean = Eigen::VectorXd::Zero(extended), .covariance = Eigen::MatrixXd::Zero(rows, rows)},
+        found);
+    found.mean.back() += offset;
+    found.covariance.back().diagonal() += noise;
+    for (const DiscrepancyRows& part : measurement.discrepancies) {
+      if (part.sd != s && part.length != s) continue;
+      const double square = part.magnitude * part.magnitude;
+      const double sd = slots[static_cast<std::size_t>(part.sd)].value(u[part.sd]);
+      const double length = slots[static_cast<std::size_t>(part.length)].value(u[part.length]);
+      Eigen::MatrixXd change(part.count, part.count);
+      if (part.sd == s) {
+        change = 2.0 * sd * slope * square * discrepancy_correlation(part.controls, part.controls, length);
+      } else {
+        change = sd * sd * square * slope * correlation_slope(part.controls, length);
+      }
+      found.covariance.back().block(part.first, part.first, part.count, part.count) += change;
+    }
+  }
+  return found;
+}
+
+}  // namespace uq

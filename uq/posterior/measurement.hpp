@@ -1,0 +1,100 @@
+#pragma once
+// What stands between an emulator's prediction and the numbers that a meter shows. With m, C the emulator's mean and
+// covariance at the rows of a group, and f_i the product of the rig's scale and the meter's gain at row i:
+//   mean_i  = f_i m_i + o_i
+//   cov_ij  = f_i f_j C_ij + common_ij + setting_ij + discrepancy_ij       a repeated measurement shares it
+//   noise_i = k^2 s_i^2, or s^2                                            each number's own
+//   common       c^2 + r^2 f_i m_i f_j m_j within an observation set: an error of its meter, absolute c, relative r
+//   setting      t_i t_j, t_i = f_i (m(x_i + e_i) - m(x_i - e_i)) / 2: a control known to a standard error e enters
+//                to first order, by the slope over +- one e. Within a set it is common to all rows where the control
+//                has one value (a fill), and each row's own (i = j only) where it is set anew (a speed)
+//   discrepancy  a^2 q^2 M(d_ij / L) within a case: M. C. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63:425 (2001); Matern
+//                5/2, d the distance of the controls in their ranges, q the root mean square of the measured values
+// o, k, s, a, L and the factors of f may be unknowns with priors. The discrepancy itself is integrated out; it is
+// independent between outputs and materials.
+#include <Eigen/Dense>
+#include <vector>
+
+#include "surrogate/gaussian_process.hpp"
+#include "uq/posterior/slot.hpp"
+
+namespace uq {
+
+/// A control's error in one observation set.
+struct SettingShift {
+  int column = 0;         ///< of the emulator's inputs
+  Eigen::VectorXd error;  ///< per row of the set, in unit-cube lengths
+  bool common = true;     ///< to all rows
+};
+
+/// Rows of one observation set in a group.
+struct ReadSet {
+  Eigen::Index first = 0, count = 0;
+  double factor = 1.0;           ///< what is fixed of the scale
+  std::vector<int> factors;      ///< unknowns that multiply: scale, gain
+  int offset = -1;               ///< unknown; -1: none
+  int noise = -1;                ///< unknown; -1: the stated standard errors
+  bool noise_is_sd = false;      ///< the unknown replaces the standard errors, else multiplies them
+  double common_absolute = 0.0;  ///< SI
+  double common_relative = 0.0;
+  std::vector<SettingShift> settings;
+};
+
+/// The discrepancy process of one case in a group.
+struct DiscrepancyRows {
+  Eigen::Index first = 0, count = 0;
+  int sd = -1, length = -1;  ///< unknowns
+  double magnitude = 1.0;    ///< q, SI
+  Eigen::MatrixXd controls;  ///< rows x controls, in their ranges
+};
+
+/// Of a group; empty where the numbers are the emulator's output with independent errors.
+struct Measurement {
+  std::vector<ReadSet> sets;
+  std::vector<DiscrepancyRows> discrepancies;
+  bool plain() const { return sets.empty() && discrepancies.empty(); }
+  /// Copies of the rows, above the rows themselves, at which the emulator is asked: two per uncertain control.
+  int shifts() const;
+};
+
+/// Writes the shifted copies below the `rows` rows that stand at `first` in `points`.
+void place_shifts(const Measurement& measurement, Eigen::MatrixXd& points, Eigen::Index first, Eigen::Index rows);
+
+struct GroupLaw {
+  Eigen::VectorXd mean;        ///< SI
+  Eigen::MatrixXd covariance;  ///< SI^2, without the noise
+  Eigen::VectorXd noise;       ///< SI^2, variances
+};
+
+/// What the meter makes of the prediction at one row: reading = factor * m + offset.
+struct Meter {
+  double factor = 1.0;
+  double offset = 0.0;  ///< SI
+};
+Meter meter_at(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& u,
+               Eigen::Index row);
+
+/// Variance of each number's own error.
+Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Slot>& slots,
+                         const Eigen::VectorXd& variance, const Eigen::VectorXd& u);
+
+/// `variance`: of the stated standard errors, one per row; `prediction`: at the rows and their shifted copies.
+GroupLaw law_of(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& variance,
+                const surrogate::Prediction& prediction, const Eigen::VectorXd& u);
+
+/// Derivatives with respect to u of mean and of covariance, noise included.
+struct LawGradient {
+  std::vector<int> unknowns;
+  std::vector<Eigen::VectorXd> mean;
+  std::vector<Eigen::MatrixXd> covariance;
+};
+
+/// `unknowns`: those along which `prediction` has derivatives, in its order; the nuisances are added.
+LawGradient law_gradient(const Measurement& measurement, const std::vector<Slot>& slots,
+                         const Eigen::VectorXd& variance, const surrogate::PredictionGradient& prediction,
+                         const std::pair<std::vector<int>, Eigen::VectorXd>& unknowns_and_u);
+
+/// Matern 5/2 correlation at distances over lengths.
+Eigen::MatrixXd discrepancy_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double length);
+
+}  // namespace uq

@@ -1,0 +1,316 @@
+#include "uq/posterior/posterior.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "uq/infer/factor.hpp"
+#include "uq/posterior/distinct.hpp"
+
+namespace uq {
+namespace {
+
+constexpr double nowhere = -std::numeric_limits<double>::infinity();
+
+/// Writes the rows of a group at u into `points`, from row `first` on.
+void place_rows(const RowGroup& group, const Eigen::VectorXd& u, Eigen::MatrixXd& points, Eigen::Index first) {
+  for (Eigen::Index k = 0; k < group.base.cols(); ++k)
+    for (Eigen::Index i = 0; i < group.base.rows(); ++i) {
+      const int s = group.slot(i, k);
+      points(first + i, k) = s < 0 ? group.base(i, k) : u[s];
+    }
+  if (group.measurement.shifts() > 0) place_shifts(group.measurement, points, first, group.base.rows());
+}
+
+double log_normal(Eigen::VectorXd residual, const Eigen::MatrixXd& covariance) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  if (factor.info() != Eigen::Success) return nowhere;
+  factor.matrixL().solveInPlace(residual);
+  const double log_root = factor.matrixLLT().diagonal().array().log().sum();
+  const double rows = static_cast<double>(residual.size());
+  return -0.5 * residual.squaredNorm() - log_root - 0.5 * rows * std::log(2.0 * std::numbers::pi);
+}
+
+/// Log density of a group's numbers without what repeats say of their own scatter.
+double log_row_density(const CaseModel& model, const RowGroup& group, const surrogate::Prediction& prediction,
+                       const Eigen::VectorXd& u) {
+  if (group.measurement.plain()) {
+    Eigen::MatrixXd covariance = prediction.covariance;
+    covariance.diagonal() += group.variance;
+    return log_normal(group.observed - prediction.mean, covariance);
+  }
+  GroupLaw law = law_of(group.measurement, model.slots, group.variance, prediction, u);
+  law.covariance.diagonal() += law.noise;
+  return log_normal(group.observed - law.mean, law.covariance);
+}
+
+/// What the scatter of repeats about their means says (uq/posterior/distinct.hpp), with its slope along the noise's factor.
+struct Scatter {
+  double log_density = 0.0, chi_squared = 0.0, slope = 0.0;  // slope: to u of the factor's unknown
+};
+Scatter scatter_of(const CaseModel& model, const Repeats& repeats, const Eigen::VectorXd& u) {
+  if (repeats.noise < 0)
+    return {.log_density = repeats.log_constant - 0.5 * repeats.scatter, .chi_squared = repeats.scatter};
+  const Slot& slot = model.slots[static_cast<std::size_t>(repeats.noise)];
+  const double k = slot.value(u[repeats.noise]), chi = repeats.scatter / (k * k);
+  return {.log_density = repeats.log_constant - 0.5 * chi - repeats.extra * std::log(k),
+          .chi_squared = chi,
+          .slope = (chi - repeats.extra) / k * slot.slope(u[repeats.noise])};
+}
+
+/// Adds the gradient of one group's log density to `sum`.
+void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u, Evaluation& sum) {
+  if (!group.uniform || !group.emulator.predict_with_gradient) {
+    // No derivative along a common shift: central differences.
+    const auto density = [&](const Eigen::VectorXd& at) {
+      return log_row_density(model, group, group.emulator.predict(rows_at(group, at)), at);
+    };
+    sum.value += density(u);
+    constexpr double step = 1e-5;
+    for (Eigen::Index s = 0; s < u.size(); ++s) {
+      const bool nuisance = model.slots[static_cast<std::size_t>(s)].nuisance != Acts::none;
+      if (!nuisance && !(group.slot.array() == static_cast<int>(s)).any()) continue;
+      Eigen::VectorXd up = u, down = u;
+      up[s] += step;
+      down[s] -= step;
+      sum.gradient[s] += (density(up) - density(down)) / (2.0 * step);
+    }
+    return;
+  }
+  std::vector<int> coordinates, unknowns;
+  for (std::size_t s = 0; s < group.coordinate.size(); ++s)
+    if (group.coordinate[s]) {
+      coordinates.push_back(*group.coordinate[s]);
+      unknowns.push_back(static_cast<int>(s));
+    }
+  const surrogate::PredictionGradient found = group.emulator.predict_with_gradient(rows_at(group, u), coordinates);
+  const GroupLaw law = law_of(group.measurement, model.slots, group.variance, found.value, u);
+  Eigen::MatrixXd covariance = law.covariance;
+  covariance.diagonal() += law.noise;
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  if (factor.info() != Eigen::Success) {
+    sum.value = nowhere;
+    return;
+  }
+  const Eigen::Index rows = group.observed.size();
+  const Eigen::VectorXd residual = group.observed - law.mean;
+  const Eigen::VectorXd a = factor.solve(residual);
+  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(rows, rows));
+  sum.value += -0.5 * residual.dot(a) - factor.matrixLLT().diagonal().array().log().sum() -
+               0.5 * static_cast<double>(rows) * std::log(2.0 * std::numbers::pi);
+  const LawGradient slopes = law_gradient(group.measurement, model.slots, group.variance, found, {unknowns, u});
+  for (std::size_t k = 0; k < slopes.unknowns.size(); ++k) {
+    const Eigen::MatrixXd& slope = slopes.covariance[k];
+    sum.gradient[slopes.unknowns[k]] +=
+        a.dot(slopes.mean[k]) + 0.5 * (a.dot(slope * a) - inverse.cwiseProduct(slope).sum());
+  }
+}
+
+/// The prediction of a group's rows from that of its distinct rows.
+GroupLaw spread(const GroupLaw& distinct, const std::vector<Eigen::Index>& row) {
+  return {.mean = distinct.mean(row), .covariance = distinct.covariance(row, row), .noise = {}};
+}
+
+}  // namespace
+
+Eigen::Index rows_asked(const RowGroup& group) { return group.base.rows() * (1 + group.measurement.shifts()); }
+
+Eigen::MatrixXd rows_at(const RowGroup& group, const Eigen::VectorXd& u) {
+  Eigen::MatrixXd points(rows_asked(group), group.base.cols());
+  place_rows(group, u, points, 0);
+  return points;
+}
+
+double log_group_density(const CaseModel& model, const RowGroup& group, const surrogate::Prediction& prediction,
+                         const Eigen::VectorXd& u) {
+  double sum = log_row_density(model, group, prediction, u);
+  for (const Repeats& repeats : group.repeats) sum += scatter_of(model, repeats, u).log_density;
+  return sum;
+}
+
+GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u) {
+  return law_of(group.measurement, model.slots, group.variance, group.emulator.predict(rows_at(group, u)), u);
+}
+
+StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u) {
+  const Eigen::Index rows = model.row_count();
+  StackedPrediction stacked{
+      .mean = Eigen::VectorXd(rows), .covariance = Eigen::MatrixXd::Zero(rows, rows), .noise = Eigen::VectorXd(rows)};
+  Eigen::Index first = 0;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    const RowGroup& group = model.groups[g];
+    GroupLaw part = model.distinct
+                        ? spread(group_law(*model.distinct, model.distinct->groups[g], u), group.distinct_row)
+                        : group_law(model, group, u);
+    if (model.distinct) part.noise = noise_of(group.measurement, model.slots, group.variance, u);
+    const Eigen::Index count = part.mean.size();
+    stacked.mean.segment(first, count) = part.mean;
+    stacked.covariance.block(first, first, count, count) = part.covariance;
+    stacked.noise.segment(first, count) = part.noise;
+    first += count;
+  }
+  return stacked;
+}
+
+RowMoments row_moments(const CaseModel& model, const Eigen::VectorXd& u) {
+  const Eigen::Index rows = model.row_count();
+  RowMoments moments{.mean = Eigen::VectorXd(rows), .variance = Eigen::VectorXd(rows)};
+  const CaseModel& distinct = distinct_rows(model);
+  Eigen::Index first = 0;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    const RowGroup& group = model.groups[g];
+    const GroupLaw law = group_law(distinct, distinct.groups[g], u);
+    const Eigen::VectorXd noise = noise_of(group.measurement, model.slots, group.variance, u);
+    for (Eigen::Index i = 0; i < noise.size(); ++i) {
+      const Eigen::Index at = model.distinct ? group.distinct_row[static_cast<std::size_t>(i)] : i;
+      moments.mean[first + i] = law.mean[at];
+      moments.variance[first + i] = law.covariance(at, at) + noise[i];
+    }
+    first += noise.size();
+  }
+  return moments;
+}
+
+double log_prior(const CaseModel& model, const Eigen::VectorXd& u) {
+  double sum = 0.0;
+  for (std::size_t s = 0; s < model.slots.size(); ++s)
+    sum += model.slots[s].prior.log_density(u[static_cast<Eigen::Index>(s)]);
+  return sum;
+}
+
+Evaluation log_prior_gradient(const CaseModel& model, const Eigen::VectorXd& u) {
+  Evaluation found{.value = log_prior(model, u), .gradient = Eigen::VectorXd(u.size())};
+  for (std::size_t s = 0; s < model.slots.size(); ++s)
+    found.gradient[static_cast<Eigen::Index>(s)] = model.slots[s].prior.slope(u[static_cast<Eigen::Index>(s)]);
+  return found;
+}
+
+double log_likelihood(const CaseModel& full, const Eigen::VectorXd& u) {
+  const CaseModel& model = distinct_rows(full);
+  double sum = 0.0;
+  for (const auto& group : model.groups)
+    sum += log_group_density(model, group, group.emulator.predict(rows_at(group, u)), u);
+  return sum;
+}
+
+Evaluation log_likelihood_gradient(const CaseModel& full, const Eigen::VectorXd& u) {
+  const CaseModel& model = distinct_rows(full);
+  Evaluation sum{.value = 0.0, .gradient = Eigen::VectorXd::Zero(u.size())};
+  for (const auto& group : model.groups) {
+    add_gradient(model, group, u, sum);
+    for (const Repeats& repeats : group.repeats) {
+      const Scatter scatter = scatter_of(model, repeats, u);
+      sum.value += scatter.log_density;
+      if (repeats.noise >= 0) sum.gradient[repeats.noise] += scatter.slope;
+    }
+  }
+  return sum;
+}
+
+Eigen::VectorXd log_likelihoods(const CaseModel& full, const Eigen::MatrixXd& points) {
+  const CaseModel& model = distinct_rows(full);
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(points.rows());
+  for (const auto& group : model.groups) {
+    const Eigen::Index rows = rows_asked(group);
+    if (!group.emulator.predict_batch) {
+      for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        const Eigen::VectorXd u = points.row(i).transpose();
+        sums[i] += log_group_density(model, group, group.emulator.predict(rows_at(group, u)), u);
+      }
+      continue;
+    }
+    constexpr Eigen::Index block = 32;
+    for (Eigen::Index from = 0; from < points.rows(); from += block) {
+      const Eigen::Index count = std::min(block, points.rows() - from);
+      Eigen::MatrixXd stacked(count * rows, group.base.cols());
+      for (Eigen::Index i = 0; i < count; ++i) place_rows(group, points.row(from + i).transpose(), stacked, i * rows);
+      const std::vector<surrogate::Prediction> found = group.emulator.predict_batch(stacked, static_cast<int>(rows));
+      for (Eigen::Index i = 0; i < count; ++i)
+        sums[from + i] +=
+            log_group_density(model, group, found[static_cast<std::size_t>(i)], points.row(from + i).transpose());
+    }
+  }
+  return sums;
+}
+
+Eigen::VectorXd pointwise_log_likelihood(const CaseModel& model, const Eigen::VectorXd& u) {
+  const RowMoments moments = row_moments(model, u);
+  const Eigen::ArrayXd variance = moments.variance.array();
+  const Eigen::ArrayXd residual = (observed(model) - moments.mean).array();
+  return -0.5 * (residual.square() / variance + (2.0 * std::numbers::pi * variance).log());
+}
+
+double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& y, double noise_factor) {
+  Eigen::MatrixXd covariance = prediction.covariance;
+  covariance.diagonal() += noise_factor * prediction.noise;
+  const Factor root = factor(covariance, "the data under the model");
+  Eigen::VectorXd residual = y - prediction.mean;
+  root.llt.matrixL().solveInPlace(residual);
+  return residual.squaredNorm();
+}
+
+double chi_squared(const CaseModel& full, const Eigen::VectorXd& u) {
+  const CaseModel& model = distinct_rows(full);
+  double sum = chi_squared(predict(model, u), observed(model));
+  for (const RowGroup& group : model.groups)
+    for (const Repeats& repeats : group.repeats) sum += scatter_of(model, repeats, u).chi_squared;
+  return sum;
+}
+
+Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u) {
+  Evaluation sum{.value = 0.0, .gradient = Eigen::VectorXd::Zero(u.size())};
+  for (std::size_t k = 0; k < model.slots.size(); ++k) {
+    const Slot& slot = model.slots[k];
+    const auto s = static_cast<Eigen::Index>(k);
+    if (slot.nuisance != Acts::none) {
+      sum.value += slot.prior.log_density(u[s]);
+      sum.gradient[s] = slot.prior.slope(u[s]);
+    } else if (slot.cut) {
+      const double z = (u[s] - slot.cut->mean) / slot.cut->sd;
+      sum.value -= 0.5 * z * z;
+      sum.gradient[s] = -z / slot.cut->sd;
+    }
+  }
+  return sum;
+}
+
+Target posterior_target(std::shared_ptr<const CaseModel> model) {
+  Target target{.dimension = model->dimension(), .lower = model->lower(), .upper = model->upper()};
+  target.reference.draw = [model](data::RandomStream& random) {
+    Eigen::VectorXd u(model->dimension());
+    for (Eigen::Index s = 0; s < u.size(); ++s) u[s] = model->slots[static_cast<std::size_t>(s)].prior.draw(random);
+    return u;
+  };
+  target.reference.log_density = [model](const Eigen::VectorXd& u) { return log_prior(*model, u); };
+  target.log_density = [model](const Eigen::VectorXd& u) -> double {
+    return log_prior(*model, u) + log_likelihood(*model, u);
+  };
+  target.log_density_gradient = [model](const Eigen::VectorXd& u) -> Evaluation {
+    const Evaluation prior = log_prior_gradient(*model, u), likelihood = log_likelihood_gradient(*model, u);
+    const Eigen::VectorXd gradient = prior.gradient + likelihood.gradient;
+    return {.value = prior.value + likelihood.value, .gradient = gradient};
+  };
+  target.log_densities = [model](const Eigen::MatrixXd& points) -> Eigen::VectorXd {
+    Eigen::VectorXd sums = log_likelihoods(*model, points);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) sums[i] += log_prior(*model, points.row(i).transpose());
+    return sums;
+  };
+  return target;
+}
+
+Eigen::MatrixXd sensitivity(const CaseModel& model, const Eigen::VectorXd& u) {
+  // Central differences, of first order and one-sided at the support's ends, so that any emulator and any binding of
+  // rows will do.
+  Eigen::MatrixXd slopes(model.row_count(), u.size());
+  const Eigen::VectorXd lower = model.lower(), upper = model.upper();
+  for (Eigen::Index s = 0; s < u.size(); ++s) {
+    const double step = 1e-4 * (upper[s] - lower[s]);
+    Eigen::VectorXd high = u, low = u;
+    high[s] = std::min(u[s] + step, upper[s]);
+    low[s] = std::max(u[s] - step, lower[s]);
+    slopes.col(s) = (row_moments(model, high).mean - row_moments(model, low).mean) / (high[s] - low[s]);
+  }
+  return slopes;
+}
+
+}  // namespace uq

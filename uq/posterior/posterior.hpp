@@ -1,0 +1,74 @@
+#pragma once
+// The posterior of a case over its scaled unknowns u:
+//   log p(u | y) = sum_s log prior_s(u_s) + log L(u) + const
+//   log L(u) = sum_g log N(y_g | mean_g(u), S_g(u))          (full constants, so that evidences can be compared)
+// g runs over the emulators, y_g are all the case's numbers that emulator g predicts; mean_g and S_g, the covariance of
+// all that is uncertain of them, noise included, are those of uq/posterior/measurement.hpp, which adds a meter's errors to the
+// emulator's mean and full covariance across those rows: a surrogate's error at one speed is nearly the same error at
+// the next, and counting it as independent would make posteriors too narrow. Gradient, with r = y - mean, a = S^-1 r:
+//   dlogL/dk = a' dmean/dk + 1/2 (a' dS/dk a - tr(S^-1 dS/dk))
+#include <Eigen/Dense>
+#include <memory>
+
+#include "uq/infer/log_density.hpp"
+#include "uq/posterior/case_model.hpp"
+#include "uq/posterior/distinct.hpp"
+
+namespace uq {
+
+/// Stacked prediction of all rows at u.
+struct StackedPrediction {
+  Eigen::VectorXd mean;        ///< SI
+  Eigen::MatrixXd covariance;  ///< SI^2, without the noise; zero between emulators
+  Eigen::VectorXd noise;       ///< SI^2, variance of each number's own error
+
+  Eigen::MatrixXd total() const {
+    Eigen::MatrixXd sum = covariance;
+    sum.diagonal() += noise;
+    return sum;
+  }
+};
+StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u);
+/// Mean and variance, noise included, of each row alone.
+struct RowMoments {
+  Eigen::VectorXd mean, variance;
+};
+RowMoments row_moments(const CaseModel& model, const Eigen::VectorXd& u);
+
+/// Rows at which a group's emulator is asked: the measured ones and their shifted copies.
+Eigen::Index rows_asked(const RowGroup& group);
+Eigen::MatrixXd rows_at(const RowGroup& group, const Eigen::VectorXd& u);
+/// Of the group's numbers, given the emulator's prediction at those rows.
+double log_group_density(const CaseModel& model, const RowGroup& group, const surrogate::Prediction& prediction,
+                         const Eigen::VectorXd& u);
+/// Of one group's rows.
+GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u);
+
+double log_prior(const CaseModel& model, const Eigen::VectorXd& u);
+Evaluation log_prior_gradient(const CaseModel& model, const Eigen::VectorXd& u);
+
+double log_likelihood(const CaseModel& model, const Eigen::VectorXd& u);
+Evaluation log_likelihood_gradient(const CaseModel& model, const Eigen::VectorXd& u);
+/// Of each row of `points`.
+Eigen::VectorXd log_likelihoods(const CaseModel& model, const Eigen::MatrixXd& points);
+
+/// Log likelihood of each measured number on its own (its marginal), in the order of the rows.
+Eigen::VectorXd pointwise_log_likelihood(const CaseModel& model, const Eigen::VectorXd& u);
+
+/// (y - mean)' S^-1 (y - mean) of other data y, with the noise's variance times `noise_factor`.
+double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& y, double noise_factor = 1.0);
+
+/// Of the case's own data at u.
+double chi_squared(const CaseModel& model, const Eigen::VectorXd& u);
+
+/// What is known beside the data of the unknowns that no profile should leave free: log priors of the nuisances (a
+/// calibration certificate is a measurement, too), and the law of the unknowns that were cut from another case.
+Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u);
+
+/// The posterior for the samplers; the prior is its reference. The model is shared.
+Target posterior_target(std::shared_ptr<const CaseModel> model);
+
+/// d mean / du of all rows, rows x unknowns.
+Eigen::MatrixXd sensitivity(const CaseModel& model, const Eigen::VectorXd& u);
+
+}  // namespace uq

@@ -1,0 +1,265 @@
+#include "uq/posterior/predictive.hpp"
+
+#include <fmt/core.h>
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/error.hpp"
+#include "data/random.hpp"
+#include "uq/infer/diagnostics.hpp"
+#include "uq/infer/factor.hpp"
+#include "uq/posterior/fisher.hpp"
+#include "uq/posterior/posterior.hpp"
+
+namespace uq {
+namespace {
+
+constexpr int predictive_draws = 500;
+
+/// Rows at which a set's curve is drawn: the set's first row, with one control spread over its range.
+struct CurveRows {
+  Eigen::MatrixXd base;
+  Eigen::VectorXi slot;
+  Eigen::VectorXd x;  // SI
+};
+
+CurveRows curve_rows(const data::Study& study, const RowGroup& group, std::size_t row, std::size_t control_column) {
+  constexpr Eigen::Index points = 41;
+  const std::size_t control_index = group.emulator.inputs[control_column].index;
+  const data::Control& control = study.controls[control_index];
+  const auto range = group.emulator.control_range.find(control_index);
+  auto [low, high] = range == group.emulator.control_range.end() ? std::pair{control.low, control.high} : range->second;
+  for (const data::Observation& point : study.observations[group.origin[row].set].points) {
+    low = std::min(low, point.controls[control_index]);
+    high = std::max(high, point.controls[control_index]);
+  }
+  CurveRows rows{.base = group.base.row(static_cast<Eigen::Index>(row)).replicate(points, 1),
+                 .slot = group.slot.row(static_cast<Eigen::Index>(row)).transpose(),
+                 .x = Eigen::VectorXd::LinSpaced(points, low, high)};
+  rows.base.col(static_cast<Eigen::Index>(control_column)) =
+      rows.x.unaryExpr([axis = control.axis()](double x) { return axis.to_unit(x); });
+  return rows;
+}
+
+/// Mean and quantiles of the model over `draws` against the first control of each own set; the surrogate's error moves
+/// the curve of draw i by normal[i] of its standard deviations.
+std::vector<PredictiveCurve> curves_of(const data::Study& study, const CaseModel& model, const Eigen::MatrixXd& used,
+                                       const Eigen::VectorXd& normal) {
+  std::vector<PredictiveCurve> curves;
+  for (const auto& group : model.groups) {
+    const auto control = std::find_if(group.emulator.inputs.begin(), group.emulator.inputs.end(),
+                                      [](const EmulatorInput& input) { return input.kind == InputKind::control; });
+    if (control == group.emulator.inputs.end()) continue;
+    const auto control_column = static_cast<std::size_t>(control - group.emulator.inputs.begin());
+    for (std::size_t row = 0; row < group.origin.size(); ++row) {
+      const bool first_of_set = row == 0 || group.origin[row].set != group.origin[row - 1].set;
+      if (!first_of_set || !is_own_set(study, model, group.origin[row].set)) continue;
+      const CurveRows rows = curve_rows(study, group, row, control_column);
+      Eigen::MatrixXd values(used.rows(), rows.x.size());
+      for (Eigen::Index i = 0; i < used.rows(); ++i) {
+        Eigen::MatrixXd points = rows.base;
+        for (Eigen::Index k = 0; k < points.cols(); ++k)
+          if (rows.slot[k] >= 0 && static_cast<std::size_t>(k) != control_column)
+            points.col(k).setConstant(used(i, rows.slot[k]));
+        const surrogate::Prediction prediction = group.emulator.predict(points);
+        const Meter meter =
+            meter_at(group.measurement, model.slots, used.row(i).transpose(), static_cast<Eigen::Index>(row));
+        for (Eigen::Index j = 0; j < rows.x.size(); ++j)
+          values(i, j) =
+              meter.offset +
+              meter.factor * (prediction.mean[j] + std::sqrt(std::max(prediction.covariance(j, j), 0.0)) * normal[i]);
+      }
+      const data::Control& x = study.controls[control->index];
+      const data::Output& output = study.outputs[group.origin[row].output];
+      PredictiveCurve curve{.output = output.name,
+                            .unit = output.unit.symbol,
+                            .control = x.name,
+                            .control_unit = x.unit.symbol,
+                            .observation_set = study.observations[group.origin[row].set].name,
+                            .x = {},
+                            .mean = {},
+                            .q05 = {},
+                            .q95 = {}};
+      for (Eigen::Index j = 0; j < rows.x.size(); ++j) {
+        curve.x.push_back(x.unit.from_si(rows.x[j]));
+        curve.mean.push_back(output.unit.from_si(values.col(j).mean()));
+        curve.q05.push_back(output.unit.from_si(quantile(values.col(j), 0.05)));
+        curve.q95.push_back(output.unit.from_si(quantile(values.col(j), 0.95)));
+      }
+      curves.push_back(std::move(curve));
+    }
+  }
+  return curves;
+}
+
+}  // namespace
+
+bool is_own_set(const data::Study& study, const CaseModel& model, std::size_t set) {
+  return std::find(model.observed_sets.begin(), model.observed_sets.end(), study.observations[set].name) !=
+         model.observed_sets.end();
+}
+
+Eigen::MatrixXd thinned(const Eigen::MatrixXd& draws, Eigen::Index count) {
+  if (draws.rows() <= count) return draws;
+  Eigen::MatrixXd kept(count, draws.cols());
+  for (Eigen::Index i = 0; i < count; ++i) kept.row(i) = draws.row(i * draws.rows() / count);
+  return kept;
+}
+
+FitCheck check_fit(const CaseModel& model, const Eigen::MatrixXd& draws, const Eigen::VectorXd& best) {
+  const int count = number_count(model);
+  const double n = count;
+  const Eigen::MatrixXd used = thinned(draws, predictive_draws);
+  FitCheck check;
+  for (Eigen::Index i = 0; i < used.rows(); ++i)
+    check.predictive_p += gsl_cdf_chisq_Q(chi_squared(model, used.row(i).transpose()), n);
+  check.predictive_p /= static_cast<double>(used.rows());
+  check.chi2 = chi_squared(model, best);
+  check.dof = std::max(1, count - fisher_spectrum(model, best).known_directions);
+  check.best_fit_p = gsl_cdf_chisq_Q(check.chi2, check.dof);
+  return check;
+}
+
+Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws, std::uint64_t seed) {
+  Eigen::MatrixXd made(draws.rows(), model.row_count());
+  const CaseModel& distinct = distinct_rows(model);
+  data::RandomStream random(seed, data::Purpose::posterior_predictive);
+  for (Eigen::Index i = 0; i < draws.rows(); ++i) {
+    const Eigen::VectorXd u = draws.row(i).transpose();
+    Eigen::Index first = 0;
+    for (std::size_t g = 0; g < model.groups.size(); ++g) {
+      // What rows of equal settings share, then each row's own noise.
+      const RowGroup& group = model.groups[g];
+      const GroupLaw law = group_law(distinct, distinct.groups[g], u);
+      Eigen::VectorXd shared(law.mean.size());
+      for (double& value : shared) value = random.normal();
+      shared = law.mean + semidefinite_root(law.covariance, "replicate data") * shared;
+      const Eigen::VectorXd noise = noise_of(group.measurement, model.slots, group.variance, u);
+      for (Eigen::Index row = 0; row < noise.size(); ++row) {
+        const Eigen::Index at = model.distinct ? group.distinct_row[static_cast<std::size_t>(row)] : row;
+        made(i, first + row) = shared[at] + std::sqrt(noise[row]) * random.normal();
+      }
+      first += noise.size();
+    }
+  }
+  return made;
+}
+
+Eigen::VectorXd mean_prediction(const CaseModel& model, const Eigen::MatrixXd& draws) {
+  const Eigen::MatrixXd used = thinned(draws, predictive_draws);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(model.row_count());
+  for (Eigen::Index i = 0; i < used.rows(); ++i) sum += row_moments(model, used.row(i).transpose()).mean;
+  return sum / static_cast<double>(used.rows());
+}
+
+std::vector<PredictivePoint> predictive_points(const data::Study& study, const CaseModel& model,
+                                               const Eigen::MatrixXd& draws, std::uint64_t seed) {
+  const Eigen::MatrixXd made = replicates(model, thinned(draws, 4 * predictive_draws), seed);
+  const std::vector<RowOrigin> from = origins(model);
+  std::vector<PredictivePoint> points;
+  for (std::size_t row = 0; row < from.size(); ++row) {
+    if (!is_own_set(study, model, from[row].set)) continue;
+    const data::ObservationSet& set = study.observations[from[row].set];
+    const data::Observation& observation = set.points[from[row].point];
+    const data::Output& output = study.outputs[from[row].output];
+    const auto column = static_cast<std::size_t>(std::find(set.outputs.begin(), set.outputs.end(), from[row].output) -
+                                                 set.outputs.begin());
+    PredictivePoint point;
+    for (std::size_t c = 0; c < study.controls.size(); ++c)
+      point.controls[study.controls[c].name] = study.controls[c].unit.from_si(observation.controls[c]);
+    point.output = output.name;
+    point.unit = output.unit.symbol;
+    const Eigen::VectorXd values = made.col(static_cast<Eigen::Index>(row));
+    point.mean = output.unit.from_si(values.mean());
+    point.q05 = output.unit.from_si(quantile(values, 0.05));
+    point.q95 = output.unit.from_si(quantile(values, 0.95));
+    point.observed = output.unit.from_si(observation.values[column]);
+    point.standard_error = observation.standard_errors[column] / output.unit.factor;
+    point.observation_set = set.name;
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+std::vector<PredictiveCurve> predictive_curves(const data::Study& study, const CaseModel& model,
+                                               const Eigen::MatrixXd& draws, std::uint64_t seed) {
+  const Eigen::MatrixXd used = thinned(draws, predictive_draws);
+  // One normal number per draw moves its whole curve: the bands are pointwise, so the covariance between points does
+  // not enter, and the quantiles come out as smooth as the curves.
+  data::RandomStream random(seed, data::Purpose::predictive_curve);
+  Eigen::VectorXd normal(used.rows());
+  for (double& value : normal) value = random.normal();
+  return curves_of(study, model, used, normal);
+}
+
+std::vector<PredictiveCurve> mean_curves(const data::Study& study, const CaseModel& model, const Eigen::VectorXd& u) {
+  return curves_of(study, model, u.transpose(), Eigen::VectorXd::Zero(1));
+}
+
+void check_priors(const data::Study& study, const CaseModel& model) {
+  const Eigen::VectorXd y = observed(model);
+  const std::vector<RowOrigin> from = origins(model);
+  data::RandomStream random(study.seed, data::Purpose::prior_predictive);
+  // Smallest distance of each measured number from the predictions, in sd, and which side they lie on.
+  struct Reach {
+    Eigen::VectorXd nearest;
+    Eigen::VectorXd lowest, highest;
+  };
+  auto reach = [&](int count, auto draw) {
+    Reach found{.nearest = Eigen::VectorXd::Constant(y.size(), 1e300),
+                .lowest = Eigen::VectorXd::Constant(y.size(), 1e300),
+                .highest = Eigen::VectorXd::Constant(y.size(), -1e300)};
+    for (int i = 0; i < count; ++i) {
+      const RowMoments prediction = row_moments(model, draw());
+      const Eigen::VectorXd sd = prediction.variance.cwiseSqrt();
+      const Eigen::VectorXd away = (y - prediction.mean).cwiseQuotient(sd);
+      found.nearest = found.nearest.cwiseMin(away.cwiseAbs());
+      found.lowest = found.lowest.cwiseMin(prediction.mean);
+      found.highest = found.highest.cwiseMax(prediction.mean);
+    }
+    return found;
+  };
+  const Eigen::Index d = model.dimension();
+  const Reach prior = reach(400, [&] {
+    Eigen::VectorXd u(d);
+    for (Eigen::Index s = 0; s < d; ++s) u[s] = model.slots[static_cast<std::size_t>(s)].prior.draw(random);
+    return u;
+  });
+  // A value between the lowest and the highest prediction is within reach, however few draws came near it.
+  auto out_of_reach = [&](const Reach& found, Eigen::Index i) {
+    return found.nearest[i] > 5.0 && (y[i] < found.lowest[i] || y[i] > found.highest[i]);
+  };
+  std::vector<Eigen::Index> excluded;
+  for (Eigen::Index i = 0; i < y.size(); ++i)
+    if (out_of_reach(prior, i)) excluded.push_back(i);
+  if (excluded.empty()) return;
+  const Reach range = reach(1000, [&] {
+    // Parameters anywhere in their ranges; a nuisance has no range but its prior's.
+    Eigen::VectorXd u(d);
+    for (Eigen::Index s = 0; s < d; ++s) {
+      const Slot& slot = model.slots[static_cast<std::size_t>(s)];
+      u[s] = slot.nuisance == Acts::none ? random.uniform() : slot.prior.draw(random);
+    }
+    return u;
+  });
+  std::vector<data::Problem> problems;
+  for (const Eigen::Index i : excluded) {
+    if (range.nearest[i] > 3.0 && out_of_reach(range, i))
+      continue;  // out of the model's reach altogether: it does not fit
+    const data::ObservationSet& set = study.observations[from[static_cast<std::size_t>(i)].set];
+    const data::Unit& unit = study.outputs[from[static_cast<std::size_t>(i)].output].unit;
+    std::string names;
+    for (const auto& slot : model.slots) names += (names.empty() ? "" : ", ") + slot.label;
+    problems.push_back({fmt::format("{}:{}", set.file, set.points[from[static_cast<std::size_t>(i)].point].line),
+                        fmt::format("case '{}': the priors of {} only allow {:.4g} to {:.4g} {}, but {:.4g} {} was "
+                                    "measured; the parameters' ranges would allow it",
+                                    model.name, names, unit.from_si(prior.lowest[i]), unit.from_si(prior.highest[i]),
+                                    unit.symbol, unit.from_si(y[i]), unit.symbol),
+                        "widen or move the priors"});
+  }
+  if (!problems.empty()) throw data::InputError(data::ExitStatus::bad_study, problems);
+}
+
+}  // namespace uq

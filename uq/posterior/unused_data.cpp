@@ -1,0 +1,139 @@
+#include "uq/posterior/unused_data.hpp"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "uq/findings/thresholds.hpp"
+#include "uq/posterior/more_data.hpp"
+#include "uq/posterior/posterior.hpp"
+#include "uq/posterior/predictive.hpp"
+
+namespace uq {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index draws_used = 400;
+
+/// The rows' laws, one a draw.
+struct Mixture {
+  MatrixXd mean, sd;  ///< draws x rows, SI
+  VectorXd centre;
+  MatrixXd covariance;
+};
+
+Mixture mixture_of(const CaseModel& model, const MatrixXd& draws, const std::vector<Index>& wanted,
+                   const std::vector<Index>& measured) {
+  const auto rows = static_cast<Index>(wanted.size());
+  Mixture all{MatrixXd(draws.rows(), rows), MatrixXd(draws.rows(), rows), VectorXd::Zero(rows),
+              MatrixXd::Zero(rows, rows)};
+  const VectorXd y = observed(model);
+  for (Index i = 0; i < draws.rows(); ++i) {
+    ReadingLaw law = reading_law(predict(model, draws.row(i).transpose()), y, wanted, measured);
+    law.shared.diagonal() += law.noise;
+    all.mean.row(i) = law.mean.transpose();
+    all.sd.row(i) = law.shared.diagonal().cwiseMax(0.0).cwiseSqrt().transpose();
+    all.covariance += law.shared / static_cast<double>(draws.rows());
+  }
+  all.centre = all.mean.colwise().mean().transpose();
+  const MatrixXd apart = all.mean.rowwise() - all.centre.transpose();
+  all.covariance += apart.transpose() * apart / static_cast<double>(draws.rows());
+  return all;
+}
+
+/// Quantile of a row by bisection of the mixture's distribution function.
+double quantile_of(const Mixture& all, Index row, double probability) {
+  double low = (all.mean.col(row) - 8.0 * all.sd.col(row)).minCoeff();
+  double high = (all.mean.col(row) + 8.0 * all.sd.col(row)).maxCoeff();
+  for (int step = 0; step < 100 && high - low > 1e-12 * (std::abs(low) + std::abs(high)); ++step) {
+    const double middle = 0.5 * (low + high);
+    double below = 0.0;
+    for (Index i = 0; i < all.mean.rows(); ++i) {
+      const double away = middle - all.mean(i, row);
+      below += all.sd(i, row) > 0.0 ? gsl_cdf_ugaussian_P(away / all.sd(i, row)) : (away >= 0.0 ? 1.0 : 0.0);
+    }
+    (below < probability * static_cast<double>(all.mean.rows()) ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+PredictivePoint point_of(const data::Study& study, const RowOrigin& from) {
+  const data::ObservationSet& set = study.observations[from.set];
+  const data::Observation& observation = set.points[from.point];
+  const data::Output& output = study.outputs[from.output];
+  const auto column =
+      static_cast<std::size_t>(std::find(set.outputs.begin(), set.outputs.end(), from.output) - set.outputs.begin());
+  PredictivePoint point{.controls = {},
+                        .output = output.name,
+                        .unit = output.unit.symbol,
+                        .observed = output.unit.from_si(observation.values[column]),
+                        .standard_error = observation.standard_errors[column] / output.unit.factor,
+                        .observation_set = set.name};
+  for (std::size_t c = 0; c < study.controls.size(); ++c)
+    point.controls[study.controls[c].name] = study.controls[c].unit.from_si(observation.controls[c]);
+  return point;
+}
+
+std::string sentence_of(const PredictionReport& report) {
+  const std::size_t n = report.points.size();
+  std::string text = fmt::format(
+      "{}: {} of {} measured values that the case has not used lie inside their 90 % intervals; chi-squared {:.3g} of "
+      "{} "
+      "(p {:.2g}). The calibration {} them.",
+      report.name, report.inside, n, report.chi2, n, report.p, report.predicts ? "predicts" : "does not predict");
+  if (report.predicts || n == 0) return text;
+  const auto farthest =
+      std::max_element(report.z.begin(), report.z.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const PredictivePoint& point = report.points[static_cast<std::size_t>(farthest - report.z.begin())];
+  std::string at;
+  for (const auto& [name, value] : point.controls)
+    at += fmt::format("{}{} {:.4g}", at.empty() ? " at " : ", ", name, value);
+  return text + fmt::format(" Farthest off is {}{}, by {:.2g} standard deviations.", point.output, at, *farthest);
+}
+
+}  // namespace
+
+PredictionReport predict_unused(const data::Study& study, const std::vector<Emulator>& emulators,
+                                const data::Prediction& wanted, const CaseModel& sampled, const MatrixXd& draws) {
+  data::Study wider = study;
+  for (data::ObservationSet& set : wider.observations)
+    if (std::find(wanted.observe.begin(), wanted.observe.end(), set.name) == wanted.observe.end()) condense(set);
+  auto& observe = wider.cases.at(wanted.case_index).observe;
+  observe.insert(observe.end(), wanted.observe.begin(), wanted.observe.end());
+  const CaseModel model = with_more_data(wider, emulators, wanted.case_index, sampled);
+
+  std::set<std::size_t> unused;
+  for (const std::string& name : wanted.observe) unused.insert(*study.observation_index(name));
+  const std::vector<RowOrigin> from = origins(model);
+  std::vector<Index> rows, measured;
+  for (std::size_t row = 0; row < from.size(); ++row)
+    (unused.count(from[row].set) > 0 ? rows : measured).push_back(static_cast<Index>(row));
+
+  const Mixture all = mixture_of(model, thinned(draws, draws_used), rows, measured);
+  const VectorXd away = observed(model)(rows) - all.centre;
+  PredictionReport report{.name = wanted.name, .observed_sets = wanted.observe, .points = {}, .z = {}, .sentence = {}};
+  for (Index i = 0; i < away.size(); ++i) {
+    PredictivePoint point = point_of(wider, from[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])]);
+    const data::Unit& unit =
+        wider.outputs[from[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])].output].unit;
+    point.mean = unit.from_si(all.centre[i]);
+    point.q05 = unit.from_si(quantile_of(all, i, 0.05));
+    point.q95 = unit.from_si(quantile_of(all, i, 0.95));
+    report.inside += point.observed >= point.q05 && point.observed <= point.q95 ? 1 : 0;
+    report.z.push_back(away[i] / std::sqrt(all.covariance(i, i)));
+    report.points.push_back(std::move(point));
+  }
+  report.chi2 = away.dot(all.covariance.ldlt().solve(away));
+  report.p = away.size() > 0 ? gsl_cdf_chisq_Q(report.chi2, static_cast<double>(away.size())) : 1.0;
+  report.predicts = report.p >= VerdictThresholds{}.predictive_p;
+  report.sentence = sentence_of(report);
+  return report;
+}
+
+}  // namespace uq

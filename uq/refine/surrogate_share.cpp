@@ -1,0 +1,45 @@
+#include "uq/refine/surrogate_share.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/posterior/posterior.hpp"
+#include "uq/posterior/predictive.hpp"
+
+namespace uq {
+
+SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws) {
+  constexpr Eigen::Index most = 1000;  // draws: enough for a share to a few per cent
+  SurrogateShare found;
+  for (const Slot& slot : model.slots)
+    if (slot.own) found.shares.push_back(1.0);
+  if (!found.shares.empty()) found.parameter = model.slots.front().label;
+  if (draws.rows() < 2) return found;
+  const Eigen::MatrixXd some = thinned(draws, most);
+  const Eigen::VectorXd log_weight =
+      log_likelihoods(without_surrogate_error(model), some) - log_likelihoods(model, some);
+  if (!std::isfinite(log_weight.maxCoeff())) return found;
+  Eigen::VectorXd weight = (log_weight.array() - log_weight.maxCoeff()).exp();
+  weight = weight.unaryExpr([](double w) { return std::isfinite(w) ? w : 0.0; });
+  weight /= weight.sum();
+  found.effective_draws = 1.0 / weight.squaredNorm();
+  if (found.effective_draws < least_effective) return found;
+  found.share = -1.0;
+  std::size_t own = 0;
+  for (Eigen::Index k = 0; k < some.cols(); ++k) {
+    if (!model.slots[static_cast<std::size_t>(k)].own) continue;
+    const Eigen::ArrayXd u = some.col(k).array();
+    const double with = u.mean(), without = (weight.array() * u).sum();
+    const double variance = std::max((u - with).square().mean(), 1e-300);
+    const double left = (weight.array() * (u - without).square()).sum();
+    const double share = std::clamp(std::max(1.0 - left / variance, std::pow(without - with, 2) / variance), 0.0, 1.0);
+    found.shares[own++] = share;
+    if (share > found.share) {
+      found.share = share;
+      found.parameter = model.slots[static_cast<std::size_t>(k)].label;
+    }
+  }
+  return found;
+}
+
+}  // namespace uq

@@ -1,0 +1,29 @@
+#pragma once
+// How much of a posterior's width is the surrogate's: what would be left if the surrogate's mean were the truth.
+//
+// The draws u_j of the posterior are weighted by the ratio of the likelihoods without and with the surrogate's error,
+//   w_j = N(y; m(u_j), E) / N(y; m(u_j), E + S(u_j)),
+// and give each parameter's mean a and variance v without that error beside mean b and variance V with it:
+//   share = max(1 - v / V, (a - b)^2 / V, 0), at most 1.
+// The second part sees a posterior that would move without becoming narrower. Where few draws carry the weight
+// (effective number 1 / sum w^2 below `least_effective`), the surrogate's error rules, and the share counts as 1.
+#include <string>
+#include <vector>
+
+#include "uq/refine/acquire.hpp"
+
+namespace uq {
+
+struct SurrogateShare {
+  double share = 1.0;          ///< of the posterior variance, of the worst parameter
+  std::string parameter;       ///< that it is of
+  std::vector<double> shares;  ///< of each of the case's own parameters
+  double effective_draws = 0.0;
+};
+
+inline constexpr double least_effective = 20.0;  ///< draws
+
+/// `draws`: rows in u, of the model's posterior.
+SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws);
+
+}  // namespace uq

@@ -1,0 +1,308 @@
+#include "uq/report/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "uq/findings/thresholds.hpp"
+#include "uq/report/plot.hpp"
+
+namespace uq {
+namespace {
+
+using plot::Axis;
+using plot::Extent;
+
+bool belongs(const PredictivePoint& point, const PredictiveCurve& curve) {
+  if (point.output != curve.output) return false;
+  if (point.observation_set.empty() || curve.observation_set.empty()) return point.controls.contains(curve.control);
+  return point.observation_set == curve.observation_set && point.controls.contains(curve.control);
+}
+
+/// The control that takes the most values in these points; empty when they have none.
+std::string varying_control(const std::vector<const PredictivePoint*>& points) {
+  std::map<std::string, std::set<double>> values;
+  for (const PredictivePoint* point : points) {
+    for (const auto& [name, value] : point->controls) values[name].insert(value);
+  }
+  const auto most = std::max_element(values.begin(), values.end(),
+                                     [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  return most == values.end() ? std::string() : most->first;
+}
+
+/// The observed points of a curve's set and output.
+struct Observed {
+  std::vector<double> x, value, error;
+};
+
+Observed observed_beside(const CaseReport& result, const PredictiveCurve& curve) {
+  Observed observed;
+  for (const PredictivePoint& point : result.predictive) {
+    if (!belongs(point, curve)) continue;
+    observed.x.push_back(point.controls.at(curve.control));
+    observed.value.push_back(point.observed);
+    observed.error.push_back(std::isfinite(point.standard_error) ? point.standard_error : 0.0);
+  }
+  return observed;
+}
+
+/// Axes, labels and ranges around observed points and some curves against the same control.
+std::string frame(const Observed& observed, const std::vector<const PredictiveCurve*>& curves) {
+  Extent across, up;
+  for (std::size_t i = 0; i < observed.x.size(); ++i) {
+    across.include(observed.x[i]);
+    up.include(observed.value[i] - observed.error[i]);
+    up.include(observed.value[i] + observed.error[i]);
+  }
+  for (const PredictiveCurve* curve : curves) {
+    for (const double value : curve->x) across.include(value);
+    for (const auto* column : {&curve->mean, &curve->q05, &curve->q95})
+      for (const double value : *column) up.include(value);
+  }
+  const PredictiveCurve& one = *curves.front();
+  const Axis horizontal = plot::axis_for(one.control, one.control_unit, across.largest());
+  const Axis vertical = plot::axis_for(one.output, one.unit, up.largest());
+  const Extent x_range = across.padded(0.04);
+  const Extent y_range = up.padded(0.12);
+  return plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
+         fmt::format("sx = {:.0e}\nsy = {:.0e}\n", horizontal.scale, vertical.scale) +
+         fmt::format("set xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}*sy:{:.10g}*sy]\n", x_range.low,
+                     x_range.high, y_range.low, y_range.high);
+}
+
+std::string observed_marks() {
+  return fmt::format(
+      "'' index 'observed' using ($1*sx):($2*sy):($3*sy) with yerrorbars linecolor rgb '{}' linewidth 1.3 pointtype 7 "
+      "pointsize 0.6 title 'observed, ±1 standard error'",
+      plot::vermillion);
+}
+
+}  // namespace
+
+std::vector<PredictiveCurve> curves_to_draw(const CaseReport& result) {
+  std::vector<PredictiveCurve> curves;
+  for (const PredictiveCurve& curve : result.curves) {
+    if (!curve.x.empty()) curves.push_back(curve);
+  }
+  if (!curves.empty()) return curves;
+  std::map<std::pair<std::string, std::string>, std::vector<const PredictivePoint*>> groups;
+  for (const PredictivePoint& point : result.predictive) {
+    groups[{point.output, point.observation_set}].push_back(&point);
+  }
+  for (auto& [key, points] : groups) {
+    PredictiveCurve curve{.output = key.first,
+                          .unit = points.front()->unit,
+                          .control = varying_control(points),
+                          .control_unit = {},
+                          .observation_set = key.second,
+                          .x = {},
+                          .mean = {},
+                          .q05 = {},
+                          .q95 = {}};
+    if (curve.control.empty()) continue;
+    std::erase_if(points, [&](const PredictivePoint* point) { return !point->controls.contains(curve.control); });
+    std::stable_sort(points.begin(), points.end(), [&](const PredictivePoint* a, const PredictivePoint* b) {
+      return a->controls.at(curve.control) < b->controls.at(curve.control);
+    });
+    for (const PredictivePoint* point : points) {
+      curve.x.push_back(point->controls.at(curve.control));
+      curve.mean.push_back(point->mean);
+      curve.q05.push_back(point->q05);
+      curve.q95.push_back(point->q95);
+    }
+    curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+Figure predictive_figure(const CaseReport& result, const PredictiveCurve& curve, const std::string& stem) {
+  const Observed observed = observed_beside(result, curve);
+  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}};
+  figure.data = plot::block("band", {curve.x, curve.mean, curve.q05, curve.q95}) +
+                plot::block("observed", {observed.x, observed.value, observed.error});
+  figure.script = frame(observed, {&curve}) +
+                  fmt::format(
+                      "plot '{0}.dat' index 'band' using ($1*sx):($3*sy):($4*sy) with filledcurves "
+                      "linecolor rgb '{1}' title 'model, 90 %', \\\n"
+                      "  '' index 'band' using ($1*sx):($2*sy) with lines linecolor rgb '{2}' linewidth 2 "
+                      "title 'model, mean', \\\n  ",
+                      stem, plot::pale, plot::blue) +
+                  observed_marks();
+  figure.alt = fmt::format("{} against {} in case {}: observed points with their errors and the model's 90 % band",
+                           curve.output, curve.control, result.name);
+  return figure;
+}
+
+Figure equivalent_figure(const CaseReport& result, const TradedPair& traded, const PredictiveCurve& like,
+                         const std::string& stem) {
+  static constexpr const char* colours[] = {plot::blue, plot::green, plot::ink, plot::sky, plot::grey};
+  const Observed observed = observed_beside(result, like);
+  std::vector<const PredictiveCurve*> curves;
+  for (const PredictiveCurve& curve : traded.curves)
+    if (curve.observation_set == like.observation_set && curve.output == like.output) curves.push_back(&curve);
+  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}};
+  figure.data = plot::block("observed", {observed.x, observed.value, observed.error});
+  figure.script = frame(observed, curves) + "plot ";
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    figure.data += plot::block(fmt::format("point{}", i + 1), {curves[i]->x, curves[i]->mean});
+    figure.script += fmt::format(
+        "'{}.dat' index 'point{}' using ($1*sx):($2*sy) with lines linecolor rgb '{}' linewidth 1.8 dashtype {} title "
+        "'point {}', \\\n  ",
+        stem, i + 1, colours[i % std::size(colours)], i + 1, i + 1);
+  }
+  figure.script += observed_marks();
+  figure.alt = fmt::format("{} against {} in case {} at {} equivalent points, with the observed points", like.output,
+                           like.control, result.name, curves.size());
+  return figure;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> pairs_to_draw(const CaseReport& result, std::size_t limit) {
+  const auto index_of = [&](const std::string& name) {
+    const auto found = std::find_if(result.parameters.begin(), result.parameters.end(),
+                                    [&](const ParameterReport& parameter) { return parameter.name == name; });
+    return static_cast<std::size_t>(found - result.parameters.begin());
+  };
+  const std::size_t n = result.parameters.size();
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (const TradedPair& traded : result.traded) {
+    const std::size_t a = index_of(traded.first), b = index_of(traded.second);
+    if (a >= n || b >= n || a == b) continue;
+    const std::pair<std::size_t, std::size_t> pair = std::minmax(a, b);
+    if (std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) pairs.push_back(pair);
+  }
+  std::vector<std::pair<double, std::pair<std::size_t, std::size_t>>> rest;
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = a + 1; b < n; ++b) {
+      if (std::find(pairs.begin(), pairs.end(), std::pair{a, b}) != pairs.end()) continue;
+      const bool known = a < result.correlation.size() && b < result.correlation[a].size();
+      const double correlation = known ? std::abs(result.correlation[a][b]) : 0.0;
+      rest.push_back({std::isfinite(correlation) ? correlation : 0.0, {a, b}});
+    }
+  }
+  std::stable_sort(rest.begin(), rest.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (const auto& [correlation, pair] : rest) pairs.push_back(pair);
+  if (pairs.size() > limit) pairs.resize(limit);
+  return pairs;
+}
+
+Figure profile_figure(const ParameterReport& parameter, const std::string& stem) {
+  Extent across, up;
+  for (const double x : parameter.profile_x) across.include(x);
+  for (const double deviance : parameter.profile_deviance) up.include(deviance);
+  const Axis horizontal = plot::axis_for(parameter.name, parameter.unit, across.largest());
+  const double top = std::clamp(up.empty ? 0.0 : up.high, 6.0, 12.0);
+  // Each part of the interval, up to where the curve crosses the line.
+  std::vector<std::pair<double, double>> shaded;
+  for (const ValueRange& part : parameter.intervals) shaded.emplace_back(part.low, part.high);
+  if (shaded.empty())
+    shaded.emplace_back(parameter.profile_low.value_or(across.low), parameter.profile_high.value_or(across.high));
+
+  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 310};
+  figure.data = plot::block("profile", {parameter.profile_x, parameter.profile_deviance});
+  const Extent range = across.padded(0.02);
+  figure.script = plot::look() + plot::label('x', horizontal) +
+                  fmt::format("set ylabel '−2 Δ ln L' textcolor rgb '{}'\n", plot::ink) +
+                  fmt::format("sx = {:.0e}\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [0:{:.10g}]\n",
+                              horizontal.scale, range.low, range.high, top);
+  for (std::size_t i = 0; i < shaded.size(); ++i)
+    figure.script += fmt::format(
+        "set object {} rectangle from first {:.10g}*sx, graph 0 to first {:.10g}*sx, graph 1 behind "
+        "fillcolor rgb '{}' fillstyle solid noborder\n",
+        i + 1, shaded[i].first, shaded[i].second, "#EAF4FB");
+  figure.script += fmt::format(
+      "plot {0:.3g} with lines linecolor rgb '{1}' linewidth 1.2 dashtype 2 "
+      "title '95 % ({0:.3g})', \\\n"
+      "  '{2}.dat' index 'profile' using ($1*sx):2 with lines linecolor rgb '{3}' linewidth 2 "
+      "title 'profile'",
+      deviance_95, plot::vermillion, stem, plot::blue);
+  if (std::isfinite(parameter.map)) {
+    figure.data += plot::block("map", {{parameter.map}, {0.0}});
+    figure.script += fmt::format(
+        ", \\\n  '' index 'map' using ($1*sx):2 with points pointtype 9 pointsize 0.9 linecolor rgb '{}' "
+        "title 'mode'",
+        plot::ink);
+  }
+  figure.alt = fmt::format("profile likelihood of {}", parameter.name);
+  return figure;
+}
+
+Figure leave_one_out_figure(const SurrogateReport& surrogate, const std::string& stem) {
+  const std::size_t n = std::min(surrogate.observed.size(), surrogate.predicted.size());
+  std::vector<double> x, y, x_error, y_error;
+  Extent both;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double residual = surrogate.observed[i] - surrogate.predicted[i];
+    const double z = i < surrogate.standardised.size() ? surrogate.standardised[i] : 0.0;
+    // The leave-one-out standard deviation is the residual over its standardised value.
+    const double sd = std::abs(z) > 1e-6 ? std::abs(residual / z) : 0.0;
+    const double se = i < surrogate.observed_se.size() ? surrogate.observed_se[i] : 0.0;
+    x.push_back(surrogate.observed[i]);
+    y.push_back(surrogate.predicted[i]);
+    x_error.push_back(std::isfinite(se) ? se : 0.0);
+    y_error.push_back(std::isfinite(sd) ? sd : 0.0);
+    for (const double value :
+         {x.back() - x_error.back(), x.back() + x_error.back(), y.back() - y_error.back(), y.back() + y_error.back()}) {
+      both.include(value);
+    }
+  }
+  const Extent range = both.padded(0.04);
+  const Axis horizontal = plot::axis_for("simulated " + surrogate.output, surrogate.unit, both.largest());
+  const Axis vertical = plot::axis_for("predicted without that run", surrogate.unit, both.largest());
+
+  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 410};
+  figure.data = plot::block("runs", {x, y, x_error, y_error});
+  figure.script =
+      plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
+      fmt::format("s = {:.0e}\nset size ratio 1\nset xrange [{:.10g}*s:{:.10g}*s]\n", horizontal.scale, range.low,
+                  range.high) +
+      fmt::format("set yrange [{:.10g}*s:{:.10g}*s]\n", range.low, range.high) +
+      fmt::format(
+          "plot x with lines linecolor rgb '{0}' dashtype 2 title 'identity', \\\n"
+          "  '{1}.dat' index 'runs' using ($1*s):($2*s):($3*s):($4*s) with xyerrorbars linecolor rgb "
+          "'{3}' linewidth 0.9 pointtype 7 pointsize 0.05 title 'runs, ±1 sd', \\\n"
+          "  '' index 'runs' using ($1*s):($2*s) with points linecolor rgb '{2}' pointtype 7 pointsize 0.35 "
+          "notitle",
+          plot::grey, stem, plot::blue, plot::sky);
+  figure.alt = fmt::format("leave-one-out predictions of {} against the {} runs", surrogate.output, n);
+  return figure;
+}
+
+Figure standardised_figure(const SurrogateReport& surrogate, const std::string& stem) {
+  std::vector<double> x, inside, x_beyond, beyond;
+  Extent across, up;
+  up.include(-3.0);
+  up.include(3.0);
+  for (std::size_t i = 0; i < std::min(surrogate.predicted.size(), surrogate.standardised.size()); ++i) {
+    const double z = surrogate.standardised[i];
+    across.include(surrogate.predicted[i]);
+    up.include(z);
+    (std::abs(z) > 2.0 ? x_beyond : x).push_back(surrogate.predicted[i]);
+    (std::abs(z) > 2.0 ? beyond : inside).push_back(z);
+  }
+  const Axis horizontal = plot::axis_for("predicted " + surrogate.output, surrogate.unit, across.largest());
+  const Extent range = across.padded(0.05);
+  const Extent y_range = up.padded(0.05);
+
+  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 410};
+  figure.data = plot::block("inside", {x, inside}) + plot::block("beyond", {x_beyond, beyond});
+  figure.script = plot::look() + plot::label('x', horizontal) +
+                  fmt::format("set ylabel 'standardised leave-one-out error' textcolor rgb '{}'\n", plot::ink) +
+                  fmt::format("sx = {:.0e}\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}:{:.10g}]\n",
+                              horizontal.scale, range.low, range.high, y_range.low, y_range.high) +
+                  fmt::format(
+                      "plot 2 with lines dashtype 2 linecolor rgb '{3}' notitle, \\\n"
+                      "  -2 with lines dashtype 2 linecolor rgb '{3}' notitle, \\\n"
+                      "  '{0}.dat' index 'inside' using ($1*sx):2 with points pointtype 7 pointsize 0.5 "
+                      "linecolor rgb '{1}' title 'within ±2', \\\n"
+                      "  '' index 'beyond' using ($1*sx):2 with points pointtype 9 pointsize 0.9 linecolor rgb "
+                      "'{2}' title 'beyond ±2'",
+                      stem, plot::blue, plot::vermillion, plot::grey);
+  figure.alt = fmt::format("standardised leave-one-out errors of {}", surrogate.output);
+  return figure;
+}
+
+}  // namespace uq

@@ -1,0 +1,229 @@
+#include "uq/verdict/identifiability.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/infer/diagnostics.hpp"
+#include "uq/posterior/posterior.hpp"
+#include "uq/verdict/structure.hpp"
+#include "uq/verdict/traded.hpp"
+
+namespace uq {
+namespace {
+
+/// Values of unknown k in the study's unit.
+Eigen::VectorXd shown(const Slot& slot, const Eigen::VectorXd& u) {
+  const data::Parameter& parameter = slot.prior.parameter();
+  Eigen::VectorXd values(u.size());
+  for (Eigen::Index i = 0; i < u.size(); ++i) values[i] = parameter.unit.from_si(parameter.axis().from_unit(u[i]));
+  return values;
+}
+
+double shown(const Slot& slot, double u) {
+  const data::Parameter& parameter = slot.prior.parameter();
+  return parameter.unit.from_si(parameter.axis().from_unit(u));
+}
+
+/// The parts of the interval, with the draws nearest to each.
+std::vector<ValueRange> ranges_of(const Slot& slot, const Eigen::VectorXd& u, const Profile& profile) {
+  std::vector<std::vector<double>> members(profile.parts.size());
+  if (!members.empty())
+    for (const double draw : u) members[part_of(profile, draw)].push_back(shown(slot, draw));
+  std::vector<ValueRange> ranges;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const ProfilePart& part = profile.parts[i];
+    ValueRange range{.low = shown(slot, part.low), .high = shown(slot, part.high)};
+    range.low_open = i == 0 && !profile.low;
+    range.high_open = i + 1 == members.size() && !profile.high;
+    range.weight = static_cast<double>(members[i].size()) / static_cast<double>(u.size());
+    range.mean = shown(slot, profile.u[part.best]);
+    if (members[i].size() > 1) {
+      // A copy is aligned; sums over a map would depend on where its memory happens to lie.
+      const Eigen::ArrayXd values =
+          Eigen::Map<const Eigen::ArrayXd>(members[i].data(), static_cast<Eigen::Index>(members[i].size()));
+      range.mean = values.mean();
+      range.sd = std::sqrt((values - range.mean).square().mean());
+    }
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+ParameterReport describe_draws(const Slot& slot, const Eigen::VectorXd& u, const Profile& profile) {
+  const data::Parameter& parameter = slot.prior.parameter();
+  ParameterReport report;
+  report.name = slot.label;
+  report.unit = parameter.unit.symbol;
+  report.prior_low = shown(slot, slot.prior.low());
+  report.prior_high = shown(slot, slot.prior.high());
+  report.prior_mean = parameter.unit.from_si(slot.prior.value_mean());
+  report.prior_sd = slot.prior.value_sd() / parameter.unit.factor;
+  const Eigen::VectorXd values = shown(slot, u);
+  report.mean = values.mean();
+  report.sd = std::sqrt((values.array() - report.mean).square().sum() / static_cast<double>(values.size() - 1));
+  report.q05 = quantile(values, 0.05);
+  report.q50 = quantile(values, 0.50);
+  report.q95 = quantile(values, 0.95);
+  report.contraction = 1.0 - std::pow(report.sd / report.prior_sd, 2);
+  if (profile.low) report.profile_low = shown(slot, *profile.low);
+  if (profile.high) report.profile_high = shown(slot, *profile.high);
+  report.low_is_bound = !profile.low;
+  report.high_is_bound = !profile.high;
+  report.intervals = ranges_of(slot, u, profile);
+  for (const ProfileBarrier& barrier : profile.barriers)
+    report.holes.push_back({.low = shown(slot, barrier.low),
+                            .high = shown(slot, barrier.high),
+                            .deviance = barrier.deviance,
+                            .in_doubt = barrier.in_doubt});
+  const Eigen::VectorXd x = shown(slot, profile.u);
+  report.profile_x.assign(x.begin(), x.end());
+  report.profile_deviance.assign(profile.deviance.begin(), profile.deviance.end());
+  return report;
+}
+
+/// What decides the word, but for influence.
+WordFacts facts_of(const ParameterReport& report, const Profile& profile, const Slot& slot) {
+  double within = 0.0;
+  for (const ValueRange& part : report.intervals) within += part.weight * part.sd * part.sd;
+  return {.influences = true,
+          .parts = std::max(1, static_cast<int>(profile.parts.size())),
+          .open_low = !profile.low,
+          .open_high = !profile.high,
+          .physical_low = physical_low(slot) && !profile.low_pinned,
+          .contraction = report.contraction,
+          .contraction_within =
+              profile.parts.size() > 1 ? 1.0 - within / (report.prior_sd * report.prior_sd) : report.contraction};
+}
+
+/// Of the posterior.
+Eigen::VectorXd mode_of(const CaseModel& model, const Eigen::MatrixXd& guiding, const Eigen::VectorXd& level,
+                        const Eigen::VectorXd& best) {
+  Eigen::Index top = 0;
+  level.maxCoeff(&top);
+  Eigen::MatrixXd starts(2, model.dimension());
+  starts << guiding.row(top), best.transpose();
+  const Target target = posterior_target(std::make_shared<const CaseModel>(model));
+  return maximise(target.log_density_gradient, {target.lower, target.upper}, starts).x;
+}
+
+/// Why each open or wide interval is as it is; what is traded with a structural one is so, too.
+void add_structure(const CaseModel& model, const Profiles& all, std::vector<ParameterEvidence>& evidence,
+                   const std::vector<TradedPair>& traded, const VerdictThresholds& thresholds) {
+  for (std::size_t k = 0; k < evidence.size(); ++k) {
+    ParameterEvidence& one = evidence[k];
+    one.surrogate_share = surrogate_variance_share(model, all.profiles[k], all.best.x);
+    const Verdict word = word_of(one.facts, thresholds);
+    if (!one.facts.influences || word == Verdict::identified || word == Verdict::several_values) continue;
+    const Structure structure = find_structure(model, all, all.profiles[k], thresholds);
+    one.structural = structure.structural;
+    one.undecided = structure.undecided;
+  }
+  for (const TradedPair& set : traded) {
+    const auto member = [&](const ParameterEvidence& one) {
+      return std::find(set.parameters.begin(), set.parameters.end(), one.name) != set.parameters.end();
+    };
+    const bool some = std::any_of(evidence.begin(), evidence.end(),
+                                  [&](const ParameterEvidence& one) { return member(one) && one.structural; });
+    for (ParameterEvidence& one : evidence)
+      if (some && member(one) && one.undecided) one.structural = true;
+  }
+}
+
+}  // namespace
+
+Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, const IdentifyOptions& options) {
+  const CaseModel& model = distinct_rows(full);
+  const VerdictThresholds& thresholds = options.thresholds;
+  Identification found;
+  const Eigen::MatrixXd guiding = thinned(draws, 1500);
+  const Eigen::VectorXd likelihood = log_likelihoods(model, guiding);
+  const Profiles all = profile_likelihood(
+      model, {.draws = guiding, .log_likelihood = likelihood},
+      {.even_points = options.even_points, .near_points = options.near_points, .thresholds = thresholds});
+  found.profiles = all.profiles;
+  found.influence = all.influence;
+  found.best_fit = all.best;
+  found.fisher = fisher_spectrum(model, all.best.x);
+  found.check = check_fit(model, draws, all.best.x);
+  found.surrogate_share = median_surrogate_share(model, all.best.x);
+  const FitEvidence fit{.predictive_p = found.check.predictive_p, .best_fit_p = found.check.best_fit_p};
+  found.fits = fit.fits(thresholds);
+
+  // The mode of the posterior.
+  Eigen::VectorXd level = likelihood;
+  for (Eigen::Index i = 0; i < guiding.rows(); ++i) level[i] += log_prior(model, guiding.row(i).transpose());
+  const Eigen::VectorXd mode = mode_of(model, guiding, level, all.best.x);
+
+  std::vector<ParameterEvidence> evidence;
+  std::vector<FoundFacts> facts;
+  std::vector<Verdict> words;
+  for (std::size_t k = 0; k < all.profiles.size(); ++k) {
+    const Profile& profile = all.profiles[k];
+    const Slot& slot = model.slots[k];
+    ParameterReport report = describe_draws(slot, draws.col(static_cast<Eigen::Index>(k)), profile);
+    report.map = shown(slot, mode[static_cast<Eigen::Index>(k)]);
+    if (profile.low_pinned) report.low_pinned_by = model.slots[static_cast<std::size_t>(*profile.low_pinned)].label;
+    if (profile.high_pinned) report.high_pinned_by = model.slots[static_cast<std::size_t>(*profile.high_pinned)].label;
+    ParameterEvidence one{.name = report.name,
+                          .unit = report.unit,
+                          .mean = report.mean,
+                          .sd = report.sd,
+                          .q95 = report.q95,
+                          .facts = facts_of(report, profile, slot),
+                          .parts = report.intervals,
+                          .range_low = report.prior_low,
+                          .range_high = report.prior_high,
+                          .low_pinned_by = report.low_pinned_by,
+                          .high_pinned_by = report.high_pinned_by};
+    if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
+    one.facts.influences = all.influence[k].some;
+    one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);
+    words.push_back(word_of(one.facts, thresholds));
+    facts.push_back({one.facts, &found.profiles[k]});
+    found.facts.push_back(one.facts);
+    evidence.push_back(std::move(one));
+    found.parameters.push_back(std::move(report));
+  }
+  std::vector<std::vector<WordProbability>> repeats(evidence.size());
+  if (found.fits) {
+    found.traded = find_traded_pairs(model, draws, all, words, thresholds);
+    add_structure(model, all, evidence, found.traded, thresholds);
+    repeats = repeat_words(model, facts, draws, all.best.x, thresholds, options.repeats);
+    found.modes = find_modes(all, draws, thresholds);
+    found.unvisited = unvisited(model, all, draws);
+  }
+  for (std::size_t k = 0; k < evidence.size(); ++k) {
+    const ParameterVerdict verdict = judge(evidence[k], fit, repeats[k], thresholds);
+    ParameterReport& report = found.parameters[k];
+    report.verdict = verdict.verdict;
+    report.reason = verdict.reason;
+    report.borderline = verdict.borderline;
+    report.sentence = verdict.sentence;
+    report.word_probabilities = repeats[k];
+    report.share_measurement = verdict.shares.measurement;
+    report.share_surrogate = verdict.shares.surrogate;
+    report.share_structure = verdict.shares.structure;
+    report.share_range = verdict.shares.range;
+  }
+  return found;
+}
+
+Words summarise(const Identification& found, const std::string& parted_by) {
+  if (!found.fits)
+    return {.finding = fmt::format("No values of the parameters reproduce the data: chi2 {:.1f} for {} degrees of "
+                                   "freedom, posterior predictive p {:.2g}.",
+                                   found.check.chi2, found.check.dof, found.check.predictive_p),
+            .consequence = "The parameters' values and errors mean nothing here; none is called identified.",
+            .remedy =
+                "Check the data's errors and units and the rig's settings (fill, geometry, speed); then free what "
+                "was fixed, or widen the ranges."};
+  return words_of({.parameters = found.parameters,
+                   .traded = found.traded,
+                   .parted_by = parted_by,
+                   .surrogate_share = found.surrogate_share,
+                   .collinearity = found.fisher.collinearity});
+}
+
+}  // namespace uq

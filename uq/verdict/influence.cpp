@@ -1,0 +1,147 @@
+#include "uq/verdict/influence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "uq/posterior/posterior.hpp"
+
+namespace uq {
+namespace {
+
+constexpr Eigen::Index rows_looked_at = 24;  // of a group
+constexpr Eigen::Index points_beside_best = 4;
+/// Shares of a range, uneven, so that a periodic response is not met at one phase alone.
+constexpr std::array<double, 7> shares = {0.0, 0.13, 0.31, 0.5, 0.69, 0.87, 1.0};
+
+/// The emulator's inputs of the rows looked at.
+Eigen::MatrixXd inputs_at(const RowGroup& group, const Yardstick::Group& looked, const Eigen::VectorXd& u) {
+  Eigen::MatrixXd points(static_cast<Eigen::Index>(looked.rows.size()), group.base.cols());
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    for (Eigen::Index k = 0; k < points.cols(); ++k) {
+      const Eigen::Index row = looked.rows[static_cast<std::size_t>(i)];
+      const int s = group.slot(row, k);
+      points(i, k) = s < 0 ? group.base(row, k) : u[s];
+    }
+  return points;
+}
+
+bool acts_on_emulators(const CaseModel& model, int unknown) {
+  return std::any_of(model.groups.begin(), model.groups.end(),
+                     [&](const RowGroup& group) { return (group.slot.array() == unknown).any(); });
+}
+
+}  // namespace
+
+Yardstick make_yardstick(const CaseModel& model, const Eigen::VectorXd& best) {
+  Yardstick yardstick;
+  for (const RowGroup& group : model.groups) {
+    Yardstick::Group looked;
+    const Eigen::Index rows = group.base.rows(), count = std::min(rows, rows_looked_at);
+    for (Eigen::Index i = 0; i < count; ++i) looked.rows.push_back(i * rows / count);
+    looked.stands_for = count > 0 ? static_cast<double>(rows) / static_cast<double>(count) : 1.0;
+    looked.weight.resize(count);
+    if (count == 0) {
+      yardstick.groups.push_back(std::move(looked));
+      continue;
+    }
+    const GroupLaw law = group_law(model, group, best);
+    const surrogate::Prediction known = group.emulator.predict(inputs_at(group, looked, best));
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::Index row = looked.rows[static_cast<std::size_t>(i)];
+      const double factor = meter_at(group.measurement, model.slots, best, row).factor;
+      const double variance = law.noise[row] + factor * factor * std::max(known.covariance(i, i), 0.0);
+      looked.weight[i] = variance > 0.0 ? factor / std::sqrt(variance) : 0.0;
+    }
+    yardstick.groups.push_back(std::move(looked));
+  }
+  return yardstick;
+}
+
+Difference difference(const CaseModel& model, const Yardstick& yardstick, const Eigen::VectorXd& u,
+                      const Eigen::VectorXd& v) {
+  double size = 0.0, doubt = 0.0;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    const Yardstick::Group& looked = yardstick.groups[g];
+    const auto n = static_cast<Eigen::Index>(looked.rows.size());
+    if (n == 0) continue;
+    Eigen::MatrixXd points(2 * n, model.groups[g].base.cols());
+    points << inputs_at(model.groups[g], looked, u), inputs_at(model.groups[g], looked, v);
+    const surrogate::Prediction found = model.groups[g].emulator.predict(points);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double w = looked.weight[i] * looked.weight[i] * looked.stands_for;
+      const double d = found.mean[i] - found.mean[n + i];
+      size += w * d * d;
+      doubt +=
+          w * std::max(found.covariance(i, i) + found.covariance(n + i, n + i) - 2.0 * found.covariance(i, n + i), 0.0);
+    }
+  }
+  return {.size = std::sqrt(size), .doubt = std::sqrt(doubt)};
+}
+
+std::vector<Influence> find_influence(const CaseModel& model, const Eigen::VectorXd& best, const Eigen::MatrixXd& draws,
+                                      const VerdictThresholds& thresholds) {
+  const Yardstick yardstick = make_yardstick(model, best);
+  const Eigen::VectorXd lower = model.lower(), upper = model.upper();
+  const auto levels = static_cast<Eigen::Index>(shares.size());
+  std::vector<Eigen::VectorXd> bases = {best};
+  const Eigen::Index count = std::min(points_beside_best, draws.rows());
+  for (Eigen::Index i = 0; i < count; ++i)
+    bases.emplace_back(draws.row((2 * i + 1) * draws.rows() / (2 * count)).transpose());
+
+  std::vector<Influence> found(static_cast<std::size_t>(model.dimension()));
+  for (int k = 0; k < model.dimension(); ++k) {
+    Influence& influence = found[static_cast<std::size_t>(k)];
+    if (!acts_on_emulators(model, k)) {
+      // A nuisance of the meter acts without the surrogate; a parameter that no emulator sees does nothing.
+      influence.some = influence.shown = model.slots[static_cast<std::size_t>(k)].nuisance != Acts::none;
+      continue;
+    }
+    double effect = 0.0, doubt = 0.0, ends_effect = 0.0, ends_doubt = 0.0;
+    for (const Eigen::VectorXd& base : bases) {
+      std::array<double, shares.size()> moved = {};
+      for (std::size_t g = 0; g < model.groups.size(); ++g) {
+        const RowGroup& group = model.groups[g];
+        const Yardstick::Group& looked = yardstick.groups[g];
+        const auto n = static_cast<Eigen::Index>(looked.rows.size());
+        if (n == 0 || !(group.slot.array() == k).any()) continue;
+        // All levels of the unknown, one below the other: about their own mean, so that what they share drops out.
+        Eigen::MatrixXd points(levels * n, group.base.cols());
+        for (Eigen::Index t = 0; t < levels; ++t) {
+          Eigen::VectorXd u = base;
+          u[k] = lower[k] + shares[static_cast<std::size_t>(t)] * (upper[k] - lower[k]);
+          points.middleRows(t * n, n) = inputs_at(group, looked, u);
+        }
+        const surrogate::Prediction at = group.emulator.predict(points);
+        for (Eigen::Index i = 0; i < n; ++i) {
+          const double w = looked.weight[i] * looked.weight[i] * looked.stands_for;
+          double mean = 0.0, own = 0.0, shared = 0.0;
+          for (Eigen::Index t = 0; t < levels; ++t) {
+            mean += at.mean[t * n + i] / static_cast<double>(levels);
+            own += at.covariance(t * n + i, t * n + i);
+            for (Eigen::Index s = 0; s < levels; ++s) shared += at.covariance(t * n + i, s * n + i);
+          }
+          doubt += w * std::max(own - shared / static_cast<double>(levels), 0.0);
+          const Eigen::Index last = (levels - 1) * n + i;
+          ends_effect += w * std::pow(at.mean[last] - at.mean[i], 2);
+          ends_doubt +=
+              w * std::max(at.covariance(i, i) + at.covariance(last, last) - 2.0 * at.covariance(i, last), 0.0);
+          for (Eigen::Index t = 0; t < levels; ++t) {
+            const double d = at.mean[t * n + i] - mean;
+            effect += w * d * d;
+            moved[static_cast<std::size_t>(t)] += w * std::pow(at.mean[t * n + i] - at.mean[i], 2);
+          }
+        }
+      }
+      influence.deviance = std::max(influence.deviance, *std::max_element(moved.begin(), moved.end()));
+    }
+    influence.doubt = doubt / static_cast<double>(bases.size() * shares.size());
+    // Runs at a few levels may leave all between these in doubt, and yet tell the ends of the range apart.
+    const double least = thresholds.told_apart_sd * thresholds.told_apart_sd;
+    influence.shown = effect > least * doubt || ends_effect > least * ends_doubt;
+    influence.some = influence.shown && influence.deviance >= thresholds.silent_deviance;
+  }
+  return found;
+}
+
+}  // namespace uq

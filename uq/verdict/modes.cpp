@@ -1,0 +1,190 @@
+#include "uq/verdict/modes.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "uq/findings/wording.hpp"
+#include "uq/posterior/posterior.hpp"
+#include "uq/verdict/verdict.hpp"
+
+namespace uq {
+namespace {
+
+using Cell = std::vector<std::size_t>;
+
+Cell cell_of(const Profiles& all, const Eigen::VectorXd& u) {
+  Cell cell;
+  for (const Profile& profile : all.profiles)
+    if (profile.parts.size() > 1) cell.push_back(part_of(profile, u[profile.unknown]));
+  return cell;
+}
+
+/// Log of the posterior mass about a point, by the curvature of the likelihood and the prior's width.
+double log_mass(const CaseModel& model, const Eigen::VectorXd& u) {
+  Eigen::MatrixXd slopes = sensitivity(model, u);
+  const Eigen::LLT<Eigen::MatrixXd> noise(predict(model, u).total());
+  if (noise.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
+  noise.matrixL().solveInPlace(slopes);
+  Eigen::MatrixXd precision = slopes.transpose() * slopes;
+  for (Eigen::Index k = 0; k < u.size(); ++k)
+    precision(k, k) += 1.0 / std::pow(model.slots[static_cast<std::size_t>(k)].prior.sd(), 2);
+  const Eigen::LLT<Eigen::MatrixXd> factor(precision);
+  if (factor.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
+  return log_likelihood(model, u) + log_prior(model, u) - factor.matrixLLT().diagonal().array().log().sum();
+}
+
+/// One output's emulator with the row whose other controls stay.
+struct Place {
+  std::size_t group = 0;
+  Eigen::Index row = 0;
+  std::size_t input = 0;  ///< a control
+};
+
+struct Parting {
+  double errors = 0.0;  ///< difference in standard errors, beyond the surrogate's
+  double first = 0.0, second = 0.0, setting = 0.0;
+  Place place;
+};
+
+Parting most_parting(const CaseModel& model, const Mode& a, const Mode& b) {
+  constexpr int settings = 11;
+  constexpr Eigen::Index rows = 4;
+  Parting best;
+  for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    const RowGroup& group = model.groups[g];
+    const Eigen::Index n = group.base.rows();
+    if (n == 0) continue;
+    const Eigen::VectorXd spread = group_law(model, group, a.point).noise.cwiseSqrt();
+    for (std::size_t k = 0; k < group.emulator.inputs.size(); ++k) {
+      if (group.emulator.inputs[k].kind != InputKind::control) continue;
+      for (Eigen::Index i = 0; i < std::min(rows, n); ++i) {
+        const Eigen::Index row = i * n / std::min(rows, n);
+        Eigen::MatrixXd points(2 * settings, group.base.cols());
+        for (int t = 0; t < settings; ++t)
+          for (int which = 0; which < 2; ++which) {
+            Eigen::VectorXd point = group.base.row(row).transpose();
+            for (Eigen::Index c = 0; c < point.size(); ++c)
+              if (const int s = group.slot(row, c); s >= 0) point[c] = (which == 0 ? a : b).point[s];
+            point[static_cast<Eigen::Index>(k)] = t / (settings - 1.0);
+            points.row(which * settings + t) = point.transpose();
+          }
+        const surrogate::Prediction found = group.emulator.predict(points);
+        for (int t = 0; t < settings; ++t) {
+          const double gap = found.mean[t] - found.mean[settings + t];
+          const double doubt =
+              std::sqrt(std::max(found.covariance(t, t) + found.covariance(settings + t, settings + t) -
+                                     2.0 * found.covariance(t, settings + t),
+                                 0.0));
+          const double errors = (std::abs(gap) - 2.0 * doubt) / spread[row];
+          if (errors > best.errors)
+            best = {.errors = errors,
+                    .first = found.mean[t],
+                    .second = found.mean[settings + t],
+                    .setting = t / (settings - 1.0),
+                    .place = {g, row, k}};
+        }
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::size_t part_of(const Profile& profile, double u) {
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < profile.parts.size(); ++i) {
+    const double distance = std::max({profile.parts[i].low - u, u - profile.parts[i].high, 0.0});
+    if (distance < least) {
+      least = distance;
+      nearest = i;
+    }
+  }
+  return nearest;
+}
+
+std::vector<Mode> find_modes(const Profiles& all, const Eigen::MatrixXd& draws, const VerdictThresholds& thresholds) {
+  std::map<Cell, std::vector<Eigen::Index>> members;
+  for (Eigen::Index i = 0; i < draws.rows(); ++i) members[cell_of(all, draws.row(i).transpose())].push_back(i);
+  std::vector<Mode> modes;
+  for (const auto& [cell, rows] : members) {
+    Mode mode{.weight = static_cast<double>(rows.size()) / static_cast<double>(draws.rows()),
+              .mean = Eigen::VectorXd::Zero(draws.cols()),
+              .sd = Eigen::VectorXd::Zero(draws.cols()),
+              .point = {}};
+    if (mode.weight < thresholds.mode_weight) continue;
+    for (const Eigen::Index i : rows) mode.mean += draws.row(i).transpose();
+    mode.mean /= static_cast<double>(rows.size());
+    for (const Eigen::Index i : rows) mode.sd += (draws.row(i).transpose() - mode.mean).cwiseAbs2();
+    mode.sd = (mode.sd / static_cast<double>(rows.size())).cwiseSqrt();
+    double least = std::numeric_limits<double>::infinity();
+    for (const Profile& profile : all.profiles)
+      for (Eigen::Index i = 0; i < profile.u.size(); ++i)
+        if (profile.deviance[i] < least && cell_of(all, profile.path.row(i).transpose()) == cell) {
+          least = profile.deviance[i];
+          mode.point = profile.path.row(i).transpose();
+        }
+    if (mode.point.size() > 0) modes.push_back(std::move(mode));
+  }
+  std::stable_sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) { return a.weight > b.weight; });
+  return modes;
+}
+
+std::vector<std::string> unvisited(const CaseModel& model, const Profiles& all, const Eigen::MatrixXd& draws) {
+  constexpr double noticed = 0.05, visited = 0.002;
+  std::vector<std::string> names;
+  for (const Profile& profile : all.profiles) {
+    if (profile.parts.size() < 2) continue;
+    std::vector<double> share(profile.parts.size(), 0.0), mass;
+    for (const double u : draws.col(profile.unknown))
+      share[part_of(profile, u)] += 1.0 / static_cast<double>(draws.rows());
+    for (const ProfilePart& part : profile.parts)
+      mass.push_back(log_mass(model, profile.path.row(part.best).transpose()));
+    const double largest = *std::max_element(mass.begin(), mass.end());
+    double sum = 0.0;
+    for (const double value : mass) sum += std::exp(value - largest);
+    for (std::size_t i = 0; i < profile.parts.size(); ++i) {
+      if (share[i] >= visited || std::exp(mass[i] - largest) / sum < noticed) continue;
+      const Slot& slot = model.slots[static_cast<std::size_t>(profile.unknown)];
+      const data::Unit& unit = slot.prior.parameter().unit;
+      const double width = (profile.parts[i].high - profile.parts[i].low) *
+                           std::abs(slot.slope(profile.u[profile.parts[i].best])) / unit.factor;
+      names.push_back(slot.label + " near " +
+                      with_error(unit.from_si(slot.value(profile.u[profile.parts[i].best])), 0.25 * width));
+    }
+  }
+  return names;
+}
+
+std::string parted_by(const data::Study& study, const CaseModel& model, const std::vector<Mode>& modes) {
+  if (modes.size() < 2) return {};
+  // The pair of modes that is hardest to part.
+  Parting found;
+  bool first = true;
+  for (std::size_t a = 0; a < modes.size(); ++a)
+    for (std::size_t b = a + 1; b < modes.size(); ++b) {
+      const Parting one = most_parting(model, modes[a], modes[b]);
+      if (first || one.errors < found.errors) found = one;
+      first = false;
+    }
+  if (!(found.errors > 1.0))
+    return "measure another kind of quantity: none that was measured parts the values at any setting inside the runs";
+  const RowGroup& group = model.groups[found.place.group];
+  const data::Output& output = study.outputs.at(group.emulator.output);
+  const data::Control& control = study.controls.at(group.emulator.inputs[found.place.input].index);
+  const double setting = control.unit.from_si(control.axis().from_unit(found.setting));
+  const double sd = std::abs(found.first - found.second) / found.errors / output.unit.factor;
+  const auto in = [](const std::string& text, const std::string& unit) {
+    return unit.empty() || unit == "1" ? text : text + " " + unit;
+  };
+  return fmt::format("measure {} at {} {}, where the values part: {} against {}, {:.1f} standard errors", output.name,
+                     control.name, in(fmt::format("{:.4g}", setting), control.unit.symbol),
+                     with_error(output.unit.from_si(found.first), sd),
+                     in(with_error(output.unit.from_si(found.second), sd), output.unit.symbol), found.errors);
+}
+
+}  // namespace uq

@@ -1,0 +1,83 @@
+#pragma once
+// Profile likelihood: for one unknown k held at u_k,
+//   deviance(u_k) = 2 (max over all u of log L - max over the other unknowns of log L),
+// log L that of the data and of what calibrated the nuisances, their priors (posterior.hpp, log_certificates),
+// by constrained optimisation (Raue et al., Bioinformatics 25:1923 (2009)). The 95 % interval is where it stays
+// below deviance_95 (thresholds.hpp); it may have several parts. An end is closed when the deviance crosses before the
+// support ends, open when the support's bound is met first: a bound is not a finding. Nor is an end that is there only
+// because another unknown has come to the end of its range, so that the ridge cannot go on (pinned): with that unknown
+// held where the data would have it, the deviance at the end would be at least twice as large. That side is open, too.
+// An unknown without influence (influence.hpp) pins nothing, and nor does a bound at 0 that nature sets.
+// Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take it away, the
+// hole is in doubt, and the interval goes through it.
+// The maximisers form a path along the ridge, if there is one.
+#include <Eigen/Dense>
+#include <optional>
+#include <vector>
+
+#include "uq/findings/thresholds.hpp"
+#include "uq/infer/optimise.hpp"
+#include "uq/posterior/case_model.hpp"
+#include "uq/verdict/influence.hpp"
+
+namespace uq {
+
+struct ProfileOptions {
+  int even_points = 17;  ///< spread over the support
+  int near_points = 16;  ///< spread over where the draws lie
+  VerdictThresholds thresholds = {};
+};
+
+/// One connected part of the interval, in u.
+struct ProfilePart {
+  double low = 0.0, high = 0.0;
+  Eigen::Index best = 0;  ///< its point of least deviance
+};
+
+/// What parts two of them.
+struct ProfileBarrier {
+  double low = 0.0, high = 0.0;  ///< u
+  double deviance = 0.0;         ///< largest in between
+  bool in_doubt = false;         ///< the surrogate's error could bring it about
+};
+
+struct Profile {
+  int unknown = 0;
+  Eigen::VectorXd u;                                     ///< held values, rising
+  Eigen::VectorXd deviance;                              ///< at each
+  Eigen::MatrixXd path;                                  ///< points x unknowns: the maximiser at each
+  std::optional<double> low, high;                       ///< ends of the interval, in u; none: open
+  std::optional<int> low_pinned, high_pinned;            ///< unknown at the end of whose range an open side ends
+  double deviance_at_low = 0.0, deviance_at_high = 0.0;  ///< at the support's bounds
+  std::vector<ProfilePart> parts;                        ///< rising; holes in doubt are filled
+  std::vector<ProfileBarrier> barriers;                  ///< all, those in doubt too
+  bool closed() const { return low && high; }
+  bool flat() const { return !low && !high; }
+};
+
+/// Largest likelihood over the box; `starts` from draws.
+Maximum maximum_likelihood(const CaseModel& model, const Eigen::MatrixXd& starts);
+
+/// Profiles of the case's own parameters. `draws` (rows in u) with their log likelihoods guide the search.
+struct Profiles {
+  std::vector<Profile> profiles;
+  Maximum best;                      ///< largest likelihood of all that was seen
+  std::vector<Maximum> maxima;       ///< other places where the likelihood is largest, nearly as good
+  std::vector<Influence> influence;  ///< per unknown
+};
+struct Guides {
+  Eigen::MatrixXd draws;
+  Eigen::VectorXd log_likelihood;
+};
+Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const ProfileOptions& options = {});
+
+/// log likelihood of the data and of what calibrated the nuisances.
+Differentiable profiled(const CaseModel& model);
+
+/// From log likelihoods along a path (in `deviance`) to deviances and to the interval's parts and ends.
+void finish_profile(const CaseModel& model, const Profiles& all, Profile& profile, const VerdictThresholds& thresholds);
+
+/// The low end of an unknown's support is a bound that nature sets, not the user: a linear range that begins at 0.
+bool physical_low(const Slot& slot);
+
+}  // namespace uq

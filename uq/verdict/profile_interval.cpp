@@ -1,0 +1,169 @@
+// The ends and parts of a profile interval (profile.hpp).
+#include <algorithm>
+#include <cmath>
+
+#include "uq/posterior/posterior.hpp"
+#include "uq/verdict/profile.hpp"
+
+namespace uq {
+namespace {
+
+/// Where the deviance crosses the drop, and the maximiser there.
+struct Crossing {
+  double at = 0.0;
+  Eigen::VectorXd maximiser;
+};
+
+/// A value of the unknown and the root of the deviance less that of the drop.
+struct Side {
+  double at = 0.0, excess = 0.0;
+};
+
+/// Between an inside and an outside value by false position on the root of the deviance, which is straight for a
+/// parabola (Dowell & Jarratt 1971, the Illinois rule).
+Crossing find_crossing(const CaseModel& model, const Box& box, const Profile& profile, Eigen::Index from,
+                       Eigen::Index to, double best, double drop) {
+  constexpr double close_enough = 1e-4;
+  const int k = profile.unknown;
+  const double root = std::sqrt(drop);
+  Eigen::VectorXd warm = profile.path.row(from).transpose();
+  Side inside{profile.u[from], std::sqrt(profile.deviance[from]) - root};
+  Side outside{profile.u[to], std::sqrt(profile.deviance[to]) - root};
+  int last = 0;
+  for (int i = 0; i < 14; ++i) {
+    const double share = std::clamp(inside.excess / (inside.excess - outside.excess), 0.02, 0.98);
+    const double middle = inside.at + share * (outside.at - inside.at);
+    const Maximum found = maximise(profiled(model), box, warm.transpose(), Held{k, middle});
+    const double excess = std::sqrt(std::max(2.0 * (best - found.value), 0.0)) - root;
+    if (excess <= 0.0) {
+      inside = {middle, excess};
+      warm = found.x;
+      if (last < 0) outside.excess *= 0.5;
+      last = -1;
+    } else {
+      outside = {middle, excess};
+      if (last > 0) inside.excess *= 0.5;
+      last = 1;
+    }
+    if (std::abs(excess) < close_enough || std::abs(outside.at - inside.at) < 1e-7 * (box.upper[k] - box.lower[k]))
+      return {.at = middle, .maximiser = found.x};
+  }
+  return {.at = 0.5 * (inside.at + outside.at), .maximiser = warm};
+}
+
+/// Least deviance at u_k with `other` held, too.
+double deviance_with_held(const CaseModel& model, const Box& box, Held held, Held other, const Eigen::VectorXd& start,
+                          double best) {
+  const Differentiable likelihood = profiled(model);
+  const Differentiable with_other = [&](const Eigen::VectorXd& u) -> Evaluation {
+    Eigen::VectorXd at = u;
+    at[other.coordinate] = other.value;
+    Evaluation found = likelihood(at);
+    found.gradient[other.coordinate] = 0.0;
+    return found;
+  };
+  return 2.0 * (best - maximise(with_other, box, start.transpose(), held).value);
+}
+
+/// Another unknown that sits at the end of its range, if one does and the interval ends for that.
+std::optional<int> pinned(const CaseModel& model, const Box& box, const Profiles& all, const Profile& profile,
+                          const Crossing& end, const VerdictThresholds& thresholds) {
+  for (int other = 0; other < model.dimension(); ++other) {
+    if (other == profile.unknown || !all.influence[static_cast<std::size_t>(other)].some) continue;
+    const double width = box.upper[other] - box.lower[other];
+    const bool low = end.maximiser[other] - box.lower[other] < 1e-4 * width &&
+                     !physical_low(model.slots[static_cast<std::size_t>(other)]);
+    if (!low && box.upper[other] - end.maximiser[other] >= 1e-4 * width) continue;
+    // The middle of where the path has it inside the interval.
+    double least = box.upper[other], most = box.lower[other];
+    for (Eigen::Index i = 0; i < profile.u.size(); ++i)
+      if (profile.deviance[i] <= thresholds.profile_drop) {
+        least = std::min(least, profile.path(i, other));
+        most = std::max(most, profile.path(i, other));
+      }
+    const Held k{profile.unknown, end.at};
+    const double held = deviance_with_held(model, box, k, {other, 0.5 * (least + most)}, end.maximiser, all.best.value);
+    if (held >= thresholds.pinned_drops * thresholds.profile_drop) return other;
+  }
+  return {};
+}
+
+/// Whether an error of two of the surrogate's sds would take the barrier away: between its highest point and either of
+/// the two parts.
+bool in_doubt(const CaseModel& model, const Yardstick& yardstick, const Profile& profile, Eigen::Index peak,
+              std::pair<Eigen::Index, Eigen::Index> wells, double drop) {
+  const Eigen::VectorXd at_peak = profile.path.row(peak).transpose();
+  const double needed = std::sqrt(profile.deviance[peak]) - std::sqrt(drop);
+  for (const Eigen::Index well : {wells.first, wells.second}) {
+    const Eigen::VectorXd at_well = profile.path.row(well).transpose();
+    if (needed < 2.0 * difference(model, yardstick, at_peak, at_well).doubt) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void finish_profile(const CaseModel& model, const Profiles& all, Profile& profile,
+                    const VerdictThresholds& thresholds) {
+  const Box box{model.lower(), model.upper()};
+  const double drop = thresholds.profile_drop;
+  profile.deviance = (2.0 * (all.best.value - profile.deviance.array())).max(0.0);
+  const Eigen::Index count = profile.u.size();
+  profile.deviance_at_low = profile.deviance[0];
+  profile.deviance_at_high = profile.deviance[count - 1];
+
+  // Runs of points inside, their ends where the deviance crosses the drop.
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> runs;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (profile.deviance[i] > drop) continue;
+    if (runs.empty() || runs.back().second != i - 1) runs.emplace_back(i, i);
+    runs.back().second = i;
+  }
+  if (runs.empty()) return;  // the best fit itself is a point inside, so this does not happen
+  const Yardstick yardstick = make_yardstick(model, all.best.x);
+  std::vector<ProfilePart> parts;
+  Crossing first, last;
+  for (const auto& [begin, end] : runs) {
+    ProfilePart part{.low = profile.u[begin], .high = profile.u[end], .best = begin};
+    for (Eigen::Index i = begin; i <= end; ++i)
+      if (profile.deviance[i] < profile.deviance[part.best]) part.best = i;
+    if (begin > 0) {
+      const Crossing low = find_crossing(model, box, profile, begin, begin - 1, all.best.value, drop);
+      part.low = low.at;
+      if (parts.empty()) first = low;
+    }
+    if (end < count - 1) {
+      last = find_crossing(model, box, profile, end, end + 1, all.best.value, drop);
+      part.high = last.at;
+    }
+    parts.push_back(part);
+  }
+  if (runs.front().first > 0) {
+    profile.low_pinned = pinned(model, box, all, profile, first, thresholds);
+    if (!profile.low_pinned) profile.low = parts.front().low;
+  }
+  if (runs.back().second < count - 1) {
+    profile.high_pinned = pinned(model, box, all, profile, last, thresholds);
+    if (!profile.high_pinned) profile.high = parts.back().high;
+  }
+
+  // Barriers between them.
+  profile.parts = {parts.front()};
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    Eigen::Index peak = runs[i - 1].second + 1;
+    for (Eigen::Index j = peak; j < runs[i].first; ++j)
+      if (profile.deviance[j] > profile.deviance[peak]) peak = j;
+    ProfileBarrier barrier{.low = parts[i - 1].high, .high = parts[i].low, .deviance = profile.deviance[peak]};
+    barrier.in_doubt = in_doubt(model, yardstick, profile, peak, {profile.parts.back().best, parts[i].best}, drop);
+    profile.barriers.push_back(barrier);
+    if (barrier.in_doubt) {
+      ProfilePart& joined = profile.parts.back();
+      joined.high = parts[i].high;
+      if (profile.deviance[parts[i].best] < profile.deviance[joined.best]) joined.best = parts[i].best;
+    } else {
+      profile.parts.push_back(parts[i]);
+    }
+  }
+}
+
+}  // namespace uq

@@ -1,0 +1,216 @@
+#include "uq/verdict/repeats.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "data/random.hpp"
+#include "uq/posterior/posterior.hpp"
+#include "uq/posterior/predictive.hpp"
+
+namespace uq {
+namespace {
+
+constexpr double far = 40.0;  // deviance beyond which a path's point plays no part, whatever the noise
+constexpr std::array words = {Verdict::identified, Verdict::weakly_identified, Verdict::several_values,
+                              Verdict::not_identified};
+
+}  // namespace
+
+std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judged, const Profile& profile,
+                                   const Eigen::VectorXd& best, bool all) {
+  const Eigen::VectorXd lower = model.lower(), upper = model.upper();
+  const Yardstick yardstick = make_yardstick(judged, best);
+  std::vector<PathPoint> found;
+  const Eigen::Index last = profile.u.size() - 1;
+  for (Eigen::Index i = 0; i <= last; ++i) {
+    const Eigen::Index from = std::max<Eigen::Index>(i - 1, 0), count = std::min(i + 1, last) - from + 1;
+    const bool end = i == 0 || i == last;
+    if (!all && !end && profile.deviance.segment(from, count).minCoeff() > far) continue;
+    const Eigen::VectorXd u = profile.path.row(i).transpose();
+    const StackedPrediction prediction = predict(model, u);
+    PathPoint point{.u = profile.u[i],
+                    .doubt = difference(judged, yardstick, u, best).doubt,
+                    .mean = prediction.mean,
+                    .covariance = prediction.covariance,
+                    .noise = prediction.noise,
+                    .slopes = {},
+                    .precision = {}};
+    const Eigen::MatrixXd slopes = sensitivity(model, u);
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index s = 0; s < u.size(); ++s) {
+      const double slack = 1e-4 * (upper[s] - lower[s]);
+      if (s == profile.unknown) continue;
+      const bool low = u[s] - lower[s] <= slack, high = upper[s] - u[s] <= slack;
+      if (!low && !high) free.push_back(s);
+      // A bound at 0 that nature sets ends nothing (uq/verdict/profile.hpp).
+      if (s < model.own_count() && (high || (low && !physical_low(model.slots[static_cast<std::size_t>(s)]))))
+        point.at_end = true;
+    }
+    point.slopes.resize(slopes.rows(), static_cast<Eigen::Index>(free.size()));
+    point.precision.resize(point.slopes.cols());
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      point.slopes.col(column) = slopes.col(free[k]);
+      point.precision[column] = 1.0 / std::pow(model.slots[static_cast<std::size_t>(free[k])].prior.sd(), 2);
+    }
+    found.push_back(std::move(point));
+  }
+  return found;
+}
+
+PathWords::PathWords(const std::vector<PathPoint>& points, const std::vector<Eigen::Index>& rows,
+                     const Eigen::VectorXd& noise_share) {
+  for (const PathPoint& point : points) {
+    Local local{
+        .u = point.u, .doubt = point.doubt, .mean = point.mean(rows), .covariance = {}, .slopes = {}, .bent = {}};
+    Eigen::MatrixXd covariance = point.covariance(rows, rows);
+    covariance.diagonal() += point.noise(rows).cwiseProduct(noise_share);
+    local.covariance.compute(covariance);
+    if (local.covariance.info() != Eigen::Success) continue;
+    local.log_determinant = 2.0 * local.covariance.matrixLLT().diagonal().array().log().sum();
+    local.slopes = point.slopes(rows, Eigen::all);
+    local.covariance.matrixL().solveInPlace(local.slopes);
+    Eigen::MatrixXd precision = local.slopes.transpose() * local.slopes;
+    precision.diagonal() += point.precision;
+    local.bent.compute(precision);
+    if (local.slopes.cols() > 0 && local.bent.info() != Eigen::Success) continue;
+    local.at_end = point.at_end;
+    points_.push_back(std::move(local));
+  }
+}
+
+std::pair<bool, bool> PathWords::ends_by_another(const Eigen::VectorXd& deviance, double drop) const {
+  const auto end_of = [&](auto first, auto last, int outwards) {
+    for (auto i = first; i != last; i -= outwards)
+      if (deviance[static_cast<Eigen::Index>(i)] <= drop)
+        return i != first &&
+               (points_[static_cast<std::size_t>(i)].at_end || points_[static_cast<std::size_t>(i + outwards)].at_end);
+    return false;
+  };
+  const int n = static_cast<int>(points_.size());
+  return {end_of(0, n, -1), end_of(n - 1, -1, 1)};
+}
+
+Eigen::VectorXd PathWords::deviances(const Eigen::VectorXd& y) const {
+  Eigen::VectorXd deviance(static_cast<Eigen::Index>(points_.size()));
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Local& point = points_[i];
+    Eigen::VectorXd r = y - point.mean;
+    point.covariance.matrixL().solveInPlace(r);
+    double value = r.squaredNorm() + point.log_determinant;
+    if (point.slopes.cols() > 0) {
+      const Eigen::VectorXd pull = point.slopes.transpose() * r;
+      value -= pull.dot(point.bent.solve(pull));
+    }
+    deviance[static_cast<Eigen::Index>(i)] = value;
+  }
+  deviance.array() -= deviance.minCoeff();
+  return deviance;
+}
+
+/// Variance of u under exp(-deviance / 2), the deviance between points along straight lines; parts apart when asked.
+double PathWords::variance(const Eigen::VectorXd& deviance, const Parts& parts, bool within) const {
+  constexpr int cells = 12;
+  const auto count = static_cast<std::size_t>(std::max(parts.count, 1));
+  std::vector<std::array<double, 3>> sums(within ? count : 1, {0.0, 0.0, 0.0});
+  for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double width = points_[i + 1].u - points_[i].u;
+    for (int c = 0; c < cells; ++c) {
+      const double share = (c + 0.5) / cells;
+      const double mass = std::exp(-0.5 * (deviance[k] + share * (deviance[k + 1] - deviance[k]))) * width / cells;
+      const double u = points_[i].u + share * width;
+      auto& sum = sums[within ? parts.of[share < 0.5 ? i : i + 1] : 0];
+      sum[0] += mass;
+      sum[1] += mass * u;
+      sum[2] += mass * u * u;
+    }
+  }
+  double total = 0.0, spread = 0.0;
+  for (const auto& sum : sums) {
+    if (!(sum[0] > 0.0)) continue;
+    total += sum[0];
+    spread += std::max(sum[2] - sum[1] * sum[1] / sum[0], 0.0);
+  }
+  return total > 0.0 ? spread / total : 0.0;
+}
+
+PathWords::Parts PathWords::parts(const Eigen::VectorXd& deviance, double drop) const {
+  Parts found{.count = 0, .of = std::vector<std::size_t>(points_.size(), 0)};
+  bool real = true;  // what lies between here and the last point inside is more than the surrogate's doubt
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const double value = deviance[static_cast<Eigen::Index>(i)];
+    if (value <= drop) {
+      if (real) ++found.count;
+      real = false;
+    } else if (std::sqrt(value) - std::sqrt(drop) >= 2.0 * points_[i].doubt) {
+      real = true;
+    }
+    found.of[i] = static_cast<std::size_t>(std::max(found.count - 1, 0));
+  }
+  return found;
+}
+
+WordFacts PathWords::facts(const FoundFacts& found, const PathWords& before, const Eigen::VectorXd& found_deviance,
+                           const Eigen::VectorXd& deviance, double drop) const {
+  const Profile& profile = *found.profile;
+  WordFacts facts = found.facts;
+  const Parts now = parts(deviance, drop), then = before.parts(found_deviance, drop);
+  facts.parts = now.count;
+  facts.open_low = profile.low_pinned || deviance[0] <= drop;
+  facts.open_high = profile.high_pinned || deviance[deviance.size() - 1] <= drop;
+  const auto scaled = [&](double contraction, bool within) {
+    const double was = before.variance(found_deviance, then, within);
+    return was > 0.0 ? 1.0 - (1.0 - contraction) * variance(deviance, now, within) / was : contraction;
+  };
+  facts.contraction = scaled(found.facts.contraction, false);
+  facts.contraction_within = scaled(found.facts.contraction_within, true);
+  return facts;
+}
+
+std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, const std::vector<FoundFacts>& found,
+                                                       const Eigen::MatrixXd& draws, const Eigen::VectorXd& best,
+                                                       const VerdictThresholds& thresholds,
+                                                       const RepeatOptions& options) {
+  std::vector<std::vector<WordProbability>> all(found.size());
+  if (options.repeats < 1 || model.row_count() > options.rows_max || draws.rows() == 0) return all;
+  const Eigen::LLT<Eigen::MatrixXd> spread(predict(model, best).total());
+  if (spread.info() != Eigen::Success) return all;
+  const Eigen::MatrixXd truths = thinned(draws, options.repeats);
+  data::RandomStream random(options.seed, data::Purpose::repeated_data);
+  Eigen::MatrixXd repeats(truths.rows(), model.row_count());
+  for (Eigen::Index b = 0; b < truths.rows(); ++b) {
+    Eigen::VectorXd z(repeats.cols());
+    for (double& value : z) value = random.normal();
+    repeats.row(b) = (predict(model, truths.row(b).transpose()).mean + spread.matrixL() * z).transpose();
+  }
+  const Eigen::VectorXd y = observed(model), ones = Eigen::VectorXd::Ones(y.size());
+  std::vector<Eigen::Index> rows(static_cast<std::size_t>(y.size()));
+  std::iota(rows.begin(), rows.end(), Eigen::Index{0});
+
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (!found[k].facts.influences) {
+      all[k] = {{to_text(Verdict::not_identified), 1.0}};
+      continue;
+    }
+    const PathWords words_of(path_points(model, model, *found[k].profile, best), rows, ones);
+    if (!words_of.usable()) continue;
+    const Eigen::VectorXd before = words_of.deviances(y);
+    std::array<int, words.size()> counts = {};
+    for (Eigen::Index b = 0; b < repeats.rows(); ++b) {
+      const WordFacts facts = words_of.facts(found[k], words_of, before, words_of.deviances(repeats.row(b).transpose()),
+                                             thresholds.profile_drop);
+      const Verdict word = word_of(facts, thresholds);
+      for (std::size_t w = 0; w < words.size(); ++w) counts[w] += words[w] == word ? 1 : 0;
+    }
+    for (std::size_t w = 0; w < words.size(); ++w)
+      if (counts[w] > 0) all[k].push_back({to_text(words[w]), counts[w] / static_cast<double>(repeats.rows())});
+    std::stable_sort(all[k].begin(), all[k].end(),
+                     [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  }
+  return all;
+}
+
+}  // namespace uq

@@ -1,0 +1,95 @@
+#pragma once
+// How sure a verdict is of its word: what the words would be if the measurement were made again.
+//
+// Repeats are drawn from the posterior predictive, y' = m(u') + S^1/2 z, u' a draw, S the covariance of the data at the
+// best fit. The case is not sampled again. About each point i of a profile's path the model is taken as linear in the
+// other unknowns; with residual r = L^-1 (y' - m_i), slopes A = L^-1 dm/du, L L' = S_i and the priors' widths as weak
+// springs P about the path,
+//   deviance'_i = |r|^2 - r' A (A' A + P)^-1 A' r + log |S_i|    (less its least over i).
+// From it come the open sides, the parts, and the contraction: 1 - contraction changes as the variance of
+// exp(-deviance' / 2) does. A hole that two of the surrogate's sds explain is none. What does not hang on the data's
+// noise stays as found: influence, structure, a side that another parameter's range ends. An unknown at the end of its
+// range on the path stays there.
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "uq/findings/results.hpp"
+#include "uq/posterior/case_model.hpp"
+#include "uq/verdict/profile.hpp"
+#include "uq/verdict/verdict.hpp"
+
+namespace uq {
+
+struct RepeatOptions {
+  int repeats = 200;
+  int rows_max = 300;  ///< of data; beyond, nothing is repeated
+  std::uint64_t seed = 1;
+};
+
+/// Facts of own parameter k, as found, with the draws' share.
+struct FoundFacts {
+  WordFacts facts;
+  const Profile* profile = nullptr;
+};
+
+/// The model about one point of a profile's path: the law of its rows, and how the other unknowns move it.
+struct PathPoint {
+  double u = 0.0;
+  double doubt = 0.0;  ///< of the surrogate, against the best fit, in data errors
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;  ///< without the noise
+  Eigen::VectorXd noise;       ///< variances
+  Eigen::MatrixXd slopes;      ///< rows x the unknowns that can move
+  Eigen::VectorXd precision;   ///< of their priors
+  bool at_end = false;         ///< another of the case's parameters stands at the end of its range
+};
+
+/// Points that may matter: near enough to the best or beside such a point, and the two ends; all of them when `all`.
+/// `judged`: the model whose data the doubt is measured in.
+std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judged, const Profile& profile,
+                                   const Eigen::VectorXd& best, bool all = false);
+
+/// Deviances and words along a path, for any data of some of the model's rows.
+class PathWords {
+ public:
+  /// `noise_share`: of each row's noise variance: 1 / n for a mean of n readings.
+  PathWords(const std::vector<PathPoint>& points, const std::vector<Eigen::Index>& rows,
+            const Eigen::VectorXd& noise_share);
+  bool usable() const { return points_.size() >= 3; }
+  /// Less their least; at the points that a covariance could be factored at.
+  Eigen::VectorXd deviances(const Eigen::VectorXd& y) const;
+  /// Whether the interval's low and high end lie where another parameter's range ends, and not this one's data.
+  std::pair<bool, bool> ends_by_another(const Eigen::VectorXd& deviance, double drop) const;
+  /// Facts as found, with what hangs on the data's noise taken from `deviance`; `before`, `found_deviance`: those of
+  /// the data as they were found.
+  WordFacts facts(const FoundFacts& found, const PathWords& before, const Eigen::VectorXd& found_deviance,
+                  const Eigen::VectorXd& deviance, double drop) const;
+
+ private:
+  struct Local {
+    double u = 0.0, doubt = 0.0;
+    Eigen::VectorXd mean;
+    Eigen::LLT<Eigen::MatrixXd> covariance;
+    double log_determinant = 0.0;
+    Eigen::MatrixXd slopes;            ///< whitened
+    Eigen::LLT<Eigen::MatrixXd> bent;  ///< A' A + P
+    bool at_end = false;
+  };
+  struct Parts {
+    int count = 0;
+    std::vector<std::size_t> of;  ///< for each point the part nearest to it
+  };
+  Parts parts(const Eigen::VectorXd& deviance, double drop) const;
+  double variance(const Eigen::VectorXd& deviance, const Parts& parts, bool within) const;
+
+  std::vector<Local> points_;
+};
+
+/// Per parameter, by falling probability; empty where there are too many rows.
+std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, const std::vector<FoundFacts>& found,
+                                                       const Eigen::MatrixXd& draws, const Eigen::VectorXd& best,
+                                                       const VerdictThresholds& thresholds,
+                                                       const RepeatOptions& options);
+
+}  // namespace uq

@@ -1,0 +1,201 @@
+#include "uq/verdict/verdict.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/verdict/verdict_words.hpp"
+
+namespace uq {
+namespace {
+
+/// Three significant digits.
+std::string number(double value) { return fmt::format("{:.3g}", value); }
+
+std::string in_unit(const std::string& text, const std::string& unit) {
+  return unit.empty() || unit == "1" ? text : text + " " + unit;
+}
+
+std::string interval(const ParameterEvidence& parameter) {
+  std::string text;
+  for (const ValueRange& part : parameter.parts)
+    text += (text.empty() ? "" : " and ") + with_error(part.low, part.sd > 0.0 ? part.sd : parameter.sd) + " to " +
+            with_error(part.high, part.sd > 0.0 ? part.sd : parameter.sd);
+  return text;
+}
+
+std::string left_variance(const ParameterEvidence& parameter) {
+  return fmt::format("{:.2g} % of the prior's variance is left",
+                     100.0 * std::max(1.0 - parameter.facts.contraction, 0.0));
+}
+
+const char* count_word(std::size_t count) {
+  constexpr const char* words[] = {"no", "one", "two", "three", "four", "five", "six"};
+  return count < std::size(words) ? words[count] : "several";
+}
+
+/// The other word over repeats of the data, as a clause.
+std::string other_word(Verdict verdict, const std::vector<WordProbability>& repeats) {
+  for (const WordProbability& word : repeats)
+    if (word.verdict != to_text(verdict))
+      return fmt::format(" Another measurement of the same kind would say \"{}\" with a probability of {:.0f} %.",
+                         word.verdict, 100.0 * word.probability);
+  return {};
+}
+
+std::string open_sentence(const ParameterEvidence& parameter, Reason reason) {
+  const WordFacts& facts = parameter.facts;
+  const std::string range =
+      in_unit(number(parameter.range_low) + " and " + number(parameter.range_high), parameter.unit);
+  if (facts.open_low && facts.open_high) {
+    const bool pinned = !parameter.low_pinned_by.empty() || !parameter.high_pinned_by.empty();
+    return fmt::format("{} is not identified: the data leave it open on both sides{}{}.", parameter.name,
+                       pinned ? fmt::format(" (between {} only the ranges of other parameters limit it)", range) : "",
+                       because(reason, parameter));
+  }
+  const double end = facts.open_high ? parameter.parts.front().low : parameter.parts.back().high;
+  const std::string limit =
+      (facts.open_high ? "at least " : "at most ") + in_unit(with_error(end, parameter.sd), parameter.unit);
+  const std::string& by = facts.open_high ? parameter.high_pinned_by : parameter.low_pinned_by;
+  if (!by.empty())
+    return fmt::format(
+        "{} is not identified: {} (95 % profile), but on the other side only the end of the range of {} limits it{}.",
+        parameter.name, limit, by, because(reason, parameter));
+  return fmt::format(
+      "{} is not identified: {} (95 % profile), but {} that every value up to the end of its range, {}, fits{}.",
+      parameter.name, limit, facts.open_high ? "above" : "below",
+      in_unit(number(facts.open_high ? parameter.range_high : parameter.range_low), parameter.unit),
+      because(reason, parameter));
+}
+
+std::string several_sentence(const ParameterEvidence& parameter) {
+  std::string values;
+  for (std::size_t i = 0; i < parameter.parts.size(); ++i) {
+    const ValueRange& part = parameter.parts[i];
+    values += fmt::format("{}{} +- {} ({} to {}, {:.0f} % of the posterior)", i == 0 ? "" : "; ",
+                          with_error(part.mean, part.sd), with_error(part.sd, part.sd), with_error(part.low, part.sd),
+                          in_unit(with_error(part.high, part.sd), parameter.unit), 100.0 * part.weight);
+  }
+  return fmt::format("{} has {} separate values that fit: {}; what lies between does not fit.", parameter.name,
+                     count_word(parameter.parts.size()), values);
+}
+
+}  // namespace
+
+std::string with_error(double value, double error) {
+  if (!(error > 0.0) || !std::isfinite(value)) return number(value);
+  // Two digits of the error.
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(error)));
+  if (decimals > 4 || decimals < 0) {
+    const double leading = std::max(std::abs(value), error);
+    const int digits = std::clamp(static_cast<int>(std::floor(std::log10(leading / error))) + 2, 2, 12);
+    return fmt::format("{:.{}g}", value, digits);
+  }
+  const std::string text = fmt::format("{:.{}f}", value, decimals);
+  return text.front() == '-' && text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
+}
+
+std::vector<std::pair<std::string, std::string>> describe(const VerdictThresholds& thresholds) {
+  return {
+      {"contraction for identified", fmt::format("at least {:g}", thresholds.contraction_identified)},
+      {"contraction for weakly identified", fmt::format("at least {:g}", thresholds.contraction_weak)},
+      {"profile likelihood interval", fmt::format("deviance up to {:.4g} (95 %)", thresholds.profile_drop)},
+      {"no influence",
+       fmt::format("its whole range changes the predictions by less than {:g} of the surrogate's sds, or the deviance "
+                   "by less than {:g}",
+                   thresholds.told_apart_sd, thresholds.silent_deviance)},
+      {"interval open for another parameter's range",
+       fmt::format("deviance at its end at least {:g} times as large with that parameter in the middle of its own "
+                   "interval",
+                   thresholds.pinned_drops)},
+      {"several values",
+       fmt::format("parts of the interval with a barrier that two of the surrogate's sds do not explain; contraction "
+                   "within them at least {:g}",
+                   thresholds.contraction_weak)},
+      {"posterior predictive p for a fit", fmt::format("at least {:g}", thresholds.predictive_p)},
+      {"chi-squared tail of the best fit for a fit", fmt::format("at least {:g}", thresholds.best_fit_p)},
+      {"combination of traded parameters",
+       fmt::format("its sd at most {:g} of that of any of its terms", thresholds.combination_share)},
+      {"curved relation",
+       fmt::format("the values fill at most {:g} of the room that independent ones would", thresholds.curve_share)},
+      {"structural",
+       fmt::format("along at least {:g} of the interval the others can keep the predictions the same, to {:g} of what "
+                   "the parameter does alone, the surrogate's error counted in",
+                   thresholds.structural_span, thresholds.same_share)},
+      {"borderline", fmt::format("another word has a probability of at least {:g} over repeats of the measurement",
+                                 thresholds.borderline_probability)},
+  };
+}
+
+Verdict word_of(const WordFacts& facts, const VerdictThresholds& thresholds) {
+  if (!facts.influences) return Verdict::not_identified;
+  const bool narrowed = facts.contraction >= thresholds.contraction_weak;
+  if (facts.closed()) {
+    if (facts.parts > 1 && facts.contraction_within >= thresholds.contraction_weak) return Verdict::several_values;
+    if (facts.contraction >= thresholds.contraction_identified) return Verdict::identified;
+    return narrowed ? Verdict::weakly_identified : Verdict::not_identified;
+  }
+  const bool upper_limit = facts.open_low && !facts.open_high && facts.physical_low;
+  return upper_limit && narrowed ? Verdict::weakly_identified : Verdict::not_identified;
+}
+
+ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fit,
+                       const std::vector<WordProbability>& repeats, const VerdictThresholds& thresholds) {
+  ParameterVerdict found;
+  const std::string value = in_unit(
+      with_error(parameter.mean, parameter.sd) + " +- " + with_error(parameter.sd, parameter.sd), parameter.unit);
+  if (!fit.fits(thresholds)) {
+    found.verdict = Verdict::does_not_fit;
+    found.borderline = fit.predictive_p > 0.5 * thresholds.predictive_p && fit.best_fit_p > 0.5 * thresholds.best_fit_p;
+    found.sentence = fmt::format(
+        "{}: the model does not fit the data at any value (posterior predictive p {:.2g}, best-fit p {:.2g}), so its "
+        "{} means nothing.",
+        parameter.name, fit.predictive_p, fit.best_fit_p, value);
+    return found;
+  }
+  if (!parameter.unsupported.empty()) {
+    found.reason = "unsupported";
+    found.sentence = fmt::format("{} is not identified: {}.", parameter.name, parameter.unsupported);
+    return found;
+  }
+  const WordFacts& facts = parameter.facts;
+  found.verdict = word_of(facts, thresholds);
+  double other = 0.0;
+  for (const WordProbability& word : repeats)
+    if (word.verdict != to_text(found.verdict)) other = std::max(other, word.probability);
+  found.borderline = other >= thresholds.borderline_probability;
+
+  const std::optional<Reason> reason = find_reason(parameter, found.verdict);
+  if (reason) found.reason = to_text(*reason);
+  found.shares = find_shares(parameter, reason);
+  if (reason == Reason::no_influence) {
+    found.sentence = fmt::format("{} is not identified{}.", parameter.name, because(*reason, parameter));
+  } else if (found.verdict == Verdict::several_values) {
+    found.sentence = several_sentence(parameter);
+  } else if (found.verdict == Verdict::identified) {
+    found.sentence = fmt::format("{} is identified: {}; 95 % profile interval {}; {}.", parameter.name, value,
+                                 interval(parameter), left_variance(parameter));
+  } else if (facts.closed() && found.verdict == Verdict::weakly_identified) {
+    found.sentence =
+        fmt::format("{} is weakly identified: {}; the interval {} is closed but wide; {}{}.", parameter.name, value,
+                    interval(parameter), left_variance(parameter), because(*reason, parameter));
+  } else if (facts.closed()) {
+    found.sentence = fmt::format("{} is not identified: the interval {} is closed but {}{}.", parameter.name,
+                                 in_unit(interval(parameter), parameter.unit), left_variance(parameter),
+                                 because(*reason, parameter));
+  } else if (facts.open_low && !facts.open_high && facts.physical_low) {
+    found.sentence = fmt::format(
+        "{}: only an upper limit, {} at most (95 % profile; 95 % of the posterior lies below {}); it cannot be told "
+        "from {}, its physical bound{}.",
+        parameter.name, in_unit(with_error(parameter.parts.back().high, parameter.sd), parameter.unit),
+        in_unit(with_error(parameter.q95, parameter.sd), parameter.unit), number(parameter.range_low),
+        *reason == Reason::bound ? "" : because(*reason, parameter));
+  } else {
+    found.sentence = open_sentence(parameter, *reason);
+  }
+  if (found.borderline) found.sentence += other_word(found.verdict, repeats);
+  return found;
+}
+
+}  // namespace uq

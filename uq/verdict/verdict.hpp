@@ -1,0 +1,84 @@
+#pragma once
+// From numbers to a word: the verdict on one parameter. Nothing here knows what the parameter is called or is.
+//
+//   does not fit        the case's posterior predictive p or best-fit p is below its threshold: nothing is identified
+//   not identified      the parameter has no influence (influence.hpp)
+//   several values      the profile interval has several parts, closed on both sides, and within the parts the
+//                       contraction is at least `contraction_weak`
+//   identified          the profile interval is closed on both sides, and contraction is at least
+//                       `contraction_identified`
+//   weakly identified   closed, and contraction is at least `contraction_weak`; or an upper limit: closed above, and
+//                       open below only because the parameter cannot go below its physical bound 0
+//   not identified      anything else; and whatever is not supported by runs, or rests on an unusable surrogate
+// The reason, and what can be done about it, is in uq/verdict/verdict_words.hpp. Borderline: over repeats of the data
+// (uq/verdict/repeats.hpp) another word has a probability of at least `borderline_probability`.
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "uq/findings/results.hpp"
+#include "uq/findings/thresholds.hpp"
+
+namespace uq {
+
+/// Name and value of each, for the report.
+std::vector<std::pair<std::string, std::string>> describe(const VerdictThresholds& thresholds);
+
+/// What decides the word of one parameter in a case that fits.
+struct WordFacts {
+  bool influences = true;
+  int parts = 1;  ///< of the profile interval
+  bool open_low = false, open_high = false;
+  bool physical_low = false;  ///< open below only at a bound that nature sets (0), not the user, nor another's range
+  double contraction = 0.0;
+  double contraction_within = 0.0;  ///< of the parts, each about its own mean
+  bool closed() const { return !open_low && !open_high; }
+};
+Verdict word_of(const WordFacts& facts, const VerdictThresholds& thresholds);
+
+/// What brings about a parameter's width; shares of it that sum to one.
+struct WidthShares {
+  double measurement = 1.0, surrogate = 0.0, structure = 0.0, range = 0.0;
+};
+
+/// What is known of one parameter; values in the study's unit.
+struct ParameterEvidence {
+  std::string name, unit;
+  double mean = 0.0, sd = 0.0, q95 = 0.0;
+  WordFacts facts;
+  std::vector<ValueRange> parts;
+  double range_low = 0.0, range_high = 0.0;   ///< the support
+  std::string low_pinned_by, high_pinned_by;  ///< another parameter whose range ends an open side; may be empty
+  bool structural = false;                    ///< a better measurement of the same kind would not close it
+  std::string unsupported =
+      {};  ///< why the runs cannot carry a verdict, a clause; empty: they can (uq/posterior/support.hpp)
+  bool undecided = false;        ///< the surrogate is not sharp enough to tell
+  double surrogate_share = 0.0;  ///< of the variance, where two values are compared
+  double silent_sds = 0.0;  ///< of the data's errors: what the surrogate's own error leaves room for, without influence
+};
+
+/// How well the case fits.
+struct FitEvidence {
+  double predictive_p = 1.0, best_fit_p = 1.0;
+  bool fits(const VerdictThresholds& thresholds) const {
+    return predictive_p >= thresholds.predictive_p && best_fit_p >= thresholds.best_fit_p;
+  }
+};
+
+struct ParameterVerdict {
+  Verdict verdict = Verdict::not_identified;
+  std::optional<std::string> reason;
+  bool borderline = false;
+  std::string sentence;
+  WidthShares shares;
+};
+
+/// `repeats`: the words' probabilities, or none.
+ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fit,
+                       const std::vector<WordProbability>& repeats, const VerdictThresholds& thresholds);
+
+/// A number to the digits that its error deserves.
+std::string with_error(double value, double error);
+
+}  // namespace uq

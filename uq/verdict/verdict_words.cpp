@@ -1,0 +1,331 @@
+#include "uq/verdict/verdict_words.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace uq {
+namespace {
+
+constexpr std::array reasons = {Reason::structural, Reason::practical, Reason::surrogate,
+                                Reason::one_sided,  Reason::bound,     Reason::no_influence};
+/// Of the variance: from here on the surrogate, not the measurement, is what to improve first.
+constexpr double mostly = 0.5;
+/// Of the variance: below, a share is not worth a remedy.
+constexpr double notable = 0.1;
+/// Of the data's errors: the surrogate may hide an effect that the data could see.
+constexpr double hides = 2.0;
+
+using Names = std::vector<std::string>;
+
+std::string list(const Names& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+const char* one_or(const Names& names, const char* one, const char* more) { return names.size() == 1 ? one : more; }
+
+void add(Names& names, const std::string& name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+std::string sentence(std::string text) {
+  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z')
+    text.front() = static_cast<char>(text.front() - 'a' + 'A');
+  return text + ".";
+}
+
+/// A remedy and what share of all widths asks for it.
+struct Remedy {
+  double weight = 0.0;
+  std::string text;
+};
+
+/// Parameters sorted by what is said of them.
+struct Sorted {
+  Names known, several, weak, unknown;                               ///< by word
+  Names silent, structural, practical, surrogate, one_sided, bound;  ///< by reason
+  double of_structure = 0.0, of_measurement = 0.0, of_surrogate = 0.0, of_range = 0.0;
+};
+
+Sorted sort_parameters(const std::vector<ParameterReport>& parameters) {
+  Sorted sorted;
+  for (const ParameterReport& parameter : parameters) {
+    const std::optional<Reason> reason = parameter.reason ? reason_of(*parameter.reason) : std::nullopt;
+    const std::string& name = parameter.name;
+    if (parameter.verdict == Verdict::identified) sorted.known.push_back(name);
+    if (parameter.verdict == Verdict::several_values) sorted.several.push_back(name);
+    if (parameter.verdict == Verdict::weakly_identified) sorted.weak.push_back(name);
+    if (reason.has_value() && *reason == Reason::no_influence) {
+      sorted.silent.push_back(name);
+      continue;
+    }
+    if (parameter.verdict == Verdict::not_identified) sorted.unknown.push_back(name);
+    if (!reason) continue;
+    (*reason == Reason::structural  ? sorted.structural
+     : *reason == Reason::practical ? sorted.practical
+     : *reason == Reason::surrogate ? sorted.surrogate
+     : *reason == Reason::one_sided ? sorted.one_sided
+                                    : sorted.bound)
+        .push_back(name);
+    sorted.of_structure += parameter.share_structure;
+    sorted.of_measurement += parameter.share_measurement;
+    sorted.of_surrogate += parameter.share_surrogate;
+    sorted.of_range += parameter.share_range;
+  }
+  return sorted;
+}
+
+std::string find_finding(const CaseFacts& facts, const Sorted& sorted) {
+  std::string text;
+  const auto say = [&text](const std::string& more) { text += (text.empty() ? "" : " ") + more; };
+  if (!sorted.known.empty()) say(fmt::format("The data determine {}.", list(sorted.known)));
+  if (!sorted.several.empty())
+    say(fmt::format("{} leave separate values of {} open.", text.empty() ? "The data" : "They", list(sorted.several)));
+  if (!sorted.weak.empty())
+    say(fmt::format("{} determine {} only weakly.", text.empty() ? "The data" : "They", list(sorted.weak)));
+  if (!sorted.unknown.empty()) say(fmt::format("The data do not determine {}.", list(sorted.unknown)));
+  if (!sorted.silent.empty())
+    say(fmt::format("{} say nothing of {}.", sorted.silent.size() == facts.parameters.size() ? "The data" : "They",
+                    list(sorted.silent)));
+  for (const TradedPair& traded : facts.traded)
+    say(traded.form == "curved"
+            ? fmt::format("{} are traded against each other along a curve.", list(traded.parameters))
+            : fmt::format("{} are traded against each other: known together is {}.", list(traded.parameters),
+                          traded.statement));
+  const std::size_t open = sorted.unknown.size() + sorted.weak.size();
+  if (facts.traded.empty() && facts.collinearity > 10.0 && open > 1)
+    say(fmt::format("The parameters' effects on the data are nearly the same (collinearity {:.0f}).",
+                    facts.collinearity));
+  return text;
+}
+
+std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
+  std::string text;
+  const auto say = [&text](const std::string& more) { text += (text.empty() ? "" : " ") + more; };
+  if (sorted.known.size() == facts.parameters.size()) {
+    say(sorted.known.size() == 1 ? "The value with its error can be used."
+                                 : "The values with their errors can be used.");
+    double surrogate = 0.0;
+    for (const ParameterReport& parameter : facts.parameters)
+      surrogate = std::max(surrogate, parameter.share_surrogate);
+    if (surrogate > 0.25)
+      say(fmt::format("Up to {:.0f} % of {} variance is the surrogate's.", 100.0 * surrogate,
+                      one_or(sorted.known, "its", "their")));
+    return text;
+  }
+  if (!sorted.known.empty())
+    say(fmt::format("{} of {} can be used with {}.", one_or(sorted.known, "The value", "The values"),
+                    list(sorted.known), one_or(sorted.known, "its error", "their errors")));
+  if (!sorted.several.empty()) say("Carry each of the separate values on: their mean fits nothing.");
+  const bool open = !sorted.unknown.empty() || !sorted.weak.empty();
+  if (!facts.traded.empty() && open)
+    say("Any of the equivalent points predicts the measured data as well; what else they predict differs. Do not carry "
+        "one point of them to another machine or fill.");
+  if (!sorted.one_sided.empty())
+    say(fmt::format("Only a limit of {} is known; the value given depends on where the range ends.",
+                    list(sorted.one_sided)));
+  if (!sorted.bound.empty())
+    say(fmt::format("The limit of {} can be used as such; {} is not excluded.", list(sorted.bound),
+                    one_or(sorted.bound, "its bound", "their bound")));
+  Names poor, wide;
+  for (const ParameterReport& parameter : facts.parameters) {
+    const bool hidden = parameter.reason == to_text(Reason::practical) ||
+                        parameter.reason == to_text(Reason::surrogate) ||
+                        parameter.reason == to_text(Reason::structural);
+    if (hidden && facts.traded.empty())
+      (parameter.verdict == Verdict::not_identified && parameter.contraction < 0.5 ? poor : wide)
+          .push_back(parameter.name);
+  }
+  if (!wide.empty()) say(fmt::format("Of {} use the interval, not the mean.", list(wide)));
+  if (!poor.empty())
+    say(fmt::format("{} of {} {} little better than the prior.", one_or(poor, "The value", "The values"), list(poor),
+                    one_or(poor, "is", "are")));
+  if (!sorted.silent.empty())
+    say(fmt::format("{} may be anything in {} range.", list(sorted.silent), one_or(sorted.silent, "its", "their")));
+  return text;
+}
+
+std::string surrogate_remedy(const CaseFacts& facts) {
+  return std::isfinite(facts.surrogate_share)
+             ? fmt::format(
+                   "Make more training runs where the posterior lies (demcal train STUDY --until posterior): the "
+                   "surrogate's error is {:.0f} % of the "
+                   "measurement's.",
+                   100.0 * facts.surrogate_share)
+             : "Make more training runs where the posterior lies (demcal train STUDY --until posterior): the "
+               "surrogate's error decides the widths.";
+}
+
+/// Sets of traded parameters with one in `names`, as "friction and hamaker"; of those names alone where there are none.
+std::string partners(const CaseFacts& facts, const Names& names) {
+  Names together;
+  for (const TradedPair& traded : facts.traded)
+    if (std::any_of(traded.parameters.begin(), traded.parameters.end(), [&](const std::string& member) {
+          return std::find(names.begin(), names.end(), member) != names.end();
+        }))
+      for (const std::string& member : traded.parameters) add(together, member);
+  return together.empty() ? std::string() : list(together);
+}
+
+std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
+  if (sorted.known.size() == facts.parameters.size()) return "None needed.";
+  std::vector<Remedy> remedies;
+  if (!sorted.several.empty())
+    remedies.push_back({static_cast<double>(sorted.several.size()),
+                        facts.parted_by.empty()
+                            ? "Measure a quantity, or at a setting, that differs between the values."
+                            : sentence(facts.parted_by)});
+  if (!sorted.structural.empty()) {
+    const std::string together = partners(facts, sorted.structural);
+    remedies.push_back(
+        {sorted.of_structure,
+         fmt::format("Measure another kind of quantity, {}, or fix {} by an independent experiment: a smaller error of "
+                     "the same measurement will not part them.",
+                     together.empty() ? "one that " + list(sorted.structural) + " alone " +
+                                            one_or(sorted.structural, "changes", "change")
+                                      : "one that responds differently to " + together,
+                     together.empty() ? one_or(sorted.structural, "it", "one of them") : "one of them")});
+  }
+  const double variance = sorted.of_measurement + sorted.of_surrogate;
+  const double surrogate = variance > 0.0 ? sorted.of_surrogate / variance : 0.0;
+  const bool hidden = !sorted.practical.empty() || !sorted.surrogate.empty() || !sorted.bound.empty();
+  if (hidden && (surrogate >= notable || !sorted.surrogate.empty())) {
+    const bool first = surrogate >= mostly || !sorted.surrogate.empty();
+    remedies.push_back({first ? std::max(sorted.of_surrogate, sorted.of_measurement + 1e-9) : 1e-9,
+                        surrogate < notable ? "Make more training runs where the posterior lies (demcal train STUDY "
+                                              "--until posterior): only a sharper "
+                                              "surrogate shows whether a better measurement would help."
+                        : first
+                            ? surrogate_remedy(facts)
+                            : fmt::format("More training runs would help, too: the surrogate's error is {:.0f} % of "
+                                          "the measurement's.",
+                                          100.0 * facts.surrogate_share)});
+  }
+  if (!sorted.practical.empty()) {
+    const std::string together = partners(facts, sorted.practical);
+    remedies.push_back({sorted.of_measurement,
+                        together.empty()
+                            ? "Reduce the measurement error, or measure at more settings."
+                            : fmt::format("Measure a quantity that responds differently to {}, fix one of them by an "
+                                          "independent experiment, or reduce the measurement error.",
+                                          together)});
+  }
+  if (!sorted.one_sided.empty())
+    remedies.push_back(
+        {sorted.of_range, fmt::format("Widen the range of {}, with training runs there, or measure where the response "
+                                      "still changes with {}.",
+                                      list(sorted.one_sided), one_or(sorted.one_sided, "it", "them"))});
+  if (!sorted.bound.empty())
+    remedies.push_back(
+        {sorted.of_measurement,
+         fmt::format("A smaller measurement error would lower the limit of {} or show a value.", list(sorted.bound))});
+  std::stable_sort(remedies.begin(), remedies.end(),
+                   [](const Remedy& a, const Remedy& b) { return a.weight > b.weight; });
+  if (!sorted.silent.empty()) {
+    Names hidden_ones, silent;
+    for (const ParameterReport& parameter : facts.parameters)
+      if (parameter.reason == to_text(Reason::no_influence))
+        (parameter.share_surrogate > mostly ? hidden_ones : silent).push_back(parameter.name);
+    if (!silent.empty())
+      remedies.push_back({0.0, fmt::format("Measure another quantity, or at other settings, that {} {}; or fix {}: "
+                                           "what was measured does not depend on {}.",
+                                           list(silent), one_or(silent, "moves", "move"), one_or(silent, "it", "them"),
+                                           one_or(silent, "it", "them"))});
+    if (!hidden_ones.empty())
+      remedies.push_back({0.0, fmt::format("More training runs would show whether {} {} at all: the surrogate's error "
+                                           "is larger than the measurement's.",
+                                           list(hidden_ones), one_or(hidden_ones, "acts", "act"))});
+  }
+  std::string text;
+  for (const Remedy& remedy : remedies) text += (text.empty() ? "" : " ") + remedy.text;
+  return text;
+}
+
+}  // namespace
+
+const char* to_text(Reason reason) {
+  switch (reason) {
+    case Reason::structural:
+      return "structural";
+    case Reason::practical:
+      return "practical";
+    case Reason::surrogate:
+      return "surrogate";
+    case Reason::one_sided:
+      return "one-sided";
+    case Reason::bound:
+      return "bound";
+    case Reason::no_influence:
+      break;
+  }
+  return "no influence";
+}
+
+std::optional<Reason> reason_of(const std::string& text) {
+  for (const Reason reason : reasons)
+    if (text == to_text(reason)) return reason;
+  return {};
+}
+
+std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict verdict) {
+  if (verdict != Verdict::not_identified && verdict != Verdict::weakly_identified) return {};
+  const WordFacts& facts = parameter.facts;
+  if (!facts.influences) return Reason::no_influence;
+  if (parameter.structural) return Reason::structural;
+  if (facts.open_low && !facts.open_high && facts.physical_low) return Reason::bound;
+  const bool pinned = !parameter.low_pinned_by.empty() || !parameter.high_pinned_by.empty();
+  if (facts.open_low != facts.open_high && !pinned) return Reason::one_sided;
+  if (parameter.undecided || parameter.surrogate_share > mostly) return Reason::surrogate;
+  return Reason::practical;
+}
+
+std::string because(Reason reason, const ParameterEvidence& parameter) {
+  switch (reason) {
+    case Reason::structural:
+      return "; other parameters do the same to all that was measured, so that a better measurement of the same kind "
+             "would not help";
+    case Reason::practical:
+      return "; the measurement's noise hides it";
+    case Reason::surrogate:
+      return parameter.surrogate_share > mostly
+                 ? "; the surrogate's error hides it"
+                 : "; the surrogate's error leaves open whether a better measurement would help";
+    case Reason::one_sided:
+    case Reason::bound:
+      return "";
+    case Reason::no_influence:
+      break;
+  }
+  return parameter.silent_sds > hides
+             ? fmt::format(
+                   ": the data say nothing of it. The runs show no effect of its range; the surrogate could "
+                   "miss one of {:.1f} measurement errors",
+                   parameter.silent_sds)
+             : ": the data say nothing of it. Its whole range changes nothing that was measured, as far as the "
+               "surrogate and the measurement can tell";
+}
+
+WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason> reason) {
+  const double surrogate = std::clamp(parameter.surrogate_share, 0.0, 1.0);
+  if (reason == Reason::structural) return {.measurement = 0.0, .surrogate = 0.0, .structure = 1.0, .range = 0.0};
+  if (reason == Reason::one_sided) return {.measurement = 0.0, .surrogate = 0.0, .structure = 0.0, .range = 1.0};
+  if (reason == Reason::no_influence)
+    return parameter.silent_sds > hides
+               ? WidthShares{.measurement = 0.0, .surrogate = 1.0, .structure = 0.0, .range = 0.0}
+               : WidthShares{.measurement = 0.0, .surrogate = 0.0, .structure = 0.0, .range = 1.0};
+  return {.measurement = 1.0 - surrogate, .surrogate = surrogate, .structure = 0.0, .range = 0.0};
+}
+
+Words words_of(const CaseFacts& facts) {
+  const Sorted sorted = sort_parameters(facts.parameters);
+  return {.finding = find_finding(facts, sorted),
+          .consequence = find_consequence(facts, sorted),
+          .remedy = find_remedy(facts, sorted)};
+}
+
+}  // namespace uq

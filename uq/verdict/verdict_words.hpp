@@ -1,0 +1,52 @@
+#pragma once
+// The words of the report: one table of why a parameter is not known and what can be done about it.
+//
+//   reason        because                                                      what can be done
+//   structural    other parameters do the same to all that was measured        another kind of quantity, or fix one
+//   practical     the measurement's error is as large as what would tell       a smaller error, more settings
+//   surrogate     the surrogate's error is                                     training runs
+//   one-sided     the data no longer change towards the range's end            wider range, other settings
+//   bound         it cannot be told from its physical bound                    a smaller error lowers the limit
+//   no influence  nothing that was measured depends on it                      a quantity that does, or fix it
+//   (none) several values                                                      the measurement that parts them
+//
+// A case's remedy starts with that of the largest share of the widths. No remedy says what another denies: where one
+// parameter needs another quantity, its partner is not told to be measured better.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "uq/findings/results.hpp"
+#include "uq/verdict/verdict.hpp"
+
+namespace uq {
+
+enum class Reason { structural, practical, surrogate, one_sided, bound, no_influence };
+const char* to_text(Reason reason);
+std::optional<Reason> reason_of(const std::string& text);
+
+/// Why a word other than "identified" or "several values"; nothing for these two.
+std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict verdict);
+
+/// The clause that ends a parameter's sentence: "; the measurement's noise hides it".
+std::string because(Reason reason, const ParameterEvidence& parameter);
+
+/// What the shares of a width are, given the reason.
+WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason> reason);
+
+/// The case's verdicts in one finding, what follows from it, and what to do.
+struct Words {
+  std::string finding, consequence, remedy;
+};
+
+/// What the words of a case that fits hang on.
+struct CaseFacts {
+  std::vector<ParameterReport> parameters;
+  std::vector<TradedPair> traded;
+  std::string parted_by;         ///< uq/verdict/modes.hpp; may be empty
+  double surrogate_share = 0.0;  ///< sd of the surrogate over that of all else, typical row
+  double collinearity = 1.0;
+};
+Words words_of(const CaseFacts& facts);
+
+}  // namespace uq
