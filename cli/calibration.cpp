@@ -53,7 +53,7 @@ TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace
   rows.findings.insert(rows.findings.end(), found.begin(), found.end());
   if (data::has(rows.findings, data::Severity::refusal))  // what is suspected beside it may be its cause
     for (const data::Finding& finding : rows.findings)
-      if (finding.severity == data::Severity::warning) say(common, "WARNING: " + data::describe(finding));
+      if (finding.severity == data::Severity::warning) say(common, "warning: " + data::describe(finding));
   data::refuse(rows.findings);
   return rows;
 }
@@ -67,7 +67,7 @@ std::vector<std::string> say_warnings(const Common& common, const TrainingRows& 
   for (std::string& warning : uq::surrogate_warnings(fitted)) warnings.push_back(std::move(warning));
   warnings.insert(warnings.end(), more.begin(), more.end());
   for (std::string& caution : uq::surrogate_cautions(fitted)) notes.push_back(std::move(caution));
-  for (const std::string& warning : warnings) say(common, "WARNING: " + warning);
+  for (const std::string& warning : warnings) say(common, "warning: " + warning);
   for (const std::string& note : notes) say(common, "note: " + note);
   return warnings;
 }
@@ -161,7 +161,7 @@ data::ExitStatus write_report(const Common& common, const Workspace& workspace, 
   uq::write_report_json(report, (out / "report.json").string());
   uq::write_report_html(report, workspace.out);
   if (!common.json && data::answers_go_elsewhere())  // or whoever redirects the answer would not see them
-    for (const std::string& warning : uq::first_lines(report)) say(common, "WARNING: " + warning);
+    for (const std::string& warning : uq::first_lines(report)) say(common, "warning: " + warning);
   answer(common, uq::terminal_summary(report, {.report_file = (out / "report.html").string()}));
   print_json(common, uq::report_json(report));
   return uq::has_warning(report) ? data::ExitStatus::warning : data::ExitStatus::done;

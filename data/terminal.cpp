@@ -37,9 +37,9 @@ bool takes_colours(int stream) {
 std::string coloured(std::string text, int stream) {
   if (!takes_colours(stream)) return text;
   for (std::size_t at = 0; at < text.size();) {
-    for (const std::string_view word : {"WARNING:", "warning:"})
-      if (std::string_view(text).substr(at).starts_with(word))
-        text.replace(at, word.size(), fmt::format("\x1b[33m{}\x1b[0m", word));
+    constexpr std::string_view word = "warning:";
+    if (std::string_view(text).substr(at).starts_with(word))
+      text.replace(at, word.size(), fmt::format("\x1b[33m{}\x1b[0m", word));
     at = std::min(text.find('\n', at), text.size() - 1) + 1;
   }
   return text;

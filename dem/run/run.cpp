@@ -100,7 +100,8 @@ RunProgress progress_of(const Series& s, const Plan& plan) {
 
 /// Evenly spaced from the start of turning to the earliest end, in steps of the run.
 std::vector<std::uint64_t> frames_in(const Plan& plan, int frames) {
-  const double last = static_cast<double>((plan.rule.start_up + plan.rule.shortest) * plan.sample);
+  const double last =
+      static_cast<double>(std::min(plan.rule.start_up + plan.rule.shortest, plan.rule.longest) * plan.sample);
   std::vector<std::uint64_t> steps;
   for (int k = 0; k < frames; ++k)
     steps.push_back(plan.settle +

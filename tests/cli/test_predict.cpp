@@ -10,23 +10,21 @@ using test::Folder;
 
 namespace {
 
-/// The study on another code's runs with readings at two more speeds that the case does not use.
-Folder with_later(const std::string& later, const std::string& observe) {
-  Folder folder;
+/// Makes the study on another code's runs, with readings at two more speeds that the case does not use.
+void make_study(const Folder& folder, const std::string& later, const std::string& observe) {
   folder.study("other-code");
   folder.write("study/later.csv", later);
-  folder.write("study/study.toml",
-               folder.read("study/study.toml") +
-                   "[[observe]]\nname = \"later\"\nfile = \"later.csv\"\n[[predict]]\nname = \"held out\"\n"
-                   "observe = [\"" +
-                   observe + "\"]\n");
-  return folder;
+  folder.write("study/study.toml", folder.read("study/study.toml") +
+                                       "[[observe]]\nname = \"later\"\nfile = \"later.csv\"\n"
+                                       "[[predict]]\nname = \"held out\"\nobserve = [\"" +
+                                       observe + "\"]\n");
 }
 
 }  // namespace
 
 TEST_CASE("data of the same law are predicted, and the page shows each beside its interval") {
-  const Folder folder = with_later("speed,torque,torque_se\n75,9.62,0.29\n275,11.15,0.33\n", "later");
+  const Folder folder;
+  make_study(folder, "speed,torque,torque_se\n75,9.62,0.29\n275,11.15,0.33\n", "later");
   const auto outcome = folder.demcal({"calibrate", "study", "--out", "out", "--no-scan"});
   INFO(outcome.err);
   CHECK(outcome.status == 0);
@@ -43,7 +41,8 @@ TEST_CASE("data of the same law are predicted, and the page shows each beside it
 }
 
 TEST_CASE("data that the calibration does not predict are a warning") {
-  const Folder folder = with_later("speed,torque,torque_se\n75,9.62,0.29\n275,14.5,0.33\n", "later");
+  const Folder folder;
+  make_study(folder, "speed,torque,torque_se\n75,9.62,0.29\n275,14.5,0.33\n", "later");
   const auto outcome = folder.demcal({"calibrate", "study", "--out", "out", "--no-scan"});
   CHECK(outcome.status == 2);
   CHECK_THAT(outcome.out, Contains("The calibration does not predict them."));
@@ -51,11 +50,14 @@ TEST_CASE("data that the calibration does not predict are a warning") {
 }
 
 TEST_CASE("what informs the case is no prediction, and what is not there is named") {
-  const Folder folder = with_later("speed,torque,torque_se\n75,9.62,0.29\n", "bench");
+  const Folder folder;
+  make_study(folder, "speed,torque,torque_se\n75,9.62,0.29\n", "bench");
   const auto outcome = folder.demcal({"check", "study"});
   CHECK(outcome.status == 78);
   CHECK_THAT(outcome.err, Contains("'bench' informs the case 'powder' itself"));
-  const auto unknown = with_later("speed,torque,torque_se\n75,9.62,0.29\n", "latr").demcal({"check", "study"});
+  const Folder other;
+  make_study(other, "speed,torque,torque_se\n75,9.62,0.29\n", "latr");
+  const auto unknown = other.demcal({"check", "study"});
   CHECK(unknown.status == 78);
   CHECK_THAT(unknown.err, Contains("did you mean 'later'?"));
 }

@@ -147,10 +147,10 @@ std::string sampler_section(const CalibrationReport& report, const page::Context
                        {"Sampler"},
                        number("Divergences"),
                        number("E-BFMI"),
-                       number("Difference to quadrature"),
-                       number("Log evidence"),
-                       number("Collinearity"),
-                       number("Fisher condition")},
+                       number("Difference to quadrature")},
+              .rows = {}};
+  Table shape{.caption = "Evidence, and how nearly the parameters' effects are the same.",
+              .head = {{"Case"}, number("Log evidence"), number("Collinearity"), number("Fisher condition")},
               .rows = {}};
   Table parameters{.caption = "By parameter.",
                    .head = {{"Case"},
@@ -174,12 +174,13 @@ std::string sampler_section(const CalibrationReport& report, const page::Context
          {text(result.sampler)},
          number(std::to_string(result.divergences)),
          number(std::isfinite(result.energy_fraction) ? significant(result.energy_fraction, 2, pretty) : "\u2013"),
-         number(difference),
-         number(std::isfinite(result.log_evidence)
-                    ? format_with_error(result.log_evidence, result.log_evidence_error, "", pretty)
-                    : "\u2013"),
-         number(significant(result.collinearity, 3, pretty)),
-         number(significant(result.fisher_condition, 3, pretty))});
+         number(difference)});
+    shape.rows.push_back({{text(result.name)},
+                          number(std::isfinite(result.log_evidence)
+                                     ? format_with_error(result.log_evidence, result.log_evidence_error, "", pretty)
+                                     : "\u2013"),
+                          number(significant(result.collinearity, 3, pretty)),
+                          number(significant(result.fisher_condition, 3, pretty))});
     bool first = true;
     for (const ParameterReport& parameter : result.parameters) {
       const auto count = [](double ess) { return std::isfinite(ess) ? fmt::format("{:.0f}", ess) : "not available"; };
@@ -201,7 +202,7 @@ std::string sampler_section(const CalibrationReport& report, const page::Context
          "error "
          "of the mean. The difference to quadrature is the largest in mean or sd, in posterior sd, where a grid is "
          "feasible.</p>\n" +
-         page::html(parameters) + page::html(cases) + chains + "</section>\n";
+         page::html(parameters) + page::html(cases) + page::html(shape) + chains + "</section>\n";
 }
 
 std::string pairs_section(const std::string& id, const char* heading, const char* lead,

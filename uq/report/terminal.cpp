@@ -130,7 +130,7 @@ std::string case_text(const CaseReport& result, int columns) {
 
 std::string terminal_summary(const CalibrationReport& report, const TerminalOptions& options) {
   std::string text;
-  for (const std::string& line : first_lines(report)) text += fold("WARNING: ", line, options.columns);
+  for (const std::string& line : first_lines(report)) text += fold("warning: ", line, options.columns);
   for (const std::string& caution : report.cautions) text += fold("note: ", caution, options.columns);
   if (!text.empty()) text += "\n";
   for (const CaseReport& result : report.cases) text += case_text(result, options.columns) + "\n";

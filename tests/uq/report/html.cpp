@@ -46,7 +46,10 @@ TEST_CASE("the page fetches nothing, runs nothing and names no id twice") {
   CHECK_FALSE(has(page, "@import"));
   CHECK_FALSE(has(page, "<?xml"));
   CHECK_FALSE(has(page, "<!DOCTYPE svg"));
-  for (const std::string& target : all(page, "href=[\"']([^\"']*)[\"']")) CHECK(target.front() == '#');
+  for (const std::string& target : all(page, "href=[\"']([^\"']*)[\"']")) {
+    INFO(target);
+    CHECK((target.front() == '#' || target.starts_with("figures/")));
+  }
   const auto ids = all(page, " id=[\"']([^\"']*)[\"']");
   const std::set<std::string> distinct(ids.begin(), ids.end());
   CHECK(distinct.size() == ids.size());
@@ -75,9 +78,14 @@ TEST_CASE("every figure keeps its script and data beside it") {
     CHECK(std::filesystem::exists(std::filesystem::path(entry.path()).replace_extension(".gp")));
     CHECK(std::filesystem::exists(std::filesystem::path(entry.path()).replace_extension(".dat")));
   }
-  // Three against rpm, two joint, five profiles, two for each of two surrogates.
-  CHECK(figures == 14);
-  CHECK(count(folder.read("report.html"), "<svg") == figures);
+  // Three against rpm, two joint, five profiles, traces and ranks of five parameters, two for each of two surrogates.
+  CHECK(figures == 24);
+  const std::string page = folder.read("report.html");
+  CHECK(count(page, "<svg") == figures);
+  for (const std::string& file : all(page, "href=[\"'](figures/[^\"']*)[\"']")) {
+    INFO(file);
+    CHECK(std::filesystem::exists(folder.path(file)));
+  }
 }
 
 TEST_CASE("markup and commands in names appear as text and do nothing") {

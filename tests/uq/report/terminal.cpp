@@ -35,7 +35,7 @@ TEST_CASE("lines of the terminal summary are no longer than asked") {
 
 TEST_CASE("the terminal summary starts with the warnings and calls nothing identified in a misfit") {
   const std::string text = terminal_summary(report_fixture::misfit());
-  CHECK(text.rfind("WARNING: ", 0) == 0);
+  CHECK(text.rfind("warning: ", 0) == 0);
   CHECK_FALSE(has(text, "0.021  identified"));
   CHECK(has(text, "model does not fit"));
 }
