@@ -128,10 +128,9 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
   }
   const double level = (1.0 - v.q2_attainable) * 100.0;
   v.finding = fmt::format(
-      "Held-out runs are predicted with Q2 {:.4f} (the noise allows {:.4f}; without the noise {:.4f}); {:.0f} % of "
-      "them lie in "
-      "the 95 % interval",
-      v.q2_held_out, v.q2_attainable, v.q2_function, 100.0 * coverage95);
+      "Held-out runs are predicted with Q2 {:.3f}, their own noise taken off; {:.0f} % of them lie in the 95 % "
+      "interval",
+      v.q2_function, 100.0 * coverage95);
   const bool coverage_low = coverage95 < 0.95,
              coverage_wrong = coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability;
   const bool distance_wrong = v.mahalanobis_probability < t.mahalanobis_probability;

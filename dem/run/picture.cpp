@@ -126,7 +126,7 @@ std::string bodies_text(const Frame& frame) {
     if (facets.empty()) continue;
     scene += "mesh {\n" + facets +
              fmt::format("pigment {{ rgbt <{}> }} finish {{ Wall }} no_shadow }}\n",
-                         fastest > 0.0 ? "0.55,0.58,0.62,0.1" : "0.75,0.80,0.85,0.88");
+                         fastest > 0.0 ? "0.55,0.58,0.62,0.1" : "0.62,0.70,0.80,0.8");
   }
   return scene;
 }
@@ -144,7 +144,7 @@ std::string povray_scene(const std::string& path, const PictureOptions& options)
   }
   const Vec3 centre = 0.5 * (low + high);
   const Vec3 direction{options.from[0], options.from[1], options.from[2]};
-  const Vec3 at = centre + (2.6 * std::max(length(high - low), 1e-12) / std::max(length(direction), 1e-12)) * direction;
+  const Vec3 at = centre + (3.1 * std::max(length(high - low), 1e-12) / std::max(length(direction), 1e-12)) * direction;
   // The picture's right is turned round: POV-Ray's axes are left-handed.
   return fmt::format(
              "#version 3.7;\nglobal_settings {{ assumed_gamma 1.0 }}\nbackground {{ rgb 1 }}\n"

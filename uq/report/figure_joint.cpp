@@ -1,5 +1,5 @@
 // The joint posterior of two parameters. The regions are the smallest that hold 50 and 90 % of the density drawn from
-// the posterior's draws (report_density.hpp); the prior box is the parameters' range.
+// the posterior's draws (density.hpp); the prior box is the parameters' range.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-// The figures of the report as gnuplot scripts and data, made from plain results; drawn by report_gnuplot.
+// The figures of the report as gnuplot scripts and data, made from plain results; drawn by gnuplot (gnuplot.hpp).
 // Colours are Okabe & Ito's, told apart by colour-blind readers, and every mark also differs in shape or place.
 #include <string>
 #include <utility>

@@ -1,5 +1,5 @@
 #pragma once
-// Pieces of report.html, for report_html*.cpp alone. Every piece of text that a file or a user
+// Pieces of report.html, for html*.cpp alone. Every piece of text that a file or a user
 // supplied goes through text().
 #include <string>
 #include <string_view>

@@ -1,5 +1,5 @@
 #pragma once
-// What the report's figures share: blocks of data, axis scales, the look. Used by report_figures*.cpp.
+// What the report's figures share: blocks of data, axis scales, the look. Used by figure*.cpp.
 #include <string>
 #include <string_view>
 #include <vector>
