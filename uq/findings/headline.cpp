@@ -93,28 +93,35 @@ std::string headline(const CaseReport& result, Typography typography) {
   if (result.unusable)
     return "Nothing can be said of the parameters: the surrogate is unusable. Ignore what follows, and do first what "
            "the warning says.";
+  if (!result.converged) return "No result yet: the sampler has not converged.";
   const Names outputs = measured(result);
-  const std::string subject = outputs.empty() ? "The data" : capital(listed(outputs));
-  const std::string s = outputs.size() == 1 ? "s" : "";
   if (!result.fits)
     return "No values of the parameters reproduce the measured " + (outputs.empty() ? "data" : listed(outputs)) + ".";
   if (!result.doubt.empty()) return "No verdict yet: " + result.doubt + ".";
+
+  const std::string subject = outputs.empty() ? "The data" : capital(listed(outputs));
+  const bool one = outputs.size() == 1;
+  const std::string fixes = one ? " fixes " : " fix ", ties = one ? " ties " : " tie ", does = one ? " does" : " do";
   const Standing found = standing(result, typography);
   Names fixed = known_together(result, typography);
   fixed.insert(fixed.begin(), found.fixed.begin(), found.fixed.end());
-  std::string text;
-  if (fixed.empty() && tied_by_a_curve(result))
-    text = subject + " tie" + s + " " + listed(found.open) + " together along a curve, and fix" +
-           (s.empty() ? "" : "es") + (found.open.size() == 2 ? " neither." : " none of them.");
-  else if (fixed.empty())
-    text = subject + " fix" + (s.empty() ? "" : "es") + " none of " +
-           listed(found.open.empty() ? found.silent : found.open) + ".";
+
+  std::string text = subject;
+  if (!fixed.empty())
+    text += fixes + listed(fixed) +
+            (found.open.empty()       ? ""
+             : found.open.size() == 1 ? ", not " + found.open.front() + " itself"
+                                      : ", not " + listed(found.open) + " themselves");
+  else if (found.open.size() > 1 && tied_by_a_curve(result))
+    text += ties + listed(found.open) + " together along a curve, and" + fixes +
+            (found.open.size() == 2 ? "neither" : "none of them");
+  else if (found.open.size() > 1)
+    text += fixes + "none of " + listed(found.open);
   else
-    text =
-        subject + " fix" + (s.empty() ? "" : "es") + " " + listed(fixed) +
-        (found.open.empty() ? "."
-                            : ", not " + listed(found.open) + (found.open.size() == 1 ? " itself." : " themselves."));
-  if (!found.silent.empty() && !fixed.empty()) text += " Nothing is said of " + listed(found.silent) + ".";
+    text += does + " not fix " + (found.open.empty() ? listed(found.silent) : found.open.front());
+  text += '.';
+  if (!found.silent.empty() && (!fixed.empty() || !found.open.empty()))
+    text += " Nothing is said of " + listed(found.silent) + ".";
   return text + next_step(result, found);
 }
 
