@@ -89,4 +89,14 @@ TrainingRows training_rows(const Workspace& workspace) {
   return result;
 }
 
+void require_rows(const Workspace& workspace, const TrainingRows& rows, const std::string& study) {
+  if (data::used_rows(rows.table) > 0) return;
+  throw data::InputError(data::ExitStatus::missing_input,
+                         {workspace.study.file, "has no usable training runs",
+                          !workspace.cases.empty() ? "make them: demcal train " + study
+                          : workspace.study.training.table.empty()
+                              ? "name a table of runs under [training] table"
+                              : "put runs into " + workspace.study.training.table + " (demcal design says which)"});
+}
+
 }  // namespace campaign

@@ -21,4 +21,7 @@ struct TrainingRows {
 };
 TrainingRows training_rows(const Workspace& workspace);
 
+/// Throws data::InputError (66) when none of them can be learnt from; `study`: as the user named it.
+void require_rows(const Workspace& workspace, const TrainingRows& rows, const std::string& study);
+
 }  // namespace campaign

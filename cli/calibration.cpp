@@ -43,11 +43,7 @@ TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace
   data::require_cases(workspace.study);
   TrainingRows rows = training_rows(workspace);
   for (const std::string& note : rows.notes) say(common, "note: " + note);
-  if (data::used_rows(rows.table) == 0)
-    throw data::InputError(data::ExitStatus::missing_input,
-                           {workspace.study.file, "has no usable training runs",
-                            workspace.cases.empty() ? "name a table of runs under [training] table"
-                                                    : "make them: demcal train " + common.study});
+  require_rows(workspace, rows, common.study);
   std::vector<data::Finding> found =
       uq::check_data(workspace.study, rows.table, rows.low, workspace.surrogates->log_outputs);
   rows.findings.insert(rows.findings.end(), found.begin(), found.end());

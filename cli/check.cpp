@@ -39,6 +39,8 @@ Action add_check(CLI::App& program) {
     const Workspace workspace = open_workspace(*common);
     const data::Study& study = workspace.study;
     TrainingRows rows = training_rows(workspace);
+    // Runs of one's own come later; those of another code are what the study rests on.
+    if (workspace.cases.empty() && !study.training.table.empty()) require_rows(workspace, rows, common->study);
     std::vector<std::string> warnings = rows.notes;
     const std::vector<data::Finding> found =
         uq::check_data(study, rows.table, rows.low, workspace.surrogates->log_outputs);

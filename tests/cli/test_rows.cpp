@@ -8,6 +8,18 @@
 using Catch::Contains;
 using test::Folder;
 
+TEST_CASE("a table of another code without a row is a problem of check, too") {
+  const Folder folder;
+  folder.study("other-code");
+  folder.write("study/runs.csv", "friction,cohesion,speed,torque,torque_se\n");
+  for (const char* command : {"check", "fit", "calibrate"}) {
+    const auto outcome = folder.demcal({command, "study"});
+    INFO(command << ": " << outcome.err);
+    CHECK(outcome.status == 66);
+    CHECK_THAT(outcome.err, Contains("has no usable training runs") && Contains("demcal design"));
+  }
+}
+
 TEST_CASE("runs that are not of the steady flow train nothing, by name and number, unless the study takes them") {
   const Folder folder;
   folder.study("other-code");
