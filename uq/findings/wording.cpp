@@ -67,8 +67,9 @@ Rounding rounding_of(double value, double error) {
   if (!has_error && !has_value) return {.exponent = 0, .decimals = 0};
   const double largest = std::max(has_value ? std::abs(value) : 0.0, has_error ? std::abs(error) : 0.0);
   const bool plain = largest >= smallest_plain && largest < largest_plain;
-  Rounding rounding{.exponent = plain ? 0 : decade(largest), .decimals = 0};
   const int last = has_error ? decade(error) - 1 : decade(value) - 3;
+  // Digits that the error leaves unknown are not shown: 34,313 +- 11,191 is (3.4 +- 1.1)e4.
+  Rounding rounding{.exponent = plain && last < 2 ? 0 : decade(largest), .decimals = 0};
   rounding.decimals = std::clamp(rounding.exponent - last, 0, 9);
   return rounding;
 }

@@ -2,7 +2,8 @@
 // How the report writes numbers, names and verdicts, in the page and on the terminal.
 //
 // A value is rounded to its error: the error to two significant digits, the value and its intervals to the same
-// decimal. Beyond 1e-2 .. 1e5 a common power of ten is taken out: (9.0 +- 0.4) x 10^-18 J.
+// decimal. Beyond 1e-2 .. 1e5, and where the error is a thousand and more, a common power of ten is taken out:
+// (9.0 +- 0.4) x 10^-18 J.
 #include <string>
 #include <string_view>
 #include <vector>

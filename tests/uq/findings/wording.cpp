@@ -17,6 +17,7 @@ TEST_CASE("a value is rounded at the second significant digit of its error") {
   CHECK(format_with_error(0.40231, 0.02143, "", plain) == "0.402 +- 0.021");
   CHECK(format_with_error(74.2149, 2.26, "mN m", plain) == "(74.2 +- 2.3) mN m");
   CHECK(format_with_error(1234.5, 180.0, "", plain) == "1234 +- 180");
+  CHECK(format_with_error(34313.0, 11191.0, "J/m3", plain) == "(3.4 +- 1.1)e4 J/m3");
   CHECK(format_with_error(9.04e-18, 4.1e-19, "J", plain) == "(9.04 +- 0.41)e-18 J");
   CHECK(format_with_error(9.04e-18, 4.1e-19, "J", Typography::unicode) ==
         "(9.04\u00a0\u00b1\u00a00.41)\u00a0\u00d7\u00a010\u207b\u00b9\u2078\u00a0J");
