@@ -2,6 +2,7 @@
 // One DEM run of a point, kept in a file: finished and failed runs are read back, interrupted ones go on from their
 // checkpoint.
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 
@@ -19,7 +20,9 @@ struct PointRun {
   std::function<void(const dem::RunProgress&)> progress = {};
 };
 
-/// Whether the file holds this run, ended as it would end now.
+/// This run, finished or failed, when the file holds it, ended as it would end now.
+std::optional<dem::RunResult> ended_run(const Workspace& workspace, const Point& point, const std::string& path);
+/// Whether it does.
 bool is_done(const Workspace& workspace, const Point& point, const std::string& path);
 
 /// The result, which the file holds too. A finished run of which the study now wants more, or less, goes on from its

@@ -1,14 +1,7 @@
 #include "uq/report/gnuplot.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/mman.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
@@ -17,68 +10,11 @@
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "data/file_name.hpp"
+#include "data/program.hpp"
 #include "uq/findings/wording.hpp"
-
-extern char** environ;
 
 namespace uq {
 namespace {
-
-struct ChildResult {
-  int start_error = 0;  ///< errno of the start
-  int exit_status = 0;  ///< of the program; 128 + signal when it was killed
-  std::string drawn;    ///< on its standard output
-  std::string said;     ///< on its standard error
-};
-
-/// Everything that comes out of a pipe until its last writer has closed it, or that a file in memory holds.
-std::string read_all(int descriptor) {
-  std::string text;
-  std::array<char, 4096> buffer{};
-  for (;;) {
-    const ssize_t got = read(descriptor, buffer.data(), buffer.size());
-    if (got > 0) text.append(buffer.data(), static_cast<std::size_t>(got));
-    if (got == 0 || (got < 0 && errno != EINTR)) return text;
-  }
-}
-
-/// Runs `program -d -e to_stdout=1 STEM.gp` in `folder`; the picture comes through a pipe, which no full disk cuts off.
-/// "-d" keeps the user's and the system's start-up files out of the figures.
-ChildResult run_in(const std::string& folder, const std::string& program, const std::string& script) {
-  std::array<int, 2> pipe_ends{};
-  ChildResult result;
-  const int errors = memfd_create("demcal", MFD_CLOEXEC);
-  if (errors < 0 || pipe2(pipe_ends.data(), O_CLOEXEC) != 0) {
-    result.start_error = errno;
-    close(errors);
-    return result;
-  }
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, errors, STDERR_FILENO);
-
-  std::string name = program, defaults = "-d", command = "-e", to_stdout = "to_stdout=1", file = script;
-  std::array<char*, 6> arguments{name.data(), defaults.data(), command.data(), to_stdout.data(), file.data(), nullptr};
-  pid_t child = 0;
-  result.start_error = posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(pipe_ends[1]);
-  if (result.start_error == 0) {
-    result.drawn = read_all(pipe_ends[0]);
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    result.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    lseek(errors, 0, SEEK_SET);
-    result.said = read_all(errors);
-  }
-  close(errors);
-  close(pipe_ends[0]);
-  return result;
-}
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
@@ -143,7 +79,10 @@ std::string draw(const Figure& figure, const std::string& folder, const GnuplotO
   data::write_atomically(base + ".dat", figure.data);
   data::write_atomically(base + ".gp", script);
 
-  const ChildResult result = run_in(folder, options.program, figure.stem + ".gp");
+  // The picture comes through a pipe, which no full disk cuts off. "-d" keeps the user's and the system's start-up files
+  // out of the figures.
+  const data::ProgramEnd result =
+      data::run_program({.words = {options.program, "-d", "-e", "to_stdout=1", figure.stem + ".gp"}, .folder = folder});
   if (result.start_error != 0) {
     throw data::InputError(data::ExitStatus::missing_program,
                            {options.program,
@@ -151,11 +90,11 @@ std::string draw(const Figure& figure, const std::string& folder, const GnuplotO
                                         std::strerror(result.start_error)),
                             "install it: apt-get install gnuplot-nox"});
   }
-  const std::string& svg = result.drawn;
+  const std::string& svg = result.out;
   if (result.exit_status != 0 || svg.find("</svg>") == std::string::npos) {
     throw data::InputError(
         data::ExitStatus::missing_program,
-        {base + ".gp", fmt::format("gnuplot failed (exit status {}) and said: {}", result.exit_status, result.said),
+        {base + ".gp", fmt::format("gnuplot failed (exit status {}) and said: {}", result.exit_status, result.err),
          "demcal needs gnuplot 5.2 or later with the svg terminal: apt-get install gnuplot-nox"});
   }
   data::write_atomically(base + ".svg", svg);
