@@ -60,6 +60,11 @@ bool is_done(const Workspace& workspace, const Point& point, const std::string& 
   return ended_run(workspace, point, path).has_value();
 }
 
+std::uint64_t steps_made(const Workspace& workspace, const Point& point, const std::string& path) {
+  const std::optional<dem::SavedRun> before = earlier(path, case_at(workspace, point), run_seed(workspace, point));
+  return before ? before->result.checkpoint.state.step : 0;
+}
+
 dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options) {
   const dem::Case c = case_at(workspace, point);
   const std::uint64_t seed = run_seed(workspace, point);

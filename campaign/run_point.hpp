@@ -1,6 +1,7 @@
 #pragma once
 // One DEM run of a point, kept in a file: finished and failed runs are read back, interrupted ones go on from their
 // checkpoint.
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <stop_token>
@@ -24,6 +25,9 @@ struct PointRun {
 std::optional<dem::RunResult> ended_run(const Workspace& workspace, const Point& point, const std::string& path);
 /// Whether it does.
 bool is_done(const Workspace& workspace, const Point& point, const std::string& path);
+
+/// How many steps of this run the file holds, ended or interrupted; 0 where it holds another run or none.
+std::uint64_t steps_made(const Workspace& workspace, const Point& point, const std::string& path);
 
 /// The result, which the file holds too. A finished run of which the study now wants more, or less, goes on from its
 /// last state or is cut short: to the same bits as a new one. A file of another point, seed or setting is replaced.

@@ -163,6 +163,10 @@ class Follower {
     return found == queue_.end() ? nullptr : &found->second;
   }
 
+  std::uint64_t steps_of(std::size_t i) const {
+    return steps_made(with_seed(workspace_, runs_[i].seed), runs_[i].point, followed_[i].path);
+  }
+
   /// Reads the files that were written since the last time.
   void collect() {
     std::size_t taken = 0;
@@ -195,7 +199,8 @@ class Follower {
       const auto with = record_.runs.find(run.name);
       if (ledger_.result.ended[i] || with == record_.runs.end()) continue;
       const QueuedTask* task = task_of(with->second);
-      const bool advanced = change_of(run.path) != with->second.changed;
+      // Read only for those that are lost: a task in the queue has not ended.
+      const bool advanced = run.looks_without > 1 && steps_of(i) > with->second.steps;
       const int tries = with->second.tries;
       switch (fate_of(task, {.tries = tries, .looks_without = run.looks_without, .advanced = advanced},
                       options_.most_tries)) {
@@ -266,7 +271,7 @@ class Follower {
       record_.runs[run.name] = {.job = name,
                                 .task = static_cast<int>(k) / job.runs_per_task,
                                 .tries = tries == tries_.end() ? 1 : tries->second,
-                                .changed = change_of(run.path)};
+                                .steps = steps_of(which[k])};
     }
     save_slurm_record(workspace_.out, record_);
     const SlurmCommands::Submitted submitted = commands_.submit(submission);

@@ -82,7 +82,7 @@ Queue parse_queue(const std::string& lines);
 struct RunHistory {
   int tries = 1;          ///< submissions so far, this one included, without those that brought the run further
   int looks_without = 0;  ///< in a row, at a queue without its task
-  bool advanced = false;  ///< its file was written since it was submitted
+  bool advanced = false;  ///< its file holds more of it than when it was submitted
 };
 enum class Fate { wait, submit_again, left, failed };
 /// What to do about it. `task` is none where the queue does not know it. A task that has just left the queue gets a

@@ -39,7 +39,7 @@ SlurmRecord from_json(const nlohmann::json& json) {
     record.jobs[name] = {.id = job.at("id"), .tasks = job.at("tasks")};
   for (const auto& [name, run] : json.at("runs").items())
     record.runs[name] = {
-        .job = run.at("job"), .task = run.at("task"), .tries = run.at("tries"), .changed = run.at("changed")};
+        .job = run.at("job"), .task = run.at("task"), .tries = run.at("tries"), .steps = run.at("steps")};
   std::erase_if(record.runs, [&](const auto& run) { return !record.jobs.contains(run.second.job); });
   return record;
 }
@@ -76,7 +76,7 @@ void save_slurm_record(const std::string& out, SlurmRecord& record) {
                       {"runs", nlohmann::json::object()}};
   for (const auto& [name, job] : record.jobs) json["jobs"][name] = {{"id", job.id}, {"tasks", job.tasks}};
   for (const auto& [name, run] : record.runs)
-    json["runs"][name] = {{"job", run.job}, {"task", run.task}, {"tries", run.tries}, {"changed", run.changed}};
+    json["runs"][name] = {{"job", run.job}, {"task", run.task}, {"tries", run.tries}, {"steps", run.steps}};
   std::string text = json.dump(1);
   if (text == record.saved) return;
   data::write_atomically(record_path(out), text);

@@ -19,8 +19,8 @@ struct SlurmJob {
 struct SlurmRun {
   std::string job;  ///< name
   int task = 0;
-  int tries = 1;             ///< RunHistory::tries
-  std::int64_t changed = 0;  ///< when its file was last written before it was submitted; 0: there was none
+  int tries = 1;            ///< RunHistory::tries
+  std::uint64_t steps = 0;  ///< that its file held when it was submitted
 };
 
 struct SlurmRecord {
