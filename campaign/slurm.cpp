@@ -140,6 +140,7 @@ class Follower {
         job->second.id = task.id;
     // A job that sbatch did not confirm and the queue does not know was never there: its runs do not lose a try.
     std::erase_if(record_.runs, [&](const auto& run) { return record_.jobs.at(run.second.job).id.empty(); });
+    forget_others();
     tell_queue();
     for (Followed& run : followed_) {
       const auto with = record_.runs.find(run.name);
@@ -148,6 +149,17 @@ class Follower {
       const bool there = task != nullptr && task->state != TaskState::ended;
       run.looks_without = there ? 0 : run.looks_without + 1;
     }
+  }
+
+  /// Runs of earlier calls that this one does not ask for are remembered while their tasks are in the queue.
+  void forget_others() {
+    std::set<std::string> asked;
+    for (const Followed& run : followed_) asked.insert(run.name);
+    std::erase_if(record_.runs, [&](const auto& run) {
+      const QueuedTask* task = task_of(run.second);
+      const bool there = task != nullptr && task->state != TaskState::ended && task->state != TaskState::cancelled;
+      return !asked.contains(run.first) && !there;
+    });
   }
 
   void tell_answer(bool answered, const std::string& said) {
@@ -381,8 +393,12 @@ SlurmResult run_on_slurm(const Workspace& workspace, const std::vector<PlannedRu
   return Follower(workspace, runs, std::move(table), batch, options).follow();
 }
 
-std::size_t runs_with_slurm(const Workspace& workspace) {
-  return load_slurm_record(workspace.out, workspace.study.name).runs.size();
+std::size_t runs_with_slurm(const Workspace& workspace, const std::vector<PlannedRun>& runs) {
+  const SlurmRecord record = load_slurm_record(workspace.out, workspace.study.name);
+  if (record.runs.empty()) return 0;
+  return static_cast<std::size_t>(std::count_if(runs.begin(), runs.end(), [&](const PlannedRun& run) {
+    return record.runs.contains(run_name(with_seed(workspace, run.seed), run.point));
+  }));
 }
 
 }  // namespace campaign

@@ -38,7 +38,7 @@ struct SlurmResult : BatchResult {
 SlurmResult run_on_slurm(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                          const BatchOptions& batch, const SlurmOptions& options);
 
-/// How many runs OUT/slurm/campaign.json says are with Slurm.
-std::size_t runs_with_slurm(const Workspace& workspace);
+/// How many of the runs an earlier call left with Slurm, as OUT/slurm/campaign.json says.
+std::size_t runs_with_slurm(const Workspace& workspace, const std::vector<PlannedRun>& runs);
 
 }  // namespace campaign

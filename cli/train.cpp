@@ -93,11 +93,12 @@ Action add_train(CLI::App& program) {
 
     std::vector<PlannedRun> runs;
     for (const Point& point : campaign.points) runs.push_back({point, workspace.study.seed});
-    const std::size_t elsewhere = options->slurm.slurm ? 0 : runs_with_slurm(workspace);
+    const std::size_t elsewhere = options->slurm.slurm ? 0 : runs_with_slurm(workspace, runs);
     if (elsewhere > 0)
-      say(common, fmt::format("note: {} runs are with Slurm (demcal train --slurm follows them); what is missing is "
-                              "made here all the same",
-                              elsewhere));
+      say(common,
+          fmt::format("note: {} of them were left with Slurm, which demcal train --slurm collects; those that are "
+                      "not finished are made here all the same",
+                      elsewhere));
     SlurmResult ledger;
     {
       data::Progress progress("training runs", campaign.points.size(),

@@ -17,11 +17,11 @@
 
 namespace test {
 
-inline campaign::Workspace small_study(const std::string& out) {
+inline campaign::Workspace small_study(const std::string& out, const std::string& fill = "200") {
   return campaign::open_workspace({.study = DEMCAL_SOURCE_DIR "/data/quick",
                                    .out = out,
                                    .seed = {},
-                                   .set = {"rig.fill=200", "run.longest=\"0.4 s\"", "training.unsteady=\"use\""}});
+                                   .set = {"rig.fill=" + fill, "run.longest=\"0.4 s\"", "training.unsteady=\"use\""}});
 }
 
 inline std::vector<campaign::PlannedRun> planned(const campaign::Workspace& workspace, int runs) {
@@ -40,6 +40,11 @@ inline void write_result(const campaign::Workspace& workspace, const campaign::P
   for (std::size_t k = 0; k < dem::outputs().size(); ++k)
     result.summary.mean.push_back({.mean = 1e-5 * run.point.inputs[0], .standard_error = 1e-7, .reliable = true});
   result.summary.state = dem::Steady::yes;
+  constexpr std::size_t samples = 200;
+  for (std::vector<double>* values :
+       {&result.series.time, &result.series.torque, &result.series.axial_flow, &result.series.coordination,
+        &result.series.kinetic_energy, &result.series.normal_stress})
+    values->assign(samples, 1e-5);
   dem::write_run(campaign::run_path(own, run.point), campaign::case_at(own, run.point), result);
 }
 

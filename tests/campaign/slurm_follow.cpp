@@ -65,7 +65,7 @@ TEST_CASE("runs are submitted once, collected once, and the table has a row for 
   CHECK(result.table.rows.size() == 10);
   CHECK(result.failures.empty());
   CHECK(result.with_slurm + result.cancelled + result.refused == 0);
-  CHECK(runs_with_slurm(site.workspace) == 0);
+  CHECK(runs_with_slurm(site.workspace, site.runs) == 0);
   std::vector<std::string> notes;
   CHECK(read_own_table(site.workspace, notes).table.rows.size() == 10);
 }
@@ -120,7 +120,7 @@ TEST_CASE("a run whose task never gives a result fails with the end of its log; 
   REQUIRE(result.failures.size() == 1);
   CHECK_THAT(result.failures[0], Contains("ran out of memory") && Contains("3 tries") && Contains("oom_kill event"));
   CHECK(std::count(result.ended.begin(), result.ended.end(), true) == 3);
-  CHECK(runs_with_slurm(site.workspace) == 0);  // the next call tries anew
+  CHECK(runs_with_slurm(site.workspace, site.runs) == 0);  // the next call tries anew
 }
 
 TEST_CASE("a run that the DEM gives up fails at once, with the DEM's reason") {
@@ -191,7 +191,7 @@ TEST_CASE("a later call follows what an earlier one submitted") {
   const SlurmResult left = site.follow({.detach = true});
   CHECK(left.with_slurm == 4);
   CHECK(left.jobs == std::vector<std::string>{"101"});
-  CHECK(runs_with_slurm(site.workspace) == 4);
+  CHECK(runs_with_slurm(site.workspace, site.runs) == 4);
   int made = 0;
   SECTION("and collects what was finished in between") {
     for (auto& [name, job] : site.slurm.jobs)
@@ -214,6 +214,21 @@ TEST_CASE("a later call follows what an earlier one submitted") {
   CHECK(site.slurm.submissions == 1 + made);
 }
 
+TEST_CASE("runs of an earlier call that are no longer asked for are remembered while they are in the queue") {
+  Site site(4);
+  CHECK(site.follow({.detach = true}).with_slurm == 4);
+  const std::vector<PlannedRun> all = site.runs;
+  site.runs.resize(1);
+  CHECK(site.follow({.detach = true}).with_slurm == 1);
+  CHECK(runs_with_slurm(site.workspace, all) == 4);
+  site.slurm.step = [&](const std::string&, int task, FakeSlurm::Job& job) { site.finish(job, task); };
+  CHECK(site.follow().table.rows.size() == 1);
+  CHECK(runs_with_slurm(site.workspace, all) == 0);
+  site.runs = all;
+  CHECK(site.follow().table.rows.size() == 4);  // their files were there
+  CHECK(site.slurm.submissions == 1);
+}
+
 TEST_CASE("interruption leaves the jobs where they are") {
   Site site(2);
   std::stop_source stop;
@@ -223,7 +238,7 @@ TEST_CASE("interruption leaves the jobs where they are") {
   const SlurmResult result = site.follow({}, stop.get_token());
   CHECK(result.with_slurm == 2);
   CHECK(result.finished == 0);
-  CHECK(runs_with_slurm(site.workspace) == 2);
+  CHECK(runs_with_slurm(site.workspace, site.runs) == 2);
 }
 
 TEST_CASE("what somebody cancels is not submitted again before the next call") {
@@ -269,7 +284,7 @@ TEST_CASE("a job that sbatch refuses is an error with sbatch's words, and a miss
   site.slurm.refuse = [](int) { return "sbatch: error: invalid partition specified: nowhere"; };
   CHECK_THAT(failure_of(site.folder, [&] { site.follow(); }),
              Contains("64: sbatch: refuses the job") && Contains("invalid partition specified: nowhere"));
-  CHECK(runs_with_slurm(site.workspace) == 0);
+  CHECK(runs_with_slurm(site.workspace, site.runs) == 0);
   SlurmOptions options;
   options.program = {"demcal"};
   options.start = [](const data::ProgramCall&) { return data::ProgramEnd{.start_error = ENOENT}; };
