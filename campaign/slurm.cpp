@@ -176,6 +176,7 @@ class Follower {
   }
 
   std::uint64_t steps_of(std::size_t i) const {
+    if (change_of(followed_[i].path) == 0) return 0;
     return steps_made(with_seed(workspace_, runs_[i].seed), runs_[i].point, followed_[i].path);
   }
 
@@ -259,7 +260,7 @@ class Follower {
       max_array_size_ = *size;
     }
     // What was lost is submitted run by run, so that one that ends its task cannot take others along.
-    return submit(fresh, fresh.empty() ? 1 : runs_per_task()) && submit(again, 1);
+    return submit(fresh, fresh.empty() ? 1 : runs_per_task(fresh.size())) && submit(again, 1);
   }
 
   bool submit(const std::vector<std::size_t>& which, int per_task) {
@@ -332,7 +333,7 @@ class Follower {
   }
 
   /// The user's number, or by the dearest of the materials.
-  int runs_per_task() const {
+  int runs_per_task(std::size_t runs) const {
     if (options_.runs_per_task > 0) return options_.runs_per_task;
     std::set<std::string> materials;
     for (const PlannedRun& run : runs_) materials.insert(run.point.material);
@@ -341,7 +342,7 @@ class Follower {
       const Point middle = parse_point(workspace_, material, {});
       seconds = std::max(seconds, cost_of(case_at(workspace_, middle), foretell(workspace_, middle).derived).seconds);
     }
-    return usual_runs_per_task(seconds);
+    return usual_runs_per_task(seconds, runs);
   }
 
   SlurmResult result() {

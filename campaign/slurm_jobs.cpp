@@ -67,10 +67,10 @@ std::vector<ArrayJob> split_runs(std::size_t runs, int runs_per_task, int max_ar
   return jobs;
 }
 
-int usual_runs_per_task(double seconds) {
-  constexpr double task_seconds = 600.0, most = 1000.0;
-  if (!(seconds > 0.0)) return 1;
-  return static_cast<int>(std::clamp(std::floor(task_seconds / seconds), 1.0, most));
+int usual_runs_per_task(double seconds, std::size_t runs) {
+  constexpr double task_seconds = 600.0, most = 1000.0, fewest_tasks = 8.0;
+  const double spread = std::clamp(std::ceil(static_cast<double>(runs) / fewest_tasks), 1.0, most);
+  return seconds > 0.0 ? static_cast<int>(std::clamp(std::floor(task_seconds / seconds), 1.0, spread)) : 1;
 }
 
 TaskRuns runs_of_task(int task, int runs_per_task, std::size_t runs) {

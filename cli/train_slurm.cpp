@@ -49,7 +49,8 @@ void add_slurm_options(CLI::App& command, SlurmChoice& choice) {
   CLI::Option* const per_task =
       command
           .add_option("--runs-per-task", choice.runs_per_task,
-                      "with --slurm: runs that a task makes one after the other (default: about ten minutes of them)")
+                      "with --slurm: runs that a task makes one after the other (default: about ten minutes of them, "
+                      "but at least eight tasks)")
           ->check(CLI::Range(1, 100000));
   // What the scripts of the jobs call.
   command.add_option("--task-list", choice.task_list)->group("")->needs(per_task);

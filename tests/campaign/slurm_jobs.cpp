@@ -34,12 +34,15 @@ TEST_CASE("no runs make no job, and a task beyond the list has no runs") {
   CHECK(runs_of_task(2, 5, 12).end == 12);
 }
 
-TEST_CASE("a task has about ten minutes of runs, and at least one") {
-  CHECK(usual_runs_per_task(100.0) == 6);
-  CHECK(usual_runs_per_task(599.0) == 1);
-  CHECK(usual_runs_per_task(90000.0) == 1);
-  CHECK(usual_runs_per_task(1e-9) == 1000);
-  CHECK(usual_runs_per_task(0.0) == 1);
+TEST_CASE("a task has about ten minutes of runs, at least one, and a few runs are spread over eight tasks") {
+  CHECK(usual_runs_per_task(100.0, 1000) == 6);
+  CHECK(usual_runs_per_task(599.0, 1000) == 1);
+  CHECK(usual_runs_per_task(90000.0, 1000) == 1);
+  CHECK(usual_runs_per_task(1e-9, 100000) == 1000);
+  CHECK(usual_runs_per_task(0.0, 1000) == 1);
+  CHECK(usual_runs_per_task(1.0, 24) == 3);
+  CHECK(usual_runs_per_task(1.0, 5) == 1);
+  CHECK(usual_runs_per_task(1.0, 0) == 1);
 }
 
 TEST_CASE("the largest array is read from the configuration, and is Slurm's default where there is none") {
