@@ -151,20 +151,24 @@ Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& tab
   return campaign;
 }
 
-void write_points(const Workspace& workspace, const std::string& path, const std::vector<Point>& points) {
+void write_points(const Workspace& workspace, const std::string& path, const std::vector<Point>& points,
+                  const std::vector<PointColumn>& more) {
   const data::Study& study = workspace.study;
   const bool has_materials = study.materials.size() > 1 || !study.materials.front().name.empty();
   std::vector<std::string> fields;
   if (has_materials) fields.push_back("material");
   for (const data::Parameter& p : study.parameters) fields.push_back(p.name);
   for (const data::Control& c : study.controls) fields.push_back(c.name);
+  for (const PointColumn& one : more) fields.push_back(one.name);
   std::string text = fmt::format("{}\n", fmt::join(fields, ","));
-  for (const Point& point : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& point = points[i];
     fields.clear();
     if (has_materials) fields.push_back(data::csv_field(point.material));
     std::size_t column = 0;
     for (const data::Parameter& p : study.parameters) fields.push_back(p.unit.digits(point.inputs[column++]));
     for (const data::Control& c : study.controls) fields.push_back(c.unit.digits(point.inputs[column++]));
+    for (const PointColumn& one : more) fields.push_back(data::csv_field(one.values[i]));
     text += fmt::format("{}\n", fmt::join(fields, ","));
   }
   data::write_atomically(path, text);

@@ -25,7 +25,13 @@ Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, 
 /// Reads and writes OUT/design.csv: material, parameters and controls in the study's units.
 std::vector<Point> read_design(const Workspace& workspace);
 std::vector<Point> read_points(const Workspace& workspace, const std::string& path);
-void write_points(const Workspace& workspace, const std::string& path, const std::vector<Point>& points);
+/// `more` are further columns, behind the others.
+struct PointColumn {
+  std::string name;
+  std::vector<std::string> values;  ///< one a point
+};
+void write_points(const Workspace& workspace, const std::string& path, const std::vector<Point>& points,
+                  const std::vector<PointColumn>& more = {});
 std::string next_runs_path(const Workspace& workspace);  ///< OUT/next-runs.csv, points of the posterior
 
 /// The first `runs` of OUT/next-runs.csv that have no row yet. Throws InputError (66) when there is no such file.

@@ -16,52 +16,30 @@ namespace campaign {
 namespace {
 
 /// What the workers share; the mutex guards all but the counter.
-struct Ledger {
+struct Shared {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
-  BatchResult result;
+  Ledger ledger;
 };
 
-/// Adds the row, or puts it where an earlier, shorter run of the point stands.
-void put_row(data::RunTable& table, data::RunRow row) {
-  const std::string key = data::row_key(row);
-  for (data::RunRow& there : table.rows) {
-    if (data::row_key(there) != key) continue;
-    there = std::move(row);
-    return;
-  }
-  table.rows.push_back(std::move(row));
-}
-
 /// One worker: takes runs until there are none, or the batch is to stop.
-void work(const Workspace& workspace, const std::vector<PlannedRun>& runs, const BatchOptions& options, Ledger& ledger,
+void work(const Workspace& workspace, const std::vector<PlannedRun>& runs, const BatchOptions& options, Shared& shared,
           std::stop_source& stop) {
+  BatchResult& all = shared.ledger.result;
   try {
-    for (std::size_t i = ledger.next++; i < runs.size() && !stop.stop_requested(); i = ledger.next++) {
+    for (std::size_t i = shared.next++; i < runs.size() && !stop.stop_requested(); i = shared.next++) {
       const Point& point = runs[i].point;
       const Workspace own = with_seed(workspace, runs[i].seed);
       const dem::RunResult result =
           run_point(own, point, {.path = run_path(own, point), .keep_state = false, .stop = stop.get_token()});
       if (result.status == dem::RunStatus::interrupted) return;
-      const std::string what = fmt::format("{} {}", point.material, describe(own.study, point));
-      const std::lock_guard lock(ledger.mutex);
-      BatchResult& all = ledger.result;
-      for (const std::string& warning : result.warnings) all.warnings.push_back(what + ": " + warning);
-      if (result.status == dem::RunStatus::failed) {
-        all.failures.push_back(what + ": " + result.reason);
-        if (options.progress) options.progress->note("failed: " + all.failures.back());
-      } else {
-        put_row(all.table, to_row(own, point, result));
-        if (result.summary.state != dem::Steady::yes) ++all.unsteady;
-        write_tables(workspace, all.table, options.kept);
-        ++all.finished;
-      }
-      all.ended[i] = true;
-      if (options.progress) options.progress->advance();
+      const std::lock_guard lock(shared.mutex);
+      shared.ledger.take(i, own, point, result, options.progress);
+      if (result.status != dem::RunStatus::failed) write_tables(workspace, all.table, options.kept);
     }
   } catch (...) {
-    const std::lock_guard lock(ledger.mutex);
-    if (!ledger.result.error) ledger.result.error = std::current_exception();
+    const std::lock_guard lock(shared.mutex);
+    if (!all.error) all.error = std::current_exception();
     stop.request_stop();
   }
 }
@@ -70,21 +48,23 @@ void work(const Workspace& workspace, const std::vector<PlannedRun>& runs, const
 
 BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                       const BatchOptions& options) {
-  std::set<std::string> materials;
-  for (const PlannedRun& run : runs) materials.insert(run.point.material);
-  for (const std::string& material : materials) foretell(workspace, parse_point(workspace, material, {}));
-  Ledger ledger;
-  ledger.result.table = std::move(table);
-  ledger.result.ended.assign(runs.size(), false);
-  write_tables(workspace, ledger.result.table, options.kept);
+  foretell_materials(workspace, runs);
+  Shared shared{.ledger = Ledger(std::move(table), runs.size())};
+  write_tables(workspace, shared.ledger.result.table, options.kept);
   std::stop_source stop;
   const std::stop_callback forward(options.stop, [&] { stop.request_stop(); });
   {
     std::vector<std::jthread> workers;
     const std::size_t jobs = std::min<std::size_t>(static_cast<std::size_t>(options.jobs), runs.size());
-    for (std::size_t j = 0; j < jobs; ++j) workers.emplace_back([&] { work(workspace, runs, options, ledger, stop); });
+    for (std::size_t j = 0; j < jobs; ++j) workers.emplace_back([&] { work(workspace, runs, options, shared, stop); });
   }
-  return std::move(ledger.result);
+  return std::move(shared.ledger.result);
+}
+
+void foretell_materials(const Workspace& workspace, const std::vector<PlannedRun>& runs) {
+  std::set<std::string> materials;
+  for (const PlannedRun& run : runs) materials.insert(run.point.material);
+  for (const std::string& material : materials) foretell(workspace, parse_point(workspace, material, {}));
 }
 
 Workspace with_seed(const Workspace& workspace, std::uint64_t seed) {

@@ -3,13 +3,10 @@
 // OUT/training.h5 and training.csv. An interrupted run goes on from its checkpoint when the same run is asked for
 // again.
 #include <cstdint>
-#include <exception>
 #include <stop_token>
-#include <string>
 #include <vector>
 
-#include "campaign/point.hpp"
-#include "data/progress.hpp"
+#include "campaign/ledger.hpp"
 
 namespace campaign {
 
@@ -26,19 +23,12 @@ struct BatchOptions {
   data::Progress* progress = nullptr;  ///< told of each run that ended and of failures; may be none
 };
 
-struct BatchResult {
-  data::RunTable table;               ///< the rows there were, and one for each finished run
-  std::size_t finished = 0;           ///< runs
-  std::size_t unsteady = 0;           ///< of them, not of the steady flow
-  std::vector<bool> ended;            ///< per run: finished or failed
-  std::vector<std::string> failures;  ///< point and reason
-  std::vector<std::string> warnings;
-  std::exception_ptr error;  ///< of a worker; the others stopped
-};
-
 /// Throws InputError (78) where the rig makes a run nonsense, before any is made.
 BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                       const BatchOptions& options);
+
+/// Throws InputError (78) where the rig makes the runs of a material nonsense.
+void foretell_materials(const Workspace& workspace, const std::vector<PlannedRun>& runs);
 
 /// The same study under another seed.
 Workspace with_seed(const Workspace& workspace, std::uint64_t seed);

@@ -49,10 +49,20 @@ bool ended(const dem::SavedRun& saved, const dem::Case& c) {
 
 }  // namespace
 
-bool is_done(const Workspace& workspace, const Point& point, const std::string& path) {
+std::optional<dem::RunResult> ended_run(const Workspace& workspace, const Point& point, const std::string& path) {
   const dem::Case c = case_at(workspace, point);
-  const std::optional<dem::SavedRun> before = earlier(path, c, run_seed(workspace, point));
-  return before && ended(*before, c);
+  std::optional<dem::SavedRun> before = earlier(path, c, run_seed(workspace, point));
+  if (!before || !ended(*before, c)) return {};
+  return std::move(before->result);
+}
+
+bool is_done(const Workspace& workspace, const Point& point, const std::string& path) {
+  return ended_run(workspace, point, path).has_value();
+}
+
+std::uint64_t steps_made(const Workspace& workspace, const Point& point, const std::string& path) {
+  const std::optional<dem::SavedRun> before = earlier(path, case_at(workspace, point), run_seed(workspace, point));
+  return before ? before->result.checkpoint.state.step : 0;
 }
 
 dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options) {

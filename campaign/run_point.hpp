@@ -1,7 +1,9 @@
 #pragma once
 // One DEM run of a point, kept in a file: finished and failed runs are read back, interrupted ones go on from their
 // checkpoint.
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 
@@ -19,8 +21,13 @@ struct PointRun {
   std::function<void(const dem::RunProgress&)> progress = {};
 };
 
-/// Whether the file holds this run, ended as it would end now.
+/// This run, finished or failed, when the file holds it, ended as it would end now.
+std::optional<dem::RunResult> ended_run(const Workspace& workspace, const Point& point, const std::string& path);
+/// Whether it does.
 bool is_done(const Workspace& workspace, const Point& point, const std::string& path);
+
+/// How many steps of this run the file holds, ended or interrupted; 0 where it holds another run or none.
+std::uint64_t steps_made(const Workspace& workspace, const Point& point, const std::string& path);
 
 /// The result, which the file holds too. A finished run of which the study now wants more, or less, goes on from its
 /// last state or is cut short: to the same bits as a new one. A file of another point, seed or setting is replaced.

@@ -28,7 +28,7 @@ bool is_flag(const CLI::Option& option) { return option.get_items_expected_max()
 std::vector<const CLI::Option*> long_options(const CLI::App& command) {
   std::vector<const CLI::Option*> options;
   for (const CLI::Option* option : command.get_options())
-    if (!option->get_lnames().empty()) options.push_back(option);
+    if (!option->get_lnames().empty() && !option->get_group().empty()) options.push_back(option);  // "": hidden
   return options;
 }
 

@@ -9,6 +9,7 @@
 #include "campaign/run_batch.hpp"
 #include "cli/command.hpp"
 #include "cli/train_posterior.hpp"
+#include "cli/train_slurm.hpp"
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
 
@@ -23,6 +24,7 @@ struct Options {
   bool until_posterior = false;
   std::string time;
   double share = 0.1;
+  SlurmChoice slurm;
 };
 
 }  // namespace
@@ -32,7 +34,10 @@ Action add_train(CLI::App& program) {
   CLI::App* command = add_study_command(program, "train", "make the training runs that are missing",
                                         "demcal train data/developer --runs 6", options->common);
   add_isa_option(*command);
-  command->add_option("--jobs", options->jobs, "runs at the same time, one thread each (default: one a core)")
+  command
+      ->add_option("--jobs", options->jobs,
+                   "runs at the same time, one thread each (default: one a core); with --slurm, tasks at the same time "
+                   "(default: as many as Slurm starts)")
       ->check(CLI::Range(1, 4096));
   command
       ->add_option("--runs", options->runs,
@@ -55,9 +60,16 @@ Action add_train(CLI::App& program) {
       ->add_option("--share", options->share,
                    "with --until: the part of the posterior variance that may stay the surrogate's (default 0.1)")
       ->check(CLI::Range(0.001, 1.0));
-  return [options] {
+  add_slurm_options(*command, options->slurm);
+  return [options, command] {
+    if (!options->slurm.task_list.empty()) return make_task(options->common, options->slurm);
+    const int jobs_asked = command->count("--jobs") > 0 ? options->jobs : 0;
     if (options->until_posterior) {
       PosteriorTraining training{.jobs = options->jobs, .runs = options->runs, .seconds = {}, .share = options->share};
+      if (options->slurm.slurm) {
+        training.jobs = jobs_asked > 0 ? jobs_asked : 16;
+        training.slurm = slurm_options(options->common, options->slurm, *command);
+      }
       if (!options->time.empty()) training.seconds = parse_duration(options->time, "--for");
       return train_until_posterior(options->common, training);
     }
@@ -81,12 +93,25 @@ Action add_train(CLI::App& program) {
 
     std::vector<PlannedRun> runs;
     for (const Point& point : campaign.points) runs.push_back({point, workspace.study.seed});
-    BatchResult ledger;
+    const std::size_t elsewhere = options->slurm.slurm ? 0 : runs_with_slurm(workspace, runs);
+    if (elsewhere > 0)
+      say(common,
+          fmt::format("note: {} of them were left with Slurm, which demcal train --slurm collects; those that are "
+                      "not finished are made here all the same",
+                      elsewhere));
+    SlurmResult ledger;
     {
       data::Progress progress("training runs", campaign.points.size(),
                               {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
-      ledger = run_batch(workspace, runs, std::move(rows.all),
-                         {.jobs = options->jobs, .kept = rows.kept, .stop = interrupt.token(), .progress = &progress});
+      const BatchOptions batch{
+          .jobs = options->jobs, .kept = rows.kept, .stop = interrupt.token(), .progress = &progress};
+      if (options->slurm.slurm) {
+        SlurmOptions slurm = slurm_options(common, options->slurm, *command);
+        slurm.at_once = jobs_asked;
+        ledger = run_on_slurm(workspace, runs, std::move(rows.all), batch, slurm);
+      } else {
+        static_cast<BatchResult&>(ledger) = run_batch(workspace, runs, std::move(rows.all), batch);
+      }
     }
     std::vector<Point> left;
     for (std::size_t i = 0; i < campaign.points.size(); ++i)
@@ -96,12 +121,12 @@ Action add_train(CLI::App& program) {
     const std::string table = (fs::path(workspace.out) / "training.csv").string();
     for (const std::string& warning : ledger.warnings) say(common, "warning: " + warning);
     for (const std::string& failure : ledger.failures) say(common, "failed: " + failure);
-    print_json(common, {{"finished", ledger.finished},
-                        {"failed", ledger.failures},
-                        {"warnings", ledger.warnings},
-                        {"unsteady", ledger.unsteady},
-                        {"rows", ledger.table.rows.size()},
-                        {"table", table}});
+    nlohmann::json json{{"finished", ledger.finished},      {"failed", ledger.failures},
+                        {"warnings", ledger.warnings},      {"unsteady", ledger.unsteady},
+                        {"rows", ledger.table.rows.size()}, {"table", table}};
+    if (options->slurm.slurm) json["slurm"] = slurm_json(ledger);
+    print_json(common, json);
+    if (const auto status = tell_left(common, ledger, options->slurm.detach)) return *status;
     if (interrupt.interrupted()) {
       say(common, fmt::format("interrupted after {} of {} runs; the same command does the rest", ledger.finished,
                               campaign.points.size()));

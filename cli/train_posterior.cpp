@@ -9,6 +9,7 @@
 #include "campaign/design.hpp"
 #include "campaign/posterior_runs.hpp"
 #include "cli/command.hpp"
+#include "cli/train_slurm.hpp"
 #include "data/interrupt.hpp"
 #include "data/progress.hpp"
 
@@ -146,6 +147,7 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
   Assessment assessment;
   std::vector<std::string> failures, warnings;
   std::string ending;
+  std::optional<SlurmResult> left_there;
   for (;;) {
     if (pending.empty()) pending = starting_runs(workspace, rows.all);
     if (pending.empty()) {
@@ -182,12 +184,15 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
     }
     if (left && static_cast<int>(pending.size()) > *left) pending.resize(static_cast<std::size_t>(*left));
     write_posterior_runs(workspace, {.runs = pending, .left = left});
-    BatchResult batch;
+    SlurmResult batch;
     {
       data::Progress progress("training runs", pending.size(),
                               {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
-      batch = run_batch(workspace, pending, std::move(rows.all),
-                        {.jobs = options.jobs, .kept = rows.kept, .stop = interrupt.token(), .progress = &progress});
+      const BatchOptions how{.jobs = options.jobs, .kept = rows.kept, .stop = interrupt.token(), .progress = &progress};
+      if (options.slurm)
+        batch = run_on_slurm(workspace, pending, std::move(rows.all), how, *options.slurm);
+      else
+        static_cast<BatchResult&>(batch) = run_batch(workspace, pending, std::move(rows.all), how);
     }
     rows = training_rows(workspace);  // what run_batch kept, without the runs that are not of the steady flow
     made += batch.finished;
@@ -202,7 +207,8 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
     write_posterior_runs(
         workspace, {.runs = pending, .left = most ? std::optional(*most - static_cast<int>(made)) : std::nullopt});
     if (batch.error) std::rethrow_exception(batch.error);
-    if (interrupt.interrupted()) break;
+    if (batch.with_slurm + batch.cancelled + batch.refused > 0) left_there = std::move(batch);
+    if (left_there || interrupt.interrupted()) break;
     if (batch.finished == 0 && failed > 20) {
       ending = "too many runs failed";
       break;
@@ -221,7 +227,9 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
                          {"rows", rows.table.rows.size()},
                          {"share_wanted", options.share}};
   if (!assessment.shares.empty()) json["cases"] = shares_json(workspace.study, assessment);
+  if (left_there) json["slurm"] = slurm_json(*left_there);
   print_json(common, json);
+  if (left_there) return *tell_left(common, *left_there, options.slurm->detach);
   if (interrupt.interrupted()) {
     say(common, fmt::format("interrupted after {} runs; the same command goes on", made));
     return data::ExitStatus::interrupted;

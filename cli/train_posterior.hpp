@@ -2,15 +2,17 @@
 // demcal train --until posterior: runs where they sharpen the posteriors of the study's cases.
 #include <optional>
 
+#include "campaign/slurm.hpp"
 #include "cli/command.hpp"
 
 namespace cli {
 
 struct PosteriorTraining {
-  int jobs = 1;                   ///< runs at the same time, and of a batch
-  int runs = 0;                   ///< most new runs; 0: as many as it takes
-  std::optional<double> seconds;  ///< wall time
-  double share = 0.1;             ///< of the posterior variance that may stay the surrogate's
+  int jobs = 1;                            ///< runs at the same time, and of a batch
+  int runs = 0;                            ///< most new runs; 0: as many as it takes
+  std::optional<double> seconds;           ///< wall time
+  double share = 0.1;                      ///< of the posterior variance that may stay the surrogate's
+  std::optional<SlurmOptions> slurm = {};  ///< the batches are made there
 };
 
 /// Parses "2h", "90 min". Throws InputError (64).

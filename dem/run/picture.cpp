@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "data/atomic_file.hpp"
-#include "data/child_process.hpp"
 #include "data/error.hpp"
 #include "data/hdf5.hpp"
+#include "data/program.hpp"
 #include "dem/walls/vec3.hpp"
 
 namespace dem {
@@ -163,9 +163,10 @@ void draw_frame(const std::string& frame, const std::string& png, const PictureO
   const std::string folder = fs::temp_directory_path().string(), name = fmt::format("demcal-{}", ::getpid());
   const fs::path pov = fs::path(folder) / (name + ".pov"), drawn = fs::path(folder) / (name + ".png");
   data::write_atomically(pov.string(), scene);
-  const data::ChildResult result =
-      data::run_child(folder, {"povray", "+I" + pov.string(), "+O" + drawn.string(), fmt::format("+W{}", options.width),
-                               fmt::format("+H{}", options.height), "+A0.2", "-D", "+FN"});
+  const data::ProgramEnd result = data::run_program(
+      {.words = {"povray", "+I" + pov.string(), "+O" + drawn.string(), fmt::format("+W{}", options.width),
+                 fmt::format("+H{}", options.height), "+A0.2", "-D", "+FN"},
+       .folder = folder});
   fs::remove(pov);
   if (result.start_error != 0)
     throw data::InputError(data::ExitStatus::missing_program,

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "data/atomic_file.hpp"
-#include "data/child_process.hpp"
 #include "data/error.hpp"
 #include "data/file_name.hpp"
+#include "data/program.hpp"
 #include "uq/findings/wording.hpp"
 
 namespace uq {
@@ -79,10 +79,10 @@ std::string draw(const Figure& figure, const std::string& folder, const GnuplotO
   data::write_atomically(base + ".dat", figure.data);
   data::write_atomically(base + ".gp", script);
 
-  // "-d" keeps the user's and the system's start-up files out of the figures. The picture comes through a pipe, which no
-  // full disk cuts off.
-  const data::ChildResult result =
-      data::run_child(folder, {options.program, "-d", "-e", "to_stdout=1", figure.stem + ".gp"});
+  // The picture comes through a pipe, which no full disk cuts off. "-d" keeps the user's and the system's start-up files
+  // out of the figures.
+  const data::ProgramEnd result =
+      data::run_program({.words = {options.program, "-d", "-e", "to_stdout=1", figure.stem + ".gp"}, .folder = folder});
   if (result.start_error != 0) {
     throw data::InputError(data::ExitStatus::missing_program,
                            {options.program,

@@ -1,4 +1,4 @@
-#include "data/child_process.hpp"
+#include "data/program.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -6,8 +6,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <string_view>
 
 extern char** environ;
 
@@ -25,12 +27,22 @@ std::string read_all(int descriptor) {
   }
 }
 
+std::vector<char*> environment(const std::vector<std::string>& without) {
+  std::vector<char*> kept;
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (std::none_of(without.begin(), without.end(),
+                     [&](const std::string& start) { return std::string_view(*variable).starts_with(start); }))
+      kept.push_back(*variable);
+  kept.push_back(nullptr);
+  return kept;
+}
+
 }  // namespace
 
-ChildResult run_child(const std::string& folder, const std::vector<std::string>& words) {
-  // Its output comes through a pipe, its errors go to a file in memory, so that neither waits for the other to be read.
+ProgramEnd run_program(const ProgramCall& call) {
   std::array<int, 2> pipe_ends{};
-  ChildResult result;
+  ProgramEnd result;
+  // The errors go to a file in memory: of two pipes one could be full while the other is read.
   const int errors = memfd_create("demcal", MFD_CLOEXEC);
   if (errors < 0 || pipe2(pipe_ends.data(), O_CLOEXEC) != 0) {
     result.start_error = errno;
@@ -39,17 +51,23 @@ ChildResult run_child(const std::string& folder, const std::vector<std::string>&
   }
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  if (!call.folder.empty()) posix_spawn_file_actions_addchdir_np(&actions, call.folder.c_str());
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, errors, STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  if (call.spared) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // a group of its own
 
-  std::vector<std::string> own = words;
+  std::vector<std::string> words = call.words;
   std::vector<char*> arguments;
-  for (std::string& word : own) arguments.push_back(word.data());
+  for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  std::vector<char*> variables = environment(call.without);
   pid_t child = 0;
-  result.start_error = posix_spawnp(&child, own.front().c_str(), &actions, nullptr, arguments.data(), environ);
+  result.start_error =
+      posix_spawnp(&child, arguments.front(), &actions, &attributes, arguments.data(), variables.data());
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   close(pipe_ends[1]);
   if (result.start_error == 0) {

@@ -1,0 +1,40 @@
+#pragma once
+// What comes of the runs of a batch, one after the other, whoever makes them: rows of the table, failures, warnings.
+#include <exception>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "campaign/point.hpp"
+#include "data/progress.hpp"
+
+namespace campaign {
+
+struct BatchResult {
+  data::RunTable table;               ///< the rows there were, and one for each finished run
+  std::size_t finished = 0;           ///< runs
+  std::size_t unsteady = 0;           ///< of them, not of the steady flow
+  std::vector<bool> ended;            ///< per run: finished or failed
+  std::vector<std::string> failures;  ///< point and reason
+  std::vector<std::string> warnings;
+  std::exception_ptr error;  ///< of a worker; the others stopped
+};
+
+class Ledger {
+ public:
+  Ledger(data::RunTable table, std::size_t runs);
+
+  /// Run number `index` of the batch has finished or failed. `own` is the study under the run's seed. The row takes the
+  /// place of an earlier, shorter run of the point. `progress` is told; it may be none.
+  void take(std::size_t index, const Workspace& own, const Point& point, const dem::RunResult& run,
+            data::Progress* progress);
+  /// Run number `index` has failed without a result.
+  void take_failure(std::size_t index, const std::string& point_and_reason, data::Progress* progress);
+
+  BatchResult result;
+
+ private:
+  std::unordered_map<std::string, std::size_t> places_;  ///< of rows, by their key
+};
+
+}  // namespace campaign

@@ -1,0 +1,43 @@
+#pragma once
+// Slurm's programs: sbatch, squeue, scontrol. A controller that does not answer is a value, not an exception.
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "campaign/slurm_jobs.hpp"
+#include "data/program.hpp"
+
+namespace campaign {
+
+class SlurmCommands {
+ public:
+  using Start = std::function<data::ProgramEnd(const data::ProgramCall&)>;
+  explicit SlurmCommands(Start start) : start_(std::move(start)) {}
+
+  /// Throws InputError (69) where sbatch or squeue cannot be started.
+  void require_programs() const;
+
+  /// None while the controller does not answer.
+  std::optional<int> max_array_size() const;
+
+  struct Submitted {
+    std::optional<std::string> id;     ///< of the job, when sbatch took it
+    Refusal refusal = Refusal::other;  ///< when not
+    std::string said = {};             ///< by sbatch
+  };
+  Submitted submit(const Submission& submission) const;
+
+  struct Seen {
+    bool answered = false;
+    Queue queue;
+    std::string said = {};  ///< by squeue, when it has no answer
+  };
+  Seen look(const std::vector<std::string>& job_names) const;
+
+ private:
+  data::ProgramEnd run(std::vector<std::string> words) const;
+  Start start_;
+};
+
+}  // namespace campaign
