@@ -96,7 +96,7 @@ Forecast of_drum(const Case& c, Forecast f) {
   f.up = "above the axis";
   f.full_at = "the drum's top";
   const bool both = drum.end_plates == EndPlates::turning;
-  f.bodies.push_back(fmt::format("shell: {} x {} mm, turns about -y at {:.4g} rpm; its torque{} is the output",
+  f.bodies.push_back(fmt::format("shell: {} x {} mm, turns about -y at {:.4g} rpm; the output is its torque{}",
                                  mm(2.0 * drum.radius), mm(drum.length), rpm(c.rig.angular_velocity),
                                  both ? " and that of the end plates" : ""));
   f.bodies.push_back(both                                    ? "plates: both end plates turn with the shell"

@@ -10,13 +10,13 @@
 namespace dem {
 namespace {
 
-constexpr double more = 1.005;              // that spheres grow beyond their size
-constexpr double tolerated = 0.003;         // overlap of the grown, of the sum of radii: less than `more` is
-constexpr double slack_share = 0.4;         // of lists, of the mean radius
-constexpr double start_size = 0.5;          // of the grown radius
-constexpr double stride = 1.4;              // of a push: more than what parts two, as relaxation goes faster so
-constexpr int growing = 80, rounds = 3000;  // of which the first grow
-constexpr double closest[]{0.52, 0.56, 0.6, 0.65, 0.7};  // solid fractions of the lattice
+constexpr double more = 1.005;                      // that spheres grow beyond their size
+constexpr double tolerated = 0.003;                 // overlap of the grown, of the sum of radii: less than `more` is
+constexpr double slack_share = 0.4;                 // of lists, of the mean radius
+constexpr double start_size = 0.5;                  // of the grown radius
+constexpr double stride = 1.4;                      // of a push: more than what parts two, as relaxation goes faster so
+constexpr int growing = 80, rounds = 3000;          // of which the first grow
+constexpr double closest[]{0.58, 0.62, 0.66, 0.7};  // solid fractions of the lattice
 
 /// Spheres of one octave of radii in cells as wide as the largest of them.
 struct Level {
