@@ -40,6 +40,14 @@ std::optional<dem::SavedRun> earlier(const std::string& path, const dem::Case& c
   return {};
 }
 
+/// Whether the file knows all outputs that the study has: one that came after it was written is in none of its series.
+bool has_all(const dem::SavedRun& saved, const data::Study& study) {
+  return std::all_of(study.outputs.begin(), study.outputs.end(), [&](const data::Output& output) {
+    return saved.result.status == dem::RunStatus::interrupted ||
+           std::find(saved.outputs.begin(), saved.outputs.end(), output.name) != saved.outputs.end();
+  });
+}
+
 /// Whether the run has ended as this case's would.
 bool ended(const dem::SavedRun& saved, const dem::Case& c) {
   // A run that failed fails again: it depends on its point, seed and settings alone.
@@ -52,7 +60,7 @@ bool ended(const dem::SavedRun& saved, const dem::Case& c) {
 std::optional<dem::RunResult> ended_run(const Workspace& workspace, const Point& point, const std::string& path) {
   const dem::Case c = case_at(workspace, point);
   std::optional<dem::SavedRun> before = earlier(path, c, run_seed(workspace, point));
-  if (!before || !ended(*before, c)) return {};
+  if (!before || !ended(*before, c) || !has_all(*before, workspace.study)) return {};
   return std::move(before->result);
 }
 
@@ -70,6 +78,7 @@ dem::RunResult run_point(const Workspace& workspace, const Point& point, const P
   const std::uint64_t seed = run_seed(workspace, point);
   data::require_replaceable(options.path);
   std::optional<dem::SavedRun> before = earlier(options.path, c, seed);
+  if (before && !has_all(*before, workspace.study)) before.reset();
   const std::vector<std::uint64_t> frames =
       options.frames > 0 ? dem::frame_steps(c, options.frames) : std::vector<std::uint64_t>{};
   const auto tag = [&](int index) {

@@ -2,6 +2,7 @@
 // One DEM case as plain data: the rig, the materials, the contact law and how long to run. SI units throughout.
 // Everything a study may calibrate or control is reached by name (dem/reading/target.hpp).
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,10 +12,23 @@
 
 namespace dem {
 
+enum class EndPlates { turning, resting, none };  ///< with the shell, beside it, or a drum that repeats along its axis
+
+/// A horizontal drum without lifters, its axis along y (dem/rig/drum.hpp).
+struct Drum {
+  double radius = 42e-3;  ///< m, inside
+  double length = 20e-3;  ///< m, between the end plates
+  EndPlates end_plates = EndPlates::turning;
+
+  double volume() const { return std::numbers::pi * radius * radius * length; }  ///< m3
+};
+
 /// The horizontal auger slice: shaft and helical blade, turning about +x in an open U-trough; periodic along x. Or,
-/// when `stl` is set, the user's meshes; then only fill and angular velocity are used here.
+/// when `drum` is set, that drum, and when `stl` is set, the user's meshes; then only fill and angular velocity are
+/// used here, and of a drum the level.
 struct Rig {
   std::shared_ptr<const StlRig> stl;
+  std::optional<Drum> drum;
   double shaft_radius = 2.5e-3;                  ///< m
   double blade_radius = 6.0e-3;                  ///< m
   double blade_thickness = 1.0e-3;               ///< m, along the axis
@@ -23,7 +37,8 @@ struct Rig {
   int pitches = 1;                               ///< periods of the helix in the box
   double fill = 2400.0;                          ///< number of spheres in the box, rounded
   std::optional<double> fill_mass;               ///< kg in the box; when set, the number follows from it
-  double angular_velocity = 15.707963267948966;  ///< rad/s about +x (150 rpm), or the meshes' axes
+  std::optional<double> level;                   ///< bed / drum, of volume; when set, the number follows from it
+  double angular_velocity = 15.707963267948966;  ///< rad/s about +x (150 rpm), of a drum about -y, or the meshes' axes
 };
 
 /// A share of a material's mass that is in spheres of one diameter.

@@ -128,10 +128,16 @@ BedSummary summarise_bed(const Case& c) {
   }
   bed.equal = bed.classes.size() == 1 && bed.classes[0].diameter > 0.0;
 
-  double all = 0.0, numbers_per_mass = 0.0;
+  double all = 0.0, numbers_per_mass = 0.0, volume_per_mass = 0.0;
   for (const double f : share) all += f;
-  for (std::size_t k = 0; k < share.size(); ++k) numbers_per_mass += share[k] / all / bed.classes[k].mean_mass;
-  const double spheres = c.rig.fill_mass ? *c.rig.fill_mass * numbers_per_mass : c.rig.fill;
+  for (std::size_t k = 0; k < share.size(); ++k) {
+    numbers_per_mass += share[k] / all / bed.classes[k].mean_mass;
+    volume_per_mass += share[k] / all / components[bed.classes[k].component].material.density;
+  }
+  double spheres = c.rig.fill;
+  if (c.rig.fill_mass) spheres = *c.rig.fill_mass * numbers_per_mass;
+  if (c.rig.level && c.rig.drum)
+    spheres = *c.rig.level * packing_fraction * c.rig.drum->volume() / volume_per_mass * numbers_per_mass;
   bed.spheres = spheres > 0.0 ? static_cast<std::size_t>(std::llround(spheres)) : 0;
   std::vector<double> numbers;
   for (std::size_t k = 0; k < share.size(); ++k)
@@ -181,6 +187,14 @@ double solid_volume(const Grains& grains, std::size_t count) {
     return static_cast<double>(count) * sphere_mass(grains.density[0], 2.0 * grains.radius[0]) / grains.density[0];
   double sum = 0.0;
   for (const double r : grains.radius) sum += ball(2.0 * r);
+  return sum;
+}
+
+double solid_mass(const Grains& grains, std::size_t count) {
+  if (grains.radius.size() == 1)
+    return static_cast<double>(count) * sphere_mass(grains.density[0], 2.0 * grains.radius[0]);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < grains.radius.size(); ++k) sum += sphere_mass(grains.density[k], 2.0 * grains.radius[k]);
   return sum;
 }
 

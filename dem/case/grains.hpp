@@ -16,6 +16,10 @@
 
 namespace dem {
 
+/// Volume of spheres / volume of the bed that they settle to, for estimates. It lies between random loose packing,
+/// 0.555 (G. Onoda & E. Liniger, Phys. Rev. Lett. 64:2727 (1990)), and random close packing, 0.64.
+inline constexpr double packing_fraction = 0.6;
+
 /// The components of a bed; of one material it is that.
 std::vector<Component> components_of(const Case& c);
 std::vector<std::string> grain_names(const Case& c);
@@ -52,7 +56,8 @@ struct Grains {
 };
 Grains draw_grains(const Case& c, std::uint64_t seed);
 
-/// Of `count` spheres [m3].
+/// Of `count` spheres [m3] and [kg].
 double solid_volume(const Grains& grains, std::size_t count);
+double solid_mass(const Grains& grains, std::size_t count);
 
 }  // namespace dem

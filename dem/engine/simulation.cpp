@@ -154,7 +154,7 @@ void Simulation::integrate() {
     const Four step{dt, dt, dt, 0.0}, fourth{0.0, 0.0, 0.0, 1.0};
     const Four gravity{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z, 0.0};
     Four late{};  // force * (v*(n) - v(n)) and the same of torque and spin
-    Four momentum{}, twice_energy{};
+    Four momentum{}, moment{}, twice_energy{};
     double farthest = 0.0, fastest = 0.0;
     for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
       HalfRow& half = s.half[i];
@@ -178,6 +178,7 @@ void Simulation::integrate() {
       fastest = std::max(fastest, speeds[0] + speeds[1] + speeds[2]);
       const double radius = s.position[i].radius;
       momentum += motion.mass * velocity;
+      moment += motion.mass * at;
       twice_energy += motion.mass * (speeds + (0.4 * radius * radius) * (spin * spin));
       four(load.force.x) = fourth * four(load.force.x);
       four(load.torque.x) = fourth * torque;
@@ -185,7 +186,7 @@ void Simulation::integrate() {
     chunk_steps_[c] = {farthest,
                        fastest,
                        late[0] + late[1] + late[2],
-                       {three(momentum), 0.5 * (twice_energy[0] + twice_energy[1] + twice_energy[2])}};
+                       {three(momentum), three(moment), 0.5 * (twice_energy[0] + twice_energy[1] + twice_energy[2])}};
   });
   max_displacement2_ = 0.0;
   carried_ = {};
@@ -195,6 +196,7 @@ void Simulation::integrate() {
     max_displacement2_ = moved.displacement2 <= max_displacement2_ ? max_displacement2_ : moved.displacement2;
     s.dissipated += dt * moved.late_power;
     carried_.momentum += moved.carried.momentum;
+    carried_.moment += moved.carried.moment;
     carried_.kinetic_energy += moved.carried.kinetic_energy;
   }
   fastest_ = std::sqrt(fastest2);

@@ -65,6 +65,7 @@ struct Energy {
 /// What all spheres carried in the last step, at its half, where leapfrog has their velocities.
 struct Carried {
   Vec3 momentum;                ///< kg m/s
+  Vec3 moment;                  ///< kg m, sum of mass * position, at the step's end
   double kinetic_energy = 0.0;  ///< J, translation and rotation
 };
 

@@ -11,6 +11,7 @@
 #include "dem/case/grains.hpp"
 #include "dem/forecast/room.hpp"
 #include "dem/forecast/sweep.hpp"
+#include "dem/rig/drum.hpp"
 #include "dem/rig/packing.hpp"
 #include "dem/rig/slice.hpp"
 
@@ -84,6 +85,29 @@ Forecast of_slice(const Case& c, Forecast f) {
                                       mm(fill.surface), mm(-rig.blade_radius)),
                           "raise the fill"});
   }
+  return f;
+}
+
+Forecast of_drum(const Case& c, Forecast f) {
+  const Drum& drum = *c.rig.drum;
+  const DrumFill fill = fill_of_drum(c);
+  f.fill = fill.share;
+  f.surface = fill.surface;
+  f.up = "above the axis";
+  f.full_at = "the drum's top";
+  const bool both = drum.end_plates == EndPlates::turning;
+  f.bodies.push_back(fmt::format("shell: {} x {} mm, turns about -y at {:.4g} rpm; the output is its torque{}",
+                                 mm(2.0 * drum.radius), mm(drum.length), rpm(c.rig.angular_velocity),
+                                 both ? " and that of the end plates" : ""));
+  f.bodies.push_back(both                                    ? "plates: both end plates turn with the shell"
+                     : drum.end_plates == EndPlates::resting ? "plates: both end plates rest"
+                                                             : "no end plates: the drum repeats along its axis");
+  if (drum.end_plates != EndPlates::none) say_gap(f, "the end plates", drum.length);
+  if (const double froude = froude_number(c); froude > 1.0)
+    f.warnings.push_back(fmt::format(
+        "at {:.4g} rpm the Froude number is {:.3g}: from 1 on the powder goes round with the shell "
+        "(the drum flows below {:.4g} rpm)",
+        rpm(std::abs(c.rig.angular_velocity)), froude, rpm(std::abs(c.rig.angular_velocity)) / std::sqrt(froude)));
   return f;
 }
 
@@ -332,7 +356,7 @@ Forecast forecast(const Case& c, std::uint64_t seed) {
   Forecast f{.spheres = bed.spheres, .mass = bed.mass, .largest = bed.largest};
   say_density(c, f);
   say_impacts(c, f);
-  f = c.rig.stl ? of_meshes(c, seed, std::move(f)) : of_slice(c, std::move(f));
+  f = c.rig.stl ? of_meshes(c, seed, std::move(f)) : c.rig.drum ? of_drum(c, std::move(f)) : of_slice(c, std::move(f));
   std::sort(f.gaps.begin(), f.gaps.end(), [](const NamedGap& a, const NamedGap& b) { return a.width < b.width; });
   return f;
 }

@@ -1,7 +1,7 @@
 #pragma once
 // What a run of a case will be, before it is made: how full the vessel is and where the bed's surface will lie, the
 // gaps in spheres, what moves how; and what would make the run nonsense: powder that nothing holds or that does not
-// fit, a tool that never meets it or that cuts the vessel (dem/forecast/room.hpp, dem/forecast/sweep.hpp; the slice in closed form).
+// fit, a tool that never meets it or that cuts the vessel (dem/forecast/room.hpp, dem/forecast/sweep.hpp; slice and drum in closed form).
 //
 // A bed is taken as a levelled liquid of packing_fraction. A tool is only said to miss the bed when it misses one of
 // half solids, too, by more than a cell of the room's grid: heaps and waves are not asked about.
@@ -27,7 +27,7 @@ struct Forecast {
   double mass = 0.0;              ///< kg
   double largest = 0.0;           ///< m
   std::optional<double> fill;     ///< share of what the vessel holds before it runs over; none where nothing holds any
-  std::optional<double> surface;  ///< m against gravity, from the box's origin, or above the slice's axis
+  std::optional<double> surface;  ///< m against gravity, from the box's origin, or above slice's and drum's axis
   std::string up;                 ///< "z", "above the axis": what the surface is counted along
   std::string full_at;            ///< what a fill of 1 reaches
   std::vector<NamedGap> gaps;     ///< narrower than four of the largest sphere, the narrowest first

@@ -59,15 +59,24 @@ void read_fill(const Section& s, Case& c) {
   } else if (fill < 0.0) {
     c.rig.fill = -fill;
     c.rig.fill_mass.reset();
+    c.rig.level.reset();
   } else if (fill > 0.0) {
     c.rig.fill_mass = fill;
+    c.rig.level.reset();
   } else if (fill == 0.0) {
     s.problem("fill", "is zero", "give a number of spheres, or a mass with its unit");
   }
 }
 
 void read_rig(const Section& s, const std::string& folder, Case& c) {
-  if (s.choice("kind", {"slice", "stl"}, "slice") == "stl") {
+  const std::string kind = s.choice("kind", {"slice", "drum", "stl"}, "slice");
+  if (kind == "drum") {
+    choose(s, "end_plates", {"turning", "resting", "none"}, c.rig.drum.emplace().end_plates);
+    c.rig.level = 0.5;
+    for (const char* key : {"drum_radius", "drum_length", "rpm", "level"}) read(s, "rig", key, c);
+    if (s.has("fill") && s.has("level"))
+      s.problem("level", "stands beside fill, which says how much powder there is, too", "keep one of them");
+  } else if (kind == "stl") {
     c.rig.stl = read_stl_rig(s, folder);
     if (!c.rig.stl->packing.empty()) c.rig.fill = static_cast<double>(c.rig.stl->packing.size());
     read(s, "rig", "rpm", c);

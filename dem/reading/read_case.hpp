@@ -4,6 +4,8 @@
 // [rig]      kind = "slice"; shaft_radius, blade_radius, blade_thickness, pitch, trough_radius (lengths), pitches
 // (count),
 //            fill (number of spheres, or a mass with its unit), rpm (angular speed, for `simulate` without a control);
+//            kind = "drum"; drum_radius, drum_length, end_plates = "turning"|"resting"|"none", rpm, and fill, or level
+//            (of the drum's volume, by the bed at rest);
 //            kind = "stl": dem/reading/read_stl_rig.hpp
 // [materials.NAME]  density, diameter, fill (instead of the rig's), coarse_graining, and any key of [contact] in a
 //            sub-table [materials.NAME.contact] that differs for this material

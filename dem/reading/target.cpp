@@ -20,8 +20,9 @@ struct Binding {
 };
 
 std::string of_slice_only(const Case& c) {
-  return c.rig.stl ? "is a dimension of the slice, and this rig has none" : "";
+  return c.rig.stl || c.rig.drum ? "is a dimension of the slice, and this rig has none" : "";
 }
+std::string of_drum_only(const Case& c) { return c.rig.drum ? "" : "is of the rig kind = \"drum\" only"; }
 std::string always(const Case&) { return ""; }
 
 /// Which laws read which coefficient.
@@ -68,6 +69,17 @@ Binding of_slice(Target t, double Rig::*field) {
           of_slice_only};
 }
 
+Binding of_drum(Target t, double Drum::*field) {
+  return {std::move(t), [=](const Case& c) { return c.rig.drum.value_or(Drum{}).*field; },
+          [=](Case& c, double x) { c.rig.drum.value().*field = x; }, of_drum_only};
+}
+
+/// The level that is set, or what the fill comes to, of a drum too full 1.
+double level_of(const Case& c) {
+  if (c.rig.level || !c.rig.drum) return c.rig.level.value_or(0.0);
+  return std::min(1.0, summarise_bed(c).volume / packing_fraction / c.rig.drum->volume());
+}
+
 std::string of_components(const Case& c, std::string_view key) {
   return c.components.empty() ? "" : fmt::format("is that of each component here: material.NAME.{}", key);
 }
@@ -105,7 +117,7 @@ const std::vector<Binding>& bindings() {
        [](const Case& c) { return c.material.coarse_graining; },
        [](Case& c, double x) { c.material.coarse_graining = x; },
        always},
-      {{"rig.rpm", "rad/s", -1000.0, 1000.0, "angular velocity of the mixer"},
+      {{"rig.rpm", "rad/s", -1000.0, 1000.0, "angular velocity of the mixer or the drum"},
        [](const Case& c) { return c.rig.angular_velocity; },
        [](Case& c, double x) { c.rig.angular_velocity = x; },
        always},
@@ -114,11 +126,15 @@ const std::vector<Binding>& bindings() {
        [](Case& c, double x) {
          c.rig.fill = x;
          c.rig.fill_mass.reset();
+         c.rig.level.reset();
        },
        always},
       {{"rig.fill_mass", "kg", 0.0, 1e6, "mass of powder in the box"},
-       [](const Case& c) { return c.rig.fill_mass ? *c.rig.fill_mass : summarise_bed(c).mass; },
-       [](Case& c, double x) { c.rig.fill_mass = x; },
+       [](const Case& c) { return c.rig.fill_mass && !c.rig.level ? *c.rig.fill_mass : summarise_bed(c).mass; },
+       [](Case& c, double x) {
+         c.rig.fill_mass = x;
+         c.rig.level.reset();
+       },
        always},
       of_slice({"rig.shaft_radius", "m", 1e-6, 10.0, "radius of the shaft"}, &Rig::shaft_radius),
       of_slice({"rig.blade_radius", "m", 1e-6, 10.0, "outer radius of the blade"}, &Rig::blade_radius),
@@ -157,6 +173,12 @@ const std::vector<Binding>& bindings() {
        [](const Case& c) { return c.material.log_normal.value_or(LogNormalSizes{}).geometric_sd; },
        [](Case& c, double x) { c.material.log_normal->geometric_sd = x; },
        [](const Case& c) { return c.material.log_normal ? "" : "is read with a log-normal distribution only"; }},
+      of_drum({"rig.drum_radius", "m", 1e-6, 10.0, "radius of the drum, inside"}, &Drum::radius),
+      of_drum({"rig.drum_length", "m", 1e-6, 10.0, "length of the drum between its end plates"}, &Drum::length),
+      {{"rig.level", "1", 1e-6, 1.0, "bed / drum, of volume, the bed at rest with a solid fraction of 0.6"},
+       level_of,
+       [](Case& c, double x) { c.rig.level = x; },
+       of_drum_only},
   };
   return all;
 }

@@ -2,7 +2,8 @@
 //
 // The spheres start at given positions, or on a cubic lattice of 1.1 diameters with a jitter of 0.04 diameters: of the
 // sites in the fill region that keep clear of every mesh, the largest set of sites next to each other (so that nothing
-// is put inside a shaft or a blade), filled from the bottom, the last layer thinned at random.
+// is put inside a shaft or a blade), filled from the bottom, the last layer thinned at random. Where these sites are too
+// few, the spheres grow to a dense bed (dem/rig/grow.hpp).
 //
 // The torque is that about the measured mesh's axis: what its drive must supply, positive when the powder resists, or,
 // for a mesh that does not turn, the powder's moment on it. The flow is positive along that axis.
@@ -14,6 +15,7 @@
 #include <numbers>
 
 #include "dem/rig/drive.hpp"
+#include "dem/rig/grow.hpp"
 #include "dem/rig/packing.hpp"
 #include "dem/rig/rig_kind.hpp"
 
@@ -61,6 +63,9 @@ void fill(const Case& c, std::uint64_t seed, BuiltRig& built) {
   std::vector<Vec3> sites = free_sites(
       {rig.region, rig.low, rig.high, rig.periodic, rig.down, bed.largest, parcels.clearance}, built.bodies, seed);
   if (sites.size() < parcels.sites()) {
+    built.position =
+        grow({rig.region, rig.low, rig.high, rig.periodic, rig.down}, built.bodies, built.grains, {bed.spheres, seed});
+    if (!built.position.empty()) return;
     const std::string parts = bed.equal ? "" : fmt::format(" ({} sites of the largest)", parcels.sites());
     fail("rig.fill",
          fmt::format("asks for {} spheres of {:g} m{}, but the fill region has room for {} clear of the meshes",
@@ -145,8 +150,13 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
   }
   const Motion measured = built.bodies.empty() ? Motion{} : built.bodies[rig.measured].motion;
   const Vec3 axis = measured.axis, size = rig.high - rig.low;
-  built.sensor = {rig.measured, drive_sign(measured, c.run) * axis, axis,
-                  std::abs(axis.x) * size.x + std::abs(axis.y) * size.y + std::abs(axis.z) * size.z, period(measured)};
+  const Vec3 torque_axis = drive_sign(measured, c.run) * axis;
+  built.sensor = {{rig.measured},
+                  torque_axis,
+                  axis,
+                  std::abs(axis.x) * size.x + std::abs(axis.y) * size.y + std::abs(axis.z) * size.z,
+                  period(measured),
+                  picture_along(-torque_axis, measured.point, rig.down)};
   return built;
 }
 

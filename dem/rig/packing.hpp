@@ -1,6 +1,6 @@
 #pragma once
 // Where spheres start: on the sites of a lattice, in a region with bodies in it (dem/case/stl_rig.hpp says how) or in the
-// slice (dem/rig/slice.cpp).
+// slice (dem/rig/slice.cpp). Where the lattice has too few sites they grow to a dense bed instead (dem/rig/grow.hpp).
 //
 // The lattice is that of the largest spheres; a site takes one of them, or a parcel of n^3 smaller ones, n times
 // smaller at least (n up to 8), on a cubic lattice of their own, so that fine powder does not start as a cloud.
@@ -14,10 +14,6 @@
 #include "dem/engine/simulation.hpp"
 
 namespace dem {
-
-/// Volume of spheres / volume of the bed that they settle to, for estimates. It lies between random loose packing,
-/// 0.555 (G. Onoda & E. Liniger, Phys. Rev. Lett. 64:2727 (1990)), and random close packing, 0.64.
-inline constexpr double packing_fraction = 0.6;
 
 struct Packable {
   const FillRegion& region;

@@ -8,7 +8,7 @@
 namespace dem {
 namespace {
 
-const RigKind& kind_of(const Case& c) { return c.rig.stl ? stl_rig : slice_rig; }
+const RigKind& kind_of(const Case& c) { return c.rig.stl ? stl_rig : c.rig.drum ? drum_rig : slice_rig; }
 
 }  // namespace
 
@@ -20,6 +20,12 @@ std::vector<data::Problem> rig_problems(const Case& c) { return kind_of(c).probl
 std::string rig_settings(const Case& c) { return kind_of(c).settings(c); }
 std::vector<BodyLabel> body_labels(const Case& c) { return kind_of(c).labels(c); }
 double tool_speed(const Case& c) { return kind_of(c).tool_speed(c); }
+
+Picture picture_along(Vec3 turning, Vec3 point, Vec3 down) {
+  const Vec3 right = cross(turning, down);
+  const double level = length(right);
+  return {point, level > 1e-6 ? (1.0 / level) * right : Vec3{}, -down};
+}
 
 std::vector<std::string> body_names(const Case& c) {
   std::vector<std::string> names{"wall"};

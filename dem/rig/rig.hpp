@@ -13,13 +13,23 @@
 
 namespace dem {
 
+/// What a camera that looks along the axis calls right and up.
+struct Picture {
+  Vec3 origin;  ///< m, on the axis
+  Vec3 right;   ///< unit, horizontal, towards the side where the measured body rises; zero where the axis is vertical
+  Vec3 up;      ///< unit, against gravity
+};
+/// Of a body that turns by the right hand about the unit vector `turning` through `point` [m].
+Picture picture_along(Vec3 turning, Vec3 point, Vec3 down);
+
 /// What is measured.
 struct Sensor {
-  std::size_t body = 0;      ///< whose torque is the output
-  Vec3 torque_axis;          ///< torque = torque_axis . moment of the powder on that body
-  Vec3 flow_axis;            ///< axial flow = flow_axis . momentum / flow_length
-  double flow_length = 1.0;  ///< m, of the box along that axis
-  double period = 0.0;       ///< s of a turn of that body, 0 when it does not move
+  std::vector<std::size_t> bodies;  ///< whose torques, together, are the output
+  Vec3 torque_axis;                 ///< torque = torque_axis . moment of the powder on those bodies
+  Vec3 flow_axis;                   ///< axial flow = flow_axis . momentum / flow_length
+  double flow_length = 1.0;         ///< m, of the box along that axis
+  double period = 0.0;              ///< s of a turn of those bodies, 0 when they do not move
+  Picture picture;
 };
 
 struct BuiltRig {
@@ -34,7 +44,7 @@ struct BuiltRig {
   Sensor sensor;
 };
 
-/// "slice", "stl": what rig.kind says.
+/// "slice", "drum", "stl": what rig.kind says.
 const char* rig_kind(const Case& c);
 
 /// Throws data::InputError (78) when the spheres do not fit or start outside.

@@ -19,6 +19,7 @@ struct RigKind {
 };
 
 extern const RigKind slice_rig;  ///< dem/rig/slice.cpp
+extern const RigKind drum_rig;   ///< dem/rig/drum.cpp
 extern const RigKind stl_rig;    ///< dem/rig/build_stl_rig.cpp
 
 }  // namespace dem

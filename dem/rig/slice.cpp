@@ -208,7 +208,7 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
   s.bodies.push_back({"trough", with_copies(trough_mesh(rig, top), {shift}, 1e-9 * length), {}});
   const double way = rig.angular_velocity > 0.0 ? -1.0 : 1.0;
   const Vec3 axis{way, 0.0, 0.0};
-  s.sensor = {mixer, axis, axis, length, period(s.bodies[mixer].motion)};
+  s.sensor = {{mixer}, axis, axis, length, period(s.bodies[mixer].motion), picture_along(-axis, {}, s.down)};
   return s;
 }
 

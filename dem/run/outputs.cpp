@@ -9,6 +9,12 @@ namespace dem {
 namespace {
 
 double one(const Sampling&) { return 1.0; }
+double mass(const Sampling& of) { return of.mass; }
+
+/// Mass times the distance of its centre from the axis along a direction of the picture [kg m].
+double moment(const Sampling& of, const Simulation& now, Vec3 direction) {
+  return dot(direction, now.carried().moment) - of.mass * dot(direction, of.sensor.picture.origin);
+}
 
 }  // namespace
 
@@ -16,7 +22,10 @@ const std::vector<MeanOutput>& mean_outputs() {
   static const std::vector<MeanOutput> all{
       {"torque", "N m", &Series::torque,
        [](const Sampling& of, const Simulation& now) {
-         return dot(of.sensor.torque_axis, now.sums().body[of.sensor.body].torque);
+         double sum = 0.0;
+         for (const std::size_t body : of.sensor.bodies)
+           sum += dot(of.sensor.torque_axis, now.sums().body[body].torque);
+         return sum;
        },
        one},
       {"axial_flow", "kg/s", &Series::axial_flow,
@@ -30,6 +39,10 @@ const std::vector<MeanOutput>& mean_outputs() {
       {"normal_stress", "Pa", &Series::normal_stress,
        [](const Sampling&, const Simulation& now) { return now.sums().virial; },
        [](const Sampling& of) { return 3.0 * of.solid_volume; }},
+      {"centre_x", "m", &Series::centre_x,
+       [](const Sampling& of, const Simulation& now) { return moment(of, now, of.sensor.picture.right); }, mass},
+      {"centre_z", "m", &Series::centre_z,
+       [](const Sampling& of, const Simulation& now) { return moment(of, now, of.sensor.picture.up); }, mass},
   };
   return all;
 }

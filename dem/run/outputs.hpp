@@ -15,6 +15,7 @@ struct Sampling {
   Sensor sensor;
   double spheres = 0.0;
   double solid_volume = 0.0;  ///< m3
+  double mass = 0.0;          ///< kg
 };
 
 struct MeanOutput {

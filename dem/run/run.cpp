@@ -9,6 +9,7 @@
 
 #include "data/error.hpp"
 #include "dem/bed/setup.hpp"
+#include "dem/case/grains.hpp"
 #include "dem/contact/isa.hpp"
 #include "dem/engine/order.hpp"
 #include "dem/reading/target.hpp"
@@ -121,7 +122,8 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   BuiltRig rig = build_rig(c, seed);
   const Sensor sensor = rig.sensor;
   const std::size_t spheres = rig.position.size();
-  const Sampling sampling{sensor, static_cast<double>(spheres), solid_volume(rig.grains, spheres)};
+  const Sampling sampling{sensor, static_cast<double>(spheres), solid_volume(rig.grains, spheres),
+                          solid_mass(rig.grains, spheres)};
   const Plan plan = make_plan(c, d, sensor);
   const Box box{rig.low, rig.high, rig.periodic};
   Looks looks = begin_looks(plan.rule);
@@ -226,8 +228,9 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   if (result.status == RunStatus::done) result.warnings = warnings_of(c, result.summary);
   if (result.status == RunStatus::done && !now.series.torque.empty() && result.summary.mean.front().mean == 0.0) {
     const std::vector<BodyLabel> labels = body_labels(c);
-    result.warnings.push_back(fmt::format("the torque is exactly 0: no sphere ever touched {}",
-                                          sensor.body < labels.size() ? labels[sensor.body].name : "a body"));
+    std::vector<std::string> names;
+    for (const std::size_t body : sensor.bodies) names.push_back(body < labels.size() ? labels[body].name : "a body");
+    result.warnings.push_back(fmt::format("the torque is exactly 0: no sphere ever touched {}", listed(names)));
   }
   if (g.deep_contacts > 0) {
     result.warnings.push_back(fmt::format(

@@ -13,6 +13,9 @@
 //   kinetic_energy      J, translation and rotation, of the whole box
 //   normal_stress       Pa, sum over sphere contacts of normal force * distance of the centres / (3 * volume of the
 //                       spheres): the mean pressure divided by the solid fraction
+//   centre_x, centre_z  m, the centre of mass seen along the axis: from the axis to the side where the measured body
+//                       rises, and above it. In the steady flow of a drum whose turning parts are all measured, torque
+//                       = weight * centre_x. Of a vertical axis centre_x is 0; across a periodic axis they say nothing.
 // What of the series is measured, and when the run has been long enough, is in dem/run/looks.hpp.
 #include <cstdint>
 #include <functional>
@@ -37,6 +40,8 @@ struct Series {
   std::vector<double> coordination;    ///< 1
   std::vector<double> kinetic_energy;  ///< J
   std::vector<double> normal_stress;   ///< Pa
+  std::vector<double> centre_x;        ///< m
+  std::vector<double> centre_z;        ///< m
   std::vector<double> look_time;       ///< s, of the looks at the bed, each 0.05 s
   std::vector<double> bond_order;      ///< 1, dem/engine/order.hpp, at a look
 };

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 #include "data/atomic_file.hpp"
@@ -151,12 +153,8 @@ Checkpoint read_checkpoint(const data::Hdf5Group& group) {
                    .deep_contacts = static_cast<std::uint64_t>(p[1]),
                    .max_overlap = p[2],
                    .cpu_seconds = p[3]};
-  // A steady run that was kept without its last state has no sums either.
-  const bool empty = now.state.position.empty() && now.under_way.sums.empty();
-  if (!empty && now.under_way.sums.size() != mean_outputs().size())
-    throw data::InputError(
-        data::ExitStatus::bad_data,
-        {group.place("sums_under_way"), "is a checkpoint of another build", "start the run again from the beginning"});
+  // Of before there was one of the outputs, or of a steady run that was kept without its last state.
+  if (now.under_way.sums.size() != mean_outputs().size()) return {};
   return now;
 }
 
@@ -280,7 +278,11 @@ SavedRun read_run(const std::string& path) {
   r.summary.cpu_seconds = file.number("cpu_seconds");
   const data::Hdf5Group series = file.group("series");
   each_series(r.series, [&](const char* name, const char*, std::vector<double>& values) {
-    values = series.read<double>(name).values;
+    // A run of before there was this output.
+    if (series.has(name))
+      values = series.read<double>(name).values;
+    else
+      values.assign(r.series.time.size(), std::numeric_limits<double>::quiet_NaN());
   });
   const data::Hdf5Group summary = file.group("summary");
   const auto column = [&](const char* name) { return summary.read<double>(name).values; };
@@ -293,9 +295,17 @@ SavedRun read_run(const std::string& path) {
           data::ExitStatus::bad_data,
           {path + ": /summary", fmt::format("has columns of {} and {} values", mean.size(), other->size()),
            "remove it, and the run is made again"});
-  for (std::size_t k = 0; k < mean.size(); ++k) {
-    r.summary.mean.push_back(
-        {mean[k], error[k], sd[k], time[k], samples[k], static_cast<std::size_t>(dropped[k]), reliable[k] != 0.0});
+  saved.outputs = summary.read_texts("names");
+  saved.outputs.resize(std::min(saved.outputs.size(), mean.size()));
+  for (const Output& wanted : mean.empty() ? std::vector<Output>{} : outputs()) {
+    const auto k = static_cast<std::size_t>(std::find(saved.outputs.begin(), saved.outputs.end(), wanted.name) -
+                                            saved.outputs.begin());
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    if (k == saved.outputs.size())
+      r.summary.mean.push_back({.mean = unknown, .standard_error = unknown, .reliable = false});
+    else
+      r.summary.mean.push_back(
+          {mean[k], error[k], sd[k], time[k], samples[k], static_cast<std::size_t>(dropped[k]), reliable[k] != 0.0});
   }
   read_state(summary, r.summary);
   r.checkpoint = read_checkpoint(file.group("checkpoint"));

@@ -22,6 +22,9 @@ struct SavedRun {
   RunResult result;
   std::string settings;  ///< settings_text of the case that was run
   int rule = 0;          ///< look_rule_version by which it was judged
+  /// That the file has, by name. Of others, which came after it was written, the series and means are not numbers, and
+  /// the run is not gone on from: its checkpoint has no state.
+  std::vector<std::string> outputs;
 };
 
 /// Throws data::InputError: 66 missing, 65 not such a file.

@@ -212,6 +212,16 @@ fill = 2400
 scale = 5
 )";
 
+const char* const drum = R"(
+[rig]
+kind = "drum"
+drum_radius = "42 mm"
+drum_length = "20 mm"
+end_plates = "turning"
+level = 0.5
+rpm = "15 rpm"
+)";
+
 const char* const meshes = R"(
 [materials.NAME2]
 components = [{ material = "NAME3", mass_fraction = 1 }]
@@ -307,6 +317,7 @@ std::string reference_name(const std::string& dotted) {
 Asked asked_by_the_readers() {
   Asked all;
   collect(std::string(common) + slice, all);
+  collect(std::string(common) + drum, all);
   const std::string cylinder = std::string(common) + meshes;
   collect(cylinder, all);
   const std::string radius = "\nradius = \"7 mm\"";

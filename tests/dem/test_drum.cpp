@@ -1,0 +1,241 @@
+// The drum: how it is filled, what its torque is, and that its runs have the same bits. The torque is held against
+// the weight's moment about the axis, which the walls must hold in steady flow; the fill against the centroid of a half
+// disc.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "dem/case/grains.hpp"
+#include "dem/forecast/forecast.hpp"
+#include "dem/reading/target.hpp"
+#include "dem/rig/drum.hpp"
+#include "dem/run/run.hpp"
+#include "scene.hpp"
+
+using Catch::Contains;
+
+namespace {
+
+/// 20 mm wide and 6 mm long, two fifths full of a few hundred spheres of three sizes, at 60 rpm.
+dem::Case small_drum(dem::EndPlates end_plates = dem::EndPlates::turning) {
+  dem::Case c;
+  c.rig.drum = dem::Drum{.radius = 10e-3, .length = 6e-3, .end_plates = end_plates};
+  c.rig.level = 0.4;
+  c.rig.angular_velocity = 2.0 * M_PI;
+  c.material.density = 2500.0;
+  c.material.sizes = {{1.1e-3, 1.0 / 3.0}, {1.2e-3, 1.0 / 3.0}, {1.3e-3, 1.0 / 3.0}};
+  c.contact.stiffness = 200.0;
+  c.contact.friction = 0.5;
+  c.run.settle = 0.05;
+  c.run.steps_per_contact = 15.0;
+  return c;
+}
+
+dem::Case short_run(dem::Case c) {
+  c.run.settle = 0.02;
+  c.run.start_up = 0.02;
+  c.run.start_up_turns = 0.0;
+  c.run.shortest = 0.03;
+  c.run.shortest_turns = 0.0;
+  c.run.longest = 0.05;
+  c.run.window = 3e-3;
+  return c;
+}
+
+/// Means over some time of turning, after a start-up.
+struct Balance {
+  double shell = 0.0, plates = 0.0;  ///< N m, that the drive supplies or the rest holds
+  double weight = 0.0;               ///< N m, of the powder about the axis
+};
+Balance balance(const dem::Case& c, double start_up, double measured) {
+  dem::BuiltRig rig = dem::build_rig(c, 2);
+  const dem::Sensor sensor = rig.sensor;
+  const double dt = dem::derive(c).time_step;
+  const auto rest = static_cast<std::uint64_t>(std::llround(c.run.settle / dt));
+  dem::Simulation s(dem::make_setup(c, std::move(rig), rest, 1));
+  while (s.time() < c.run.settle + start_up) s.step();
+  Balance mean;
+  const auto steps = static_cast<int>(measured / dt);
+  for (int k = 0; k < steps; ++k) {
+    s.step();
+    mean.shell += dot(sensor.torque_axis, s.sums().body[dem::shell].torque) / steps;
+    if (c.rig.drum->end_plates != dem::EndPlates::none)
+      mean.plates += dot(sensor.torque_axis, s.sums().body[dem::plates].torque) / steps;
+    mean.weight += c.run.gravity * dot(sensor.picture.right, s.carried().moment) / steps;
+  }
+  return mean;
+}
+
+}  // namespace
+
+TEST_CASE("a half-full drum of log-normal sizes starts with as many spheres as asked for, none touching anything") {
+  dem::Case c;
+  c.rig.drum = dem::Drum{.radius = 20e-3, .length = 8e-3};
+  c.rig.level = 0.5;
+  c.material.diameter = 1.2e-3;
+  c.material.log_normal = dem::LogNormalSizes{.geometric_sd = 1.25, .low = 0.7e-3, .high = 2.0e-3};
+  REQUIRE(dem::problems(c).empty());
+  for (const dem::EndPlates ends : {dem::EndPlates::turning, dem::EndPlates::none}) {
+    c.rig.drum->end_plates = ends;
+    c.rig.drum->length = ends == dem::EndPlates::none ? 12e-3 : 8e-3;
+    const dem::Simulation s(scene::rig(c, 3));
+    CHECK(s.state().particles() == dem::summarise_bed(c).spheres);
+    CHECK(s.sums().contacts == 0);
+    CHECK(s.sums().wall_contacts == 0);
+    for (std::size_t i = 0; i < s.state().particles(); ++i)
+      REQUIRE(std::hypot(s.state().position[i].at.x, s.state().position[i].at.z) < 20e-3);
+  }
+  // Spheres of that lattice alone would not have fitted.
+  const double solids = dem::summarise_bed(c).volume, drum = c.rig.drum->volume();
+  CHECK(solids / drum == Approx(0.3).epsilon(0.01));
+}
+
+TEST_CASE("the filling is by the seed alone, and any level up to the fullest starts") {
+  dem::Case c = small_drum();
+  for (const double level : {0.05, 0.5, dem::fullest_drum - 0.01}) {
+    c.rig.level = level;
+    const dem::BuiltRig one = dem::build_rig(c, 3), again = dem::build_rig(c, 3), other = dem::build_rig(c, 4);
+    REQUIRE(one.position.size() == dem::summarise_bed(c).spheres);
+    CHECK(one.position[7].x == again.position[7].x);
+    CHECK(one.position[7].x != other.position[7].x);
+  }
+}
+
+TEST_CASE("a half-full drum at rest settles to the centroid of a half disc", "[slow]") {
+  dem::Case c = small_drum();
+  c.rig.drum->end_plates = dem::EndPlates::none;
+  c.rig.level = 0.5;
+  c.material.sizes = {{0.66e-3, 1.0 / 3.0}, {0.72e-3, 1.0 / 3.0}, {0.78e-3, 1.0 / 3.0}};
+  c.contact.friction = 0.1;  // so that they pack well: the solid fraction is then 0.6 within a few hundredths
+  dem::Simulation s(scene::rig(c, 1, scene::at_rest));
+  while (s.time() < 0.15) s.step();
+  double mass = 0.0;
+  for (std::size_t i = 0; i < s.state().particles(); ++i) mass += s.state().motion[i].mass;
+  const double depth = -s.carried().moment.z / mass;
+  CHECK(depth == Approx(4.0 * 10e-3 / (3.0 * M_PI)).epsilon(0.08));
+}
+
+TEST_CASE("in steady flow the drum's torque is the weight times the centre's distance from the axis", "[slow]") {
+  dem::Case c = small_drum();
+  c.rig.angular_velocity *= GENERATE(1.0, -1.0);
+  c.run.start_up = 0.5;
+  c.run.start_up_turns = 0.5;
+  c.run.shortest = 1.0;
+  c.run.shortest_turns = 1.0;
+  c.run.longest = 2.5;
+  c.run.standard_error = 0.05;
+  const dem::RunResult result = dem::run(c, 1);
+  INFO(result.reason);
+  REQUIRE(result.status == dem::RunStatus::done);
+  const data::SeriesMean torque = dem::output(result, "torque"), x = dem::output(result, "centre_x");
+  const double weight = dem::summarise_bed(c).mass * c.run.gravity;
+  INFO("torque " << 1e6 * torque.mean << " +- " << 1e6 * torque.standard_error << " uN m, weight * centre_x "
+                 << 1e6 * weight * x.mean << " +- " << 1e6 * weight * x.standard_error);
+  CHECK(torque.mean > 0.0);
+  CHECK(std::abs(torque.mean - weight * x.mean) < 3.0 * std::hypot(torque.standard_error, weight * x.standard_error));
+  CHECK(weight * x.mean == Approx(torque.mean).epsilon(0.03));
+  CHECK(dem::output(result, "centre_z").mean < 0.0);
+}
+
+TEST_CASE("shell and end plates hold the weight together; end plates that rest brake and load the shell", "[slow]") {
+  const Balance turning = balance(small_drum(), 0.4, 0.8);
+  CHECK(turning.shell + turning.plates == Approx(turning.weight).epsilon(0.03));
+  CHECK(turning.plates > 0.0);
+  const Balance resting = balance(small_drum(dem::EndPlates::resting), 0.4, 0.8);
+  CHECK(resting.shell + resting.plates == Approx(resting.weight).epsilon(0.03));
+  CHECK(resting.plates < 0.0);
+  CHECK(resting.shell > resting.weight);
+  const Balance open = balance(small_drum(dem::EndPlates::none), 0.4, 0.8);
+  CHECK(open.shell == Approx(open.weight).epsilon(0.03));
+}
+
+TEST_CASE("the sensor sums what turns: the shell alone where the end plates rest or are missing") {
+  CHECK(dem::build_rig(small_drum(), 1).sensor.bodies == std::vector<std::size_t>{dem::shell, dem::plates});
+  CHECK(dem::build_rig(small_drum(dem::EndPlates::resting), 1).sensor.bodies == std::vector<std::size_t>{dem::shell});
+  const dem::BuiltRig open = dem::build_rig(small_drum(dem::EndPlates::none), 1);
+  CHECK(open.bodies.size() == 1);
+  CHECK(open.periodic[1]);
+}
+
+TEST_CASE("a drum has the same bits with 1, 2 and 4 threads") {
+  dem::Case c = small_drum();
+  c.rig.drum->length = 24e-3;  // several chunks
+  std::vector<std::uint64_t> hashes;
+  for (const int threads : {1, 2, 4}) {
+    dem::Simulation s(scene::rig(c, 1, 0, threads));
+    for (int k = 0; k < 1200; ++k) s.step();
+    CHECK(s.state().rebuilds > 3);
+    hashes.push_back(scene::hash(s.state()));
+  }
+  CHECK(hashes[0] == hashes[1]);
+  CHECK(hashes[0] == hashes[2]);
+}
+
+TEST_CASE("a drum's run stopped and gone on from its checkpoint ends with the same bits") {
+  const dem::Case c = short_run(small_drum());
+  const dem::RunResult whole = dem::run(c, 1);
+  REQUIRE(whole.status == dem::RunStatus::done);
+  dem::Checkpoint middle;
+  int calls = 0;
+  dem::RunOptions first;
+  first.checkpoint_interval = 0.0;
+  first.checkpoint = [&](const dem::Checkpoint& now) {
+    if (++calls == 5) middle = now;
+  };
+  dem::run(c, 1, first);
+  REQUIRE(calls >= 5);
+  dem::RunOptions second;
+  second.resume = &middle;
+  second.threads = 2;
+  const dem::RunResult resumed = dem::run(c, 1, second);
+  CHECK(scene::hash(resumed.checkpoint.state) == scene::hash(whole.checkpoint.state));
+  CHECK(resumed.series.torque == whole.series.torque);
+  CHECK(resumed.series.centre_x == whole.series.centre_x);
+  CHECK(resumed.series.centre_z == whole.series.centre_z);
+}
+
+TEST_CASE("number, mass and level say the same fill, and the last one said counts") {
+  dem::Case c = small_drum();
+  const auto spheres = static_cast<double>(dem::summarise_bed(c).spheres);
+  for (const char* name : {"rig.fill", "rig.fill_mass", "rig.level"}) {
+    dem::set_target(c, name, dem::get_target(c, name));
+    INFO(name);
+    CHECK(static_cast<double>(dem::summarise_bed(c).spheres) == Approx(spheres).margin(1.0));
+  }
+  dem::set_target(c, "rig.fill", 100.0);
+  CHECK(dem::summarise_bed(c).spheres == 100);
+  dem::set_target(c, "level", 0.2);
+  CHECK(static_cast<double>(dem::summarise_bed(c).spheres) == Approx(0.5 * spheres).margin(1.0));
+}
+
+TEST_CASE("a slice's settings say nothing of drums, and a drum's nothing of slices") {
+  const std::string slice = dem::settings_text({}), drum = dem::settings_text(small_drum());
+  for (const char* word : {"drum", "level", "end_plates", "centre"}) CHECK_THAT(slice, !Contains(word));
+  for (const char* word : {"rig.kind = drum", "rig.drum_radius", "rig.drum_length", "rig.level", "rig.end_plates"})
+    CHECK_THAT(drum, Contains(word));
+  CHECK_THAT(drum, !Contains("trough") && !Contains("pitch"));
+  CHECK(dem::settings_text(small_drum(dem::EndPlates::resting)) != drum);
+}
+
+TEST_CASE("a drum too full, at rest, too short to repeat or too fast to flow is said before it is run") {
+  dem::Case c = small_drum();
+  CHECK(dem::problems(c).empty());
+  const dem::Forecast f = dem::forecast(c, 1);
+  CHECK(f.problems.empty());
+  CHECK(f.warnings.empty());
+  CHECK(f.fill.value() == Approx(0.4).epsilon(0.01));
+  // The height below which 0.4 of a unit disc lies: (acos(-z) + z sqrt(1 - z^2)) / pi = 0.4 at z = -0.1576.
+  CHECK(f.surface.value() == Approx(-0.1576 * 10e-3).epsilon(0.02));
+  dem::Case full = c;
+  dem::set_target(full, "rig.fill", 2.5 * dem::get_target(c, "rig.fill"));
+  CHECK_THAT(data::describe(dem::problems(full)), Contains("rig.fill") && Contains("of the drum's volume"));
+  dem::Case rests = c;
+  rests.rig.angular_velocity = 0.0;
+  CHECK_THAT(data::describe(dem::problems(rests)), Contains("a drum at rest has no torque"));
+  dem::Case slip = small_drum(dem::EndPlates::none);
+  slip.rig.drum->length = 5e-3;
+  CHECK_THAT(data::describe(dem::problems(slip)), Contains("rig.drum_length") && Contains("four spheres"));
+  dem::Case fast = c;
+  fast.rig.angular_velocity = 40.0;
+  REQUIRE(!dem::forecast(fast, 1).warnings.empty());
+  CHECK_THAT(dem::forecast(fast, 1).warnings.back(), Contains("Froude number is 1.63"));
+}
