@@ -101,7 +101,7 @@ TEST_CASE("a task that ends before its runs are made is submitted again, run by 
   CHECK_THAT(site.said, Contains("3 runs left Slurm's queue without a result and are submitted again"));
 }
 
-TEST_CASE("a run whose task never gives a result fails with the end of its log; the others are made") {
+TEST_CASE("a run whose task never gives a result fails with the end of its log, and the others are made") {
   Site site(3);
   const std::string cursed = run_name(site.workspace, site.runs[1].point);
   site.slurm.step = [&](const std::string& name, int task, FakeSlurm::Job& job) {

@@ -136,7 +136,8 @@ TEST_CASE("in steady flow the drum's torque is the weight times the centre's dis
   CHECK(dem::output(result, "centre_z").mean < 0.0);
 }
 
-TEST_CASE("shell and end plates hold the weight together; end plates that rest brake and load the shell", "[slow]") {
+TEST_CASE("shell and end plates hold the weight together, and end plates that rest brake and load the shell",
+          "[slow]") {
   const Balance turning = balance(small_drum(), 0.4, 0.8);
   CHECK(turning.shell + turning.plates == Approx(turning.weight).epsilon(0.03));
   CHECK(turning.plates > 0.0);
