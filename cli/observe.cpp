@@ -249,8 +249,9 @@ data::ExitStatus observe(Options options) {
   }
   for (std::string& warning : warnings_of(log, plateaus)) warnings.push_back(std::move(warning));
   for (const std::string& warning : warnings) say(options.common, "warning: " + warning);
-  answer(options.common, fmt::format("{} observations: {} (picture: {})", plateaus.size(), out.string(),
-                                     observe_pictures(out).front().string()));
+  answer(options.common,
+         fmt::format("{} observation{}: {} (picture: {})", plateaus.size(), plateaus.size() == 1 ? "" : "s",
+                     out.string(), observe_pictures(out).front().string()));
   json["warnings"] = warnings;
   print_json(options.common, json);
   return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
