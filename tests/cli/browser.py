@@ -37,7 +37,7 @@ def chromium(folder, *options, page):
     """What it writes to stdout and stderr."""
     done = subprocess.run(
         ["chromium", "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-extensions",
-         "--disable-background-networking", "--disable-component-update", "--enable-logging=stderr",
+         "--disable-background-networking", "--disable-dev-shm-usage", "--disable-component-update", "--enable-logging=stderr",
          f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=5000", *options, page.as_uri()],
         capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
