@@ -16,6 +16,7 @@
 #include "data/origin.hpp"
 #include "data/torque_log.hpp"
 #include "data/unit_text.hpp"
+#include "uq/findings/wording.hpp"
 #include "uq/report/gnuplot.hpp"
 
 namespace cli {
@@ -237,10 +238,12 @@ data::ExitStatus observe(Options options) {
     const data::Plateau& plateau = plateaus[i];
     const data::MeanTorque found = observed_torque(plateau, idle, i);
     const double mean = found.value / unit.factor, error = found.error / unit.factor;
+    const uq::Rounding rounding = uq::rounding_of(mean, error);
+    const auto shown = [&](double value) { return uq::format_value(value, rounding, "", uq::Typography::ascii); };
     answer(options.common,
-           fmt::format("{:>8.4g} {}: {:.4g} +- {:.2g} {} ({:.4g} s, {:.0f} independent samples)",
-                       log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, mean, error, unit.symbol,
-                       log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
+           fmt::format("{:>8.4g} {}: {} +- {} {} ({:.4g} s, {:.0f} independent samples)",
+                       log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, shown(mean), shown(error),
+                       unit.symbol, log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
                        plateau.torque.effective_samples));
     json["rows"].push_back({{options.control, log.speed_unit.from_si(plateau.speed)},
                             {options.output, mean},

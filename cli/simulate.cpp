@@ -17,6 +17,7 @@
 #include "dem/rig/rig.hpp"
 #include "dem/run/run_file.hpp"
 #include "dem/walls/stl.hpp"
+#include "uq/findings/wording.hpp"
 
 namespace cli {
 namespace {
@@ -74,9 +75,11 @@ std::string summary(const Workspace& workspace, const Point& point, const dem::R
   const data::RunRow row = to_row(workspace, point, result);
   for (std::size_t i = 0; i < row.outputs.size(); ++i) {
     const data::Output& output = workspace.study.outputs[i];
-    text += fmt::format("  {:<20} {:>10.4g} +- {:.2g} {}{}\n", output.name, output.unit.from_si(row.outputs[i]),
-                        row.standard_errors[i] / output.unit.factor, output.unit.symbol,
-                        dem::output(result, output.name).reliable ? "" : " (too short to know this error)");
+    text += fmt::format(
+        "  {:<20} {}{}\n", output.name,
+        uq::format_with_error(output.unit.from_si(row.outputs[i]), row.standard_errors[i] / output.unit.factor,
+                              output.unit.symbol, uq::Typography::ascii),
+        dem::output(result, output.name).reliable ? "" : " (too short to know this error)");
   }
   return text;
 }
