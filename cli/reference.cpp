@@ -44,7 +44,10 @@ std::string name_of(const CLI::Option& option) { return "--" + option.get_lnames
 
 std::string options_text(const CLI::App& command) {
   std::string text;
-  for (const CLI::Option* option : long_options(command)) text += (text.empty() ? "" : " ") + name_of(*option);
+  for (const CLI::Option* option : long_options(command)) {
+    if (!text.empty()) text += ' ';
+    text += name_of(*option);
+  }
   return text;
 }
 

@@ -125,12 +125,12 @@ Figure marginal_figure(const CaseReport& result, std::size_t parameter, const st
       plot::look() + plot::label('x', axis) + plot::label('y', {1.0, "share of the draws"}) +
       fmt::format("sx = {:.0e}\nset boxwidth {:.10g}*sx\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [0:*]\n",
                   axis.scale, 0.95 * width, range.low, range.high);
-  int line = 0;
-  for (const double at : {of.q05, of.q50, of.q95})
+  const std::array marks{of.q05, of.q50, of.q95};
+  for (std::size_t k = 0; k < marks.size(); ++k)
     figure.script += fmt::format(
         "set arrow {0} from first {1:.10g}*sx, graph 0 to first {1:.10g}*sx, graph 1 nohead dashtype {2} linecolor rgb "
         "'{3}'\n",
-        ++line, at, line == 2 ? 1 : 2, plot::vermillion);
+        k + 1, marks[k], k == 1 ? 1 : 2, plot::vermillion);
   figure.script += fmt::format(
       "plot '{}.dat' index 'bars' using ($1*sx):2 with boxes fillstyle solid noborder linecolor rgb '{}' notitle", stem,
       plot::sky);
