@@ -41,6 +41,7 @@ def main():
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
+    options.demcal = str(pathlib.Path(options.demcal).resolve())
     all_words = run.commands(options.data.resolve())
     chance = random.Random(options.seed)
     wanted, duration, kills, failures = {}, {}, 0, []
