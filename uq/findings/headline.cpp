@@ -4,18 +4,12 @@
 #include <cctype>
 #include <cmath>
 
+#include "uq/findings/listed.hpp"
+
 namespace uq {
 namespace {
 
 using Names = std::vector<std::string>;
-
-/// "a", "a and b", "a, b and c".
-std::string listed(const Names& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return text;
-}
 
 std::string capital(std::string text) {
   if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uq/findings/listed.hpp"
 #include "uq/report/figures.hpp"
 #include "uq/report/page.hpp"
 #include "uq/report/plot.hpp"
@@ -90,11 +91,11 @@ std::string joint_part(const CaseReport& result, const std::string& id, const Co
     out += "<div class=\"pair\">\n" + figures + "</div>\n";
   }
   for (const TradedPair& traded : result.traded) {
-    std::string names;
     const std::vector<std::string> members =
         traded.parameters.empty() ? std::vector{traded.first, traded.second} : traded.parameters;
-    for (std::size_t i = 0; i < members.size(); ++i)
-      names += (i == 0 ? "" : i + 1 == members.size() ? " and " : ", ") + ("<strong>" + text(members[i]) + "</strong>");
+    std::vector<std::string> strong;
+    for (const std::string& member : members) strong.push_back("<strong>" + text(member) + "</strong>");
+    const std::string names = listed(strong);
     const std::string value = std::isfinite(traded.value)
                                   ? " = " + text(format_with_error(traded.value, traded.error, traded.unit, pretty))
                                   : "";

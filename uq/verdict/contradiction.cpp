@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "uq/findings/listed.hpp"
 #include "uq/posterior/fisher.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/verdict/profile.hpp"
@@ -32,13 +33,6 @@ Eigen::MatrixXd starting_points(const data::Study& study, const CaseModel& model
     for (Eigen::Index k = 0; k < starts.cols(); ++k)
       starts(i, k) = model.slots[static_cast<std::size_t>(k)].prior.draw(random);
   return starts;
-}
-
-std::string list(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return text;
 }
 
 }  // namespace
@@ -74,13 +68,13 @@ Contradiction describe_contradiction(const std::vector<SetFit>& sets, double lea
   for (const SetFit& set : sets) (set.best_fit_p >= least_p ? fit : unfit).push_back(set.name);
   if (sets.empty() || fit.empty()) return {};
   if (unfit.empty())
-    return {.finding = fmt::format("On its own each of {} fits: they contradict each other.", list(fit)),
+    return {.finding = fmt::format("On its own each of {} fits: they contradict each other.", listed(fit)),
             .remedy =
                 "Check that these are the same powder, rig and units; if they are, free what differs between "
                 "them (a gain or an offset of each meter), or calibrate them as cases that share nothing."};
-  return {.finding = fmt::format("On its own {} {}; {} {} not.", list(fit), fit.size() == 1 ? "fits" : "fit",
-                                 list(unfit), unfit.size() == 1 ? "does" : "do"),
-          .remedy = fmt::format("Look at {} first.", list(unfit))};
+  return {.finding = fmt::format("On its own {} {}; {} {} not.", listed(fit), fit.size() == 1 ? "fits" : "fit",
+                                 listed(unfit), unfit.size() == 1 ? "does" : "do"),
+          .remedy = fmt::format("Look at {} first.", listed(unfit))};
 }
 
 }  // namespace uq

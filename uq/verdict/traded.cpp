@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "uq/findings/listed.hpp"
 #include "uq/findings/wording.hpp"
 #include "uq/posterior/predictive.hpp"
 #include "uq/verdict/combination.hpp"
@@ -73,13 +74,6 @@ std::vector<Subset> subsets_of(const std::vector<int>& pool, std::size_t size) {
   };
   extend(extend, 0);
   return all;
-}
-
-std::string list(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return text;
 }
 
 /// A subset with the best form of it.
@@ -176,7 +170,7 @@ TradedPair describe(const CaseModel& model, const Found& found, const Eigen::Mat
   pair.second = pair.parameters[most.second];
   if (found.combination.form == CombinationForm::curved) {
     pair.form = "curved";
-    pair.combination = pair.statement = "a curved relation of " + list(pair.parameters);
+    pair.combination = pair.statement = "a curved relation of " + listed(pair.parameters);
   } else {
     const CombinationText written = write_combination(found.combination, columns);
     Eigen::VectorXd value(values.rows());
