@@ -1,3 +1,5 @@
+# Included, not a directory of its own: a file that a command makes is known to targets of the same directory alone.
+
 # Under sanitizers -O3 and the analysis of pointers cost the compiler minutes per file and find nothing more.
 if(DEMCAL_SANITIZE)
   set(optimise -fno-tree-pta)
@@ -14,7 +16,9 @@ endforeach()
 # The force pass (contact/forces/), compiled once for each instruction set of DEMCAL_FORCES; isa.cpp takes the widest that the
 # processor has. Each becomes one object file in which all but its entry is local: else the linker would keep one of
 # several copies of a template or inline function, and run it on processors that it was not compiled for.
-file(GLOB sources CONFIGURE_DEPENDS contact/forces/*.cpp)
+file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/dem/contact/forces/*.cpp)
+set(made ${CMAKE_BINARY_DIR}/dem)
+file(MAKE_DIRECTORY ${made})
 set(table "// Instruction sets that contact forces are compiled for, the least first; made by CMake.\n")
 foreach(isa IN LISTS DEMCAL_FORCES)
   string(MAKE_C_IDENTIFIER demcal_forces_${isa} entry)
@@ -24,7 +28,7 @@ foreach(isa IN LISTS DEMCAL_FORCES)
   demcal_isa_flags(${isa} flags)
   target_compile_options(${entry} PRIVATE ${numerics} ${flags} -fno-gnu-unique)
   target_compile_definitions(${entry} PRIVATE DEMCAL_FORCES_ENTRY=${entry})
-  set(object ${CMAKE_CURRENT_BINARY_DIR}/${entry}.o)
+  set(object ${made}/${entry}.o)
   add_custom_command(OUTPUT ${object}
     COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${object}.all $<TARGET_OBJECTS:${entry}>
     COMMAND ${CMAKE_OBJCOPY} --keep-global-symbol=${entry} ${object}.all ${object}
@@ -33,5 +37,5 @@ foreach(isa IN LISTS DEMCAL_FORCES)
   target_sources(demcal_contact PRIVATE ${object})
   string(APPEND table "FORCES(\"${isa}\", ${entry})\n")
 endforeach()
-file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/forces.inc CONTENT "${table}")
-target_include_directories(demcal_contact PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
+file(CONFIGURE OUTPUT ${made}/forces.inc CONTENT "${table}")
+target_include_directories(demcal_contact PRIVATE ${made})
