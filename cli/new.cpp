@@ -36,6 +36,7 @@ trough_radius = "8.4 mm"        # grains pass between blade and trough uncrushed
 pitch = "12 mm"
 fill = 2400                    # spheres in the box, or their mass: "4 g"
 
+# The machine that circulates the powder: kind = "machine", two such augers in a double trough; machine_length, opening, sill.
 # A rotating drum: kind = "drum", drum_radius, drum_length, end_plates, and level (the bed's share of its volume) or fill.
 # Your own machine: kind = "stl", [rig.box] low, high, periodic = ["x"], and for each STL file from CAD a table
 # [[rig.mesh]]: name, file, unit = "mm", and for what the study's rpm turns axis = [1, 0, 0], point, speed_ratio = 1.

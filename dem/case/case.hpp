@@ -23,12 +23,22 @@ struct Drum {
   double volume() const { return std::numbers::pi * radius * radius * length; }  ///< m3
 };
 
-/// The horizontal auger slice: shaft and helical blade, turning about +x in an open U-trough; periodic along x. Or,
-/// when `drum` is set, that drum, and when `stl` is set, the user's meshes; then only fill and angular velocity are
-/// used here, and of a drum the level.
+/// What a machine of two augers has beside the slice's cross-section (dem/rig/machine.hpp).
+struct Machine {
+  double length = 330e-3;           ///< m, between the end walls
+  double opening = 30e-3;           ///< m along the axes, of the partition at each end
+  double partition = 1e-3;          ///< m, its thickness
+  double partition_height = 12e-3;  ///< m above the axes
+  double sill = -3.5e-3;            ///< m above the axes, lower edge of the openings
+};
+
+/// The horizontal auger slice: shaft and helical blade, turning about +x in an open U-trough; periodic along x. When
+/// `machine` is set, two such augers in a double trough. When `drum` is set, that drum, and when `stl` is set, the
+/// user's meshes; then only fill and angular velocity are used here, and of a drum the level.
 struct Rig {
   std::shared_ptr<const StlRig> stl;
   std::optional<Drum> drum;
+  std::optional<Machine> machine;
   double shaft_radius = 2.5e-3;                  ///< m
   double blade_radius = 6.0e-3;                  ///< m
   double blade_thickness = 1.0e-3;               ///< m, along the axis
@@ -37,8 +47,10 @@ struct Rig {
   int pitches = 1;                               ///< periods of the helix in the box
   double fill = 2400.0;                          ///< number of spheres in the box, rounded
   std::optional<double> fill_mass;               ///< kg in the box; when set, the number follows from it
-  std::optional<double> level;                   ///< bed / drum, of volume; when set, the number follows from it
+  std::optional<double> level;                   ///< bed / room (level_volume); when set, the number follows from it
   double angular_velocity = 15.707963267948966;  ///< rad/s about +x (150 rpm), of a drum about -y, or the meshes' axes
+
+  double clearance() const { return trough_radius - blade_radius; }  ///< m, of blade and trough
 };
 
 /// A share of a material's mass that is in spheres of one diameter.

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "data/random.hpp"
+#include "dem/case/cross_section.hpp"
 
 namespace dem {
 namespace {
@@ -136,8 +137,8 @@ BedSummary summarise_bed(const Case& c) {
   }
   double spheres = c.rig.fill;
   if (c.rig.fill_mass) spheres = *c.rig.fill_mass * numbers_per_mass;
-  if (c.rig.level && c.rig.drum)
-    spheres = *c.rig.level * packing_fraction * c.rig.drum->volume() / volume_per_mass * numbers_per_mass;
+  if (const double room = level_volume(c.rig); c.rig.level && room > 0.0)
+    spheres = *c.rig.level * packing_fraction * room / volume_per_mass * numbers_per_mass;
   bed.spheres = spheres > 0.0 ? static_cast<std::size_t>(std::llround(spheres)) : 0;
   std::vector<double> numbers;
   for (std::size_t k = 0; k < share.size(); ++k)

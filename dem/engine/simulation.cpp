@@ -155,7 +155,7 @@ void Simulation::integrate() {
     const Four gravity{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z, 0.0};
     Four late{};  // force * (v*(n) - v(n)) and the same of torque and spin
     Four momentum{}, moment{}, twice_energy{};
-    double farthest = 0.0, fastest = 0.0;
+    double farthest = 0.0, fastest = 0.0, circulation = 0.0;
     for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
       HalfRow& half = s.half[i];
       MotionRow& motion = s.motion[i];
@@ -179,14 +179,17 @@ void Simulation::integrate() {
       const double radius = s.position[i].radius;
       momentum += motion.mass * velocity;
       moment += motion.mass * at;
+      const bool in_streams = at[0] > setup_.two_streams.from && at[0] < setup_.two_streams.to;
+      circulation += in_streams ? std::copysign(motion.mass, at[1]) * velocity[0] : 0.0;
       twice_energy += motion.mass * (speeds + (0.4 * radius * radius) * (spin * spin));
       four(load.force.x) = fourth * four(load.force.x);
       four(load.torque.x) = fourth * torque;
     }
-    chunk_steps_[c] = {farthest,
-                       fastest,
-                       late[0] + late[1] + late[2],
-                       {three(momentum), three(moment), 0.5 * (twice_energy[0] + twice_energy[1] + twice_energy[2])}};
+    chunk_steps_[c] = {
+        farthest,
+        fastest,
+        late[0] + late[1] + late[2],
+        {three(momentum), three(moment), 0.5 * (twice_energy[0] + twice_energy[1] + twice_energy[2]), circulation}};
   });
   max_displacement2_ = 0.0;
   carried_ = {};
@@ -198,6 +201,7 @@ void Simulation::integrate() {
     carried_.momentum += moved.carried.momentum;
     carried_.moment += moved.carried.moment;
     carried_.kinetic_energy += moved.carried.kinetic_energy;
+    carried_.circulation += moved.carried.circulation;
   }
   fastest_ = std::sqrt(fastest2);
   ++s.step;

@@ -37,6 +37,11 @@ struct Spheres {
   std::vector<Vec3> spin;            ///< rad/s, empty: none
 };
 
+/// Where two streams run side by side against each other along x, parted by the plane y = 0: between these places.
+struct TwoStreams {
+  double from = 0.0, to = 0.0;  ///< m along x
+};
+
 struct Setup {
   Vec3 low, high;  ///< m, the box; a particle beyond it ends the run
   std::array<bool, 3> periodic{true, false, false};
@@ -49,6 +54,7 @@ struct Setup {
   double overlap_limit = std::numeric_limits<double>::infinity();  ///< of a radius; beyond it the run ends
   std::uint64_t rest_steps = 0;                                    ///< before the bodies' motions begin
   int threads = 1;
+  TwoStreams two_streams;
 };
 
 /// The run cannot go on: what, where, when and the likely cause.
@@ -67,6 +73,7 @@ struct Carried {
   Vec3 momentum;                ///< kg m/s
   Vec3 moment;                  ///< kg m, sum of mass * position, at the step's end
   double kinetic_energy = 0.0;  ///< J, translation and rotation
+  double circulation = 0.0;     ///< kg m/s along x of Setup::two_streams, what is at y > 0 less what is at y < 0
 };
 
 /// The grid along which rows are sorted: x outermost, z innermost.

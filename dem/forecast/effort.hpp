@@ -1,7 +1,7 @@
 #pragma once
 // What a run costs, measured on this machine in about a tenth of a second: 1728 spheres of the case's mean
-// size on a cubic lattice, each touching its six neighbours and moving a little, under the case's own laws and time
-// step. Walls are left out.
+// size on a periodic cubic lattice, each touching four neighbours and moving a little, under the case's own laws and
+// time step. A bed has walls besides: runs of slice and machine took 1.0 to 1.6 times as long.
 #include "dem/bed/derived.hpp"
 
 namespace dem {

@@ -12,6 +12,7 @@
 #include "dem/forecast/room.hpp"
 #include "dem/forecast/sweep.hpp"
 #include "dem/rig/drum.hpp"
+#include "dem/rig/machine.hpp"
 #include "dem/rig/packing.hpp"
 #include "dem/rig/slice.hpp"
 
@@ -61,7 +62,7 @@ void say_impacts(const Case& c, Forecast& f) {
 
 Forecast of_slice(const Case& c, Forecast f) {
   const Rig& rig = c.rig;
-  const SliceFill fill = fill_of_slice(c);
+  const TroughFill fill = fill_of_slice(c);
   f.fill = fill.share;
   f.surface = fill.surface;
   f.up = "above the axis";
@@ -85,6 +86,29 @@ Forecast of_slice(const Case& c, Forecast f) {
                                       mm(fill.surface), mm(-rig.blade_radius)),
                           "raise the fill"});
   }
+  return f;
+}
+
+Forecast of_machine(const Case& c, Forecast f) {
+  const Rig& rig = c.rig;
+  const TroughFill fill = fill_of_machine(c);
+  f.fill = fill.share;
+  f.surface = fill.surface;
+  f.up = "above the axes";
+  f.full_at = "the blades' top";
+  for (const char* name : {"first_mixer", "second_mixer"})
+    f.bodies.push_back(fmt::format("{}: turns at {:.4g} rpm; the sum of both mixers' torques is the output", name,
+                                   rpm(rig.angular_velocity)));
+  say_gap(f, "blade and trough", rig.clearance());
+  say_gap(f, "two flights of the blade", rig.pitch - rig.blade_thickness);
+  if (fill.surface < rig.machine->sill)
+    f.warnings.push_back(fmt::format(
+        "the bed's surface will lie at {} mm, below the openings' sill at {} mm: the powder goes round only "
+        "where it heaps up",
+        mm(fill.surface), mm(rig.machine->sill)));
+  if (fill.surface > rig.machine->partition_height)
+    f.warnings.push_back(fmt::format(
+        "the powder will stand above the partition, at {} mm: it passes over it everywhere", mm(fill.surface)));
   return f;
 }
 
@@ -356,7 +380,10 @@ Forecast forecast(const Case& c, std::uint64_t seed) {
   Forecast f{.spheres = bed.spheres, .mass = bed.mass, .largest = bed.largest};
   say_density(c, f);
   say_impacts(c, f);
-  f = c.rig.stl ? of_meshes(c, seed, std::move(f)) : c.rig.drum ? of_drum(c, std::move(f)) : of_slice(c, std::move(f));
+  f = c.rig.stl       ? of_meshes(c, seed, std::move(f))
+      : c.rig.drum    ? of_drum(c, std::move(f))
+      : c.rig.machine ? of_machine(c, std::move(f))
+                      : of_slice(c, std::move(f));
   std::sort(f.gaps.begin(), f.gaps.end(), [](const NamedGap& a, const NamedGap& b) { return a.width < b.width; });
   return f;
 }

@@ -68,21 +68,35 @@ void read_fill(const Section& s, Case& c) {
   }
 }
 
+void one_fill(const Section& s) {
+  if (s.has("fill") && s.has("level"))
+    s.problem("level", "stands beside fill, which says how much powder there is, too", "keep one of them");
+}
+
 void read_rig(const Section& s, const std::string& folder, Case& c) {
-  const std::string kind = s.choice("kind", {"slice", "drum", "stl"}, "slice");
+  const std::string kind = s.choice("kind", {"slice", "machine", "drum", "stl"}, "slice");
   if (kind == "drum") {
     choose(s, "end_plates", {"turning", "resting", "none"}, c.rig.drum.emplace().end_plates);
     c.rig.level = 0.5;
     for (const char* key : {"drum_radius", "drum_length", "rpm", "level"}) read(s, "rig", key, c);
-    if (s.has("fill") && s.has("level"))
-      s.problem("level", "stands beside fill, which says how much powder there is, too", "keep one of them");
+    one_fill(s);
   } else if (kind == "stl") {
     c.rig.stl = read_stl_rig(s, folder);
     if (!c.rig.stl->packing.empty()) c.rig.fill = static_cast<double>(c.rig.stl->packing.size());
     read(s, "rig", "rpm", c);
   } else {
+    if (kind == "machine") {
+      c.rig.machine.emplace();
+      c.rig.fill_mass = 0.3;
+    }
     for (const char* key : {"shaft_radius", "blade_radius", "blade_thickness", "pitch", "trough_radius", "rpm"})
       read(s, "rig", key, c);
+    if (kind == "machine") {
+      for (const char* key : {"machine_length", "opening", "partition", "partition_height", "sill", "level"})
+        read(s, "rig", key, c);
+      one_fill(s);
+      return read_fill(s, c);
+    }
     c.rig.pitches = static_cast<int>(s.integer("pitches", {.low = 1, .high = 1000}, c.rig.pitches));
   }
   read_fill(s, c);

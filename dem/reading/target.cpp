@@ -6,6 +6,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "dem/case/cross_section.hpp"
 #include "dem/case/grains.hpp"
 #include "dem/rig/rig.hpp"
 
@@ -21,6 +22,10 @@ struct Binding {
 
 std::string of_slice_only(const Case& c) {
   return c.rig.stl || c.rig.drum ? "is a dimension of the slice, and this rig has none" : "";
+}
+std::string of_machine_only(const Case& c) { return c.rig.machine ? "" : "is of the rig kind = \"machine\" only"; }
+std::string of_level_only(const Case& c) {
+  return c.rig.drum || c.rig.machine ? "" : "is of the rigs kind = \"drum\" and \"machine\" only";
 }
 std::string of_drum_only(const Case& c) { return c.rig.drum ? "" : "is of the rig kind = \"drum\" only"; }
 std::string always(const Case&) { return ""; }
@@ -74,10 +79,16 @@ Binding of_drum(Target t, double Drum::*field) {
           [=](Case& c, double x) { c.rig.drum.value().*field = x; }, of_drum_only};
 }
 
-/// The level that is set, or what the fill comes to, of a drum too full 1.
+Binding of_machine(Target t, double Machine::*field) {
+  return {std::move(t), [=](const Case& c) { return c.rig.machine.value_or(Machine{}).*field; },
+          [=](Case& c, double x) { c.rig.machine.value().*field = x; }, of_machine_only};
+}
+
+/// The level that is set, or what the fill comes to, of a rig too full 1.
 double level_of(const Case& c) {
-  if (c.rig.level || !c.rig.drum) return c.rig.level.value_or(0.0);
-  return std::min(1.0, summarise_bed(c).volume / packing_fraction / c.rig.drum->volume());
+  const double room = level_volume(c.rig);
+  if (c.rig.level || room <= 0.0) return c.rig.level.value_or(0.0);
+  return std::min(1.0, summarise_bed(c).volume / packing_fraction / room);
 }
 
 std::string of_components(const Case& c, std::string_view key) {
@@ -175,10 +186,20 @@ const std::vector<Binding>& bindings() {
        [](const Case& c) { return c.material.log_normal ? "" : "is read with a log-normal distribution only"; }},
       of_drum({"rig.drum_radius", "m", 1e-6, 10.0, "radius of the drum, inside"}, &Drum::radius),
       of_drum({"rig.drum_length", "m", 1e-6, 10.0, "length of the drum between its end plates"}, &Drum::length),
-      {{"rig.level", "1", 1e-6, 1.0, "bed / drum, of volume, the bed at rest with a solid fraction of 0.6"},
+      {{"rig.level", "1", 1e-6, 1.0,
+        "bed / drum, or bed / room of the machine below its blades' top, of volume, the bed at rest with a solid "
+        "fraction of 0.6"},
        level_of,
        [](Case& c, double x) { c.rig.level = x; },
-       of_drum_only},
+       of_level_only},
+      of_machine({"rig.machine_length", "m", 1e-6, 100.0, "length of the machine between its end walls"},
+                 &Machine::length),
+      of_machine({"rig.opening", "m", 1e-6, 100.0, "length of the opening at each end of the partition"},
+                 &Machine::opening),
+      of_machine({"rig.partition", "m", 1e-6, 10.0, "thickness of the partition"}, &Machine::partition),
+      of_machine({"rig.partition_height", "m", 1e-6, 10.0, "height of the partition above the axes"},
+                 &Machine::partition_height),
+      of_machine({"rig.sill", "m", -10.0, 10.0, "height of the openings' lower edge above the axes"}, &Machine::sill),
   };
   return all;
 }

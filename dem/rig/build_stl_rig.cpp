@@ -151,8 +151,7 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
   const Motion measured = built.bodies.empty() ? Motion{} : built.bodies[rig.measured].motion;
   const Vec3 axis = measured.axis, size = rig.high - rig.low;
   const Vec3 torque_axis = drive_sign(measured, c.run) * axis;
-  built.sensor = {{rig.measured},
-                  torque_axis,
+  built.sensor = {{{rig.measured, torque_axis}},
                   axis,
                   std::abs(axis.x) * size.x + std::abs(axis.y) * size.y + std::abs(axis.z) * size.z,
                   period(measured),

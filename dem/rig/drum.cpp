@@ -86,17 +86,15 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
   if (open) wall = with_copies(wall, {{0.0, drum.length, 0.0}}, 1e-9 * drum.radius);
   built.bodies.push_back({"shell", std::move(wall), {}});
   if (!open) built.bodies.push_back({"plates", end_plates_mesh(drum), {}});
-  const Vec3 axis{0.0, -1.0, 0.0};
+  const Vec3 axis{0.0, -1.0, 0.0}, turning = c.rig.angular_velocity < 0.0 ? -axis : axis;
   for (std::size_t k = 0; k < built.bodies.size(); ++k) {
     Motion& motion = built.bodies[k].motion;
     motion.axis = axis;
     if (k == shell || drum.end_plates == EndPlates::turning) {
       motion.programme = {{0.0, c.rig.angular_velocity}};
-      built.sensor.bodies.push_back(k);
+      built.sensor.driven.push_back({k, -turning});
     }
   }
-  const Vec3 turning = c.rig.angular_velocity < 0.0 ? -axis : axis;
-  built.sensor.torque_axis = -turning;
   built.sensor.flow_axis = {0.0, 1.0, 0.0};
   built.sensor.flow_length = drum.length;
   built.sensor.period = period(built.bodies[shell].motion);

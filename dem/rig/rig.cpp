@@ -8,7 +8,9 @@
 namespace dem {
 namespace {
 
-const RigKind& kind_of(const Case& c) { return c.rig.stl ? stl_rig : c.rig.drum ? drum_rig : slice_rig; }
+const RigKind& kind_of(const Case& c) {
+  return c.rig.stl ? stl_rig : c.rig.drum ? drum_rig : c.rig.machine ? machine_rig : slice_rig;
+}
 
 }  // namespace
 

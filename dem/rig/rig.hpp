@@ -22,14 +22,20 @@ struct Picture {
 /// Of a body that turns by the right hand about the unit vector `turning` through `point` [m].
 Picture picture_along(Vec3 turning, Vec3 point, Vec3 down);
 
+/// A body whose torque is measured.
+struct Driven {
+  std::size_t body = 0;
+  Vec3 torque_axis;  ///< torque = torque_axis . moment of the powder on the body about its motion's point
+};
+
 /// What is measured.
 struct Sensor {
-  std::vector<std::size_t> bodies;  ///< whose torques, together, are the output
-  Vec3 torque_axis;                 ///< torque = torque_axis . moment of the powder on those bodies
-  Vec3 flow_axis;                   ///< axial flow = flow_axis . momentum / flow_length
-  double flow_length = 1.0;         ///< m, of the box along that axis
-  double period = 0.0;              ///< s of a turn of those bodies, 0 when they do not move
+  std::vector<Driven> driven;  ///< whose torques, together, are the output
+  Vec3 flow_axis;              ///< axial flow = flow_axis . momentum / flow_length
+  double flow_length = 1.0;    ///< m, of the box along that axis
+  double period = 0.0;         ///< s of a turn of those bodies, 0 when they do not move
   Picture picture;
+  bool circulates = false;  ///< the flow is that of BuiltRig::two_streams, and flow_length both their lengths
 };
 
 struct BuiltRig {
@@ -41,10 +47,11 @@ struct BuiltRig {
   std::vector<Vec3> position;        ///< m, of the spheres at the start
   std::vector<Vec3> velocity;        ///< m/s, empty: at rest
   std::vector<std::uint8_t> frozen;  ///< 1: that sphere does not move; empty: none
+  TwoStreams two_streams;
   Sensor sensor;
 };
 
-/// "slice", "drum", "stl": what rig.kind says.
+/// "slice", "machine", "drum", "stl": what rig.kind says.
 const char* rig_kind(const Case& c);
 
 /// Throws data::InputError (78) when the spheres do not fit or start outside.

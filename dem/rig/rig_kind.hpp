@@ -18,8 +18,9 @@ struct RigKind {
   double (*fill_depth)(const Case& c, double volume);     ///< m, of a lattice of this volume in the box without bodies
 };
 
-extern const RigKind slice_rig;  ///< dem/rig/slice.cpp
-extern const RigKind drum_rig;   ///< dem/rig/drum.cpp
-extern const RigKind stl_rig;    ///< dem/rig/build_stl_rig.cpp
+extern const RigKind slice_rig;    ///< dem/rig/slice.cpp
+extern const RigKind machine_rig;  ///< dem/rig/machine.cpp
+extern const RigKind drum_rig;     ///< dem/rig/drum.cpp
+extern const RigKind stl_rig;      ///< dem/rig/build_stl_rig.cpp
 
 }  // namespace dem

@@ -2,9 +2,7 @@
 // The slice rig: a horizontal right-handed auger (shaft and helical blade) about the x axis in an open U-trough,
 // periodic along x. Turning about +x, it moves the powder towards -x.
 //
-// The shaft and the blade's rim are 48-gons with vertices on the radius, the blade's two faces helicoids of 48 by 2
-// quadrilaterals a pitch at x = pitch angle / 2 pi -+ thickness / 2; the trough's half circle has 48 facets, vertices
-// on the radius.
+// The auger is dem/rig/auger.hpp's; the trough's half circle has 48 facets, vertices on the radius.
 //
 // The torque is minus the powder's moment on the mixer: positive when the powder resists. The flow is positive the way
 // the helix conveys.
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "dem/case/case.hpp"
+#include "dem/case/cross_section.hpp"
 #include "dem/case/grains.hpp"
 #include "dem/rig/rig.hpp"
 #include "dem/walls/mesh.hpp"
@@ -32,14 +31,8 @@ struct Packing {
 };
 Packing pack(const Case& c, std::uint64_t seed);
 
-/// How full the slice will be, the powder taken as a liquid of spheres packed to packing_fraction.
-struct SliceFill {
-  double share = 0.0;    ///< of the room below the blade's top that mixer and trough leave
-  double surface = 0.0;  ///< m above the axis
-};
-SliceFill fill_of_slice(const Case& c);
-/// A slice fuller than this many times that room is refused: the mixer would turn deep under the powder.
-inline constexpr double most_fill = 2.0;
+/// How full the slice will be.
+TroughFill fill_of_slice(const Case& c);
 
 /// Indices of the bodies.
 inline constexpr std::size_t mixer = 0, trough = 1;

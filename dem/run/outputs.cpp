@@ -23,13 +23,15 @@ const std::vector<MeanOutput>& mean_outputs() {
       {"torque", "N m", &Series::torque,
        [](const Sampling& of, const Simulation& now) {
          double sum = 0.0;
-         for (const std::size_t body : of.sensor.bodies)
-           sum += dot(of.sensor.torque_axis, now.sums().body[body].torque);
+         for (const Driven& d : of.sensor.driven) sum += dot(d.torque_axis, now.sums().body[d.body].torque);
          return sum;
        },
        one},
       {"axial_flow", "kg/s", &Series::axial_flow,
-       [](const Sampling& of, const Simulation& now) { return dot(of.sensor.flow_axis, now.carried().momentum); },
+       [](const Sampling& of, const Simulation& now) {
+         const Carried& carried = now.carried();
+         return dot(of.sensor.flow_axis, of.sensor.circulates ? Vec3{carried.circulation, 0.0, 0.0} : carried.momentum);
+       },
        [](const Sampling& of) { return of.sensor.flow_length; }},
       {"coordination", "1", &Series::coordination,
        [](const Sampling&, const Simulation& now) { return static_cast<double>(now.sums().contacts); },

@@ -229,7 +229,8 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   if (result.status == RunStatus::done && !now.series.torque.empty() && result.summary.mean.front().mean == 0.0) {
     const std::vector<BodyLabel> labels = body_labels(c);
     std::vector<std::string> names;
-    for (const std::size_t body : sensor.bodies) names.push_back(body < labels.size() ? labels[body].name : "a body");
+    for (const Driven& driven : sensor.driven)
+      names.push_back(driven.body < labels.size() ? labels[driven.body].name : "a body");
     result.warnings.push_back(fmt::format("the torque is exactly 0: no sphere ever touched {}", listed(names)));
   }
   if (g.deep_contacts > 0) {

@@ -222,6 +222,16 @@ level = 0.5
 rpm = "15 rpm"
 )";
 
+const char* const machine = R"(
+[rig]
+kind = "machine"
+machine_length = "66 mm"
+opening = "12 mm"
+partition = "1 mm"
+partition_height = "12 mm"
+sill = "-3.5 mm"
+)";
+
 const char* const meshes = R"(
 [materials.NAME2]
 components = [{ material = "NAME3", mass_fraction = 1 }]
@@ -318,6 +328,7 @@ Asked asked_by_the_readers() {
   Asked all;
   collect(std::string(common) + slice, all);
   collect(std::string(common) + drum, all);
+  collect(std::string(common) + machine, all);
   const std::string cylinder = std::string(common) + meshes;
   collect(cylinder, all);
   const std::string radius = "\nradius = \"7 mm\"";

@@ -1,0 +1,26 @@
+#pragma once
+// Areas and volumes of the auger rigs below a height, in closed form: how much powder brings the bed how high.
+// Heights are counted from the augers' axes. Of an auger the mean over its length is taken out.
+#include "dem/case/case.hpp"
+
+namespace dem {
+
+/// Area of a disc of this radius about the axis that lies below the height z [m2].
+double disc_below(double radius, double z);
+
+/// Area of one trough with its auger below z [m2]: what the powder of the slice takes, per length.
+double trough_room_below(const Rig& rig, double z);
+
+/// Volume of the machine below z, without its augers [m3].
+double machine_room_below(const Rig& rig, double z);
+
+/// The volume of which rig.level is a share [m3]: the drum's, or the machine's below the blades' top; else 0.
+double level_volume(const Rig& rig);
+
+/// How full a vessel of the auger rigs will be, the powder taken as a liquid of spheres packed to packing_fraction.
+struct TroughFill {
+  double share = 0.0;    ///< of the room below the blade's top
+  double surface = 0.0;  ///< m above the axis
+};
+
+}  // namespace dem

@@ -1,0 +1,244 @@
+#include "dem/rig/machine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dem/rig/auger.hpp"
+#include "dem/rig/grow.hpp"
+#include "dem/rig/rig_kind.hpp"
+
+namespace dem {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+TriangleMesh shifted(TriangleMesh mesh, double y) {
+  for (Vec3& v : mesh.vertices) v.y += y;
+  return mesh;
+}
+
+/// Of the blade's middle from the end wall where powder comes in [m].
+double end_gap(const Rig& rig) { return rig.clearance() + 0.5 * rig.blade_thickness; }
+
+/// Half of the trough's outline, at y >= 0, in the plane x = 0.
+struct Outline {
+  std::vector<Vec3> below;      ///< from the outer wall's top down and up again to the sill
+  std::vector<Vec3> partition;  ///< from the sill to the partition's top: of the face that looks at the second trough
+};
+
+Outline outline(const Rig& rig, double top) {
+  const Machine& m = rig.machine.value();
+  const double r = rig.trough_radius, y = axis_offset(rig), inner = 0.5 * m.partition;
+  const auto on_circle = [&](double angle) { return about_axis(0.0, r, angle) + Vec3{0.0, y, 0.0}; };
+  Outline o;
+  const Vec3 sill = m.sill < 0.0 ? on_circle(pi + std::asin(-m.sill / r)) : Vec3{0.0, inner, m.sill};
+  o.below = {{0.0, y + r, top}, {0.0, y + r, 0.0}};
+  const auto add = [&](Vec3 p) {
+    // What is all but the sill's point is that point: no triangle is a sliver.
+    if (length(p - sill) < 1e-4 * r) return;
+    (o.partition.empty() ? o.below : o.partition).push_back(p);
+  };
+  const auto reach_sill = [&] {
+    o.below.push_back(sill);
+    o.partition.push_back(sill);
+  };
+  for (int k = facets - 1; k > 0; --k) {
+    const Vec3 p = on_circle(pi + pi * k / facets);
+    if (o.partition.empty() && k < facets / 2 && p.z > sill.z) reach_sill();
+    add(p);
+  }
+  if (o.partition.empty() && m.sill <= 0.0) reach_sill();
+  add({0.0, inner, 0.0});
+  if (o.partition.empty()) reach_sill();
+  o.partition.push_back({0.0, inner, m.partition_height});
+  return o;
+}
+
+Vec3 mirrored(Vec3 p) { return {p.x, -p.y, p.z}; }
+Vec3 at_x(Vec3 p, double x) { return {x, p.y, p.z}; }
+
+/// From one outer wall to the other, over the sill or over the partition.
+std::vector<Vec3> across(const Outline& o, bool partition) {
+  std::vector<Vec3> half = o.below;
+  if (partition) half.insert(half.end(), o.partition.begin() + 1, o.partition.end());
+  std::vector<Vec3> all;
+  std::transform(half.begin(), half.end(), std::back_inserter(all), mirrored);
+  all.insert(all.end(), half.rbegin(), half.rend());
+  return all;
+}
+
+void add_along(TriangleMesh& mesh, const std::vector<Vec3>& profile, Stretch stretch, double pitch) {
+  const double length = stretch.to - stretch.from;
+  const int along = std::max(1, static_cast<int>(std::lround(rows_per_pitch * length / pitch)));
+  std::vector<std::vector<Vec3>> rows;
+  for (int k = 0; k <= along; ++k) {
+    rows.push_back(profile);
+    for (Vec3& p : rows.back()) p.x = k == along ? stretch.to : stretch.from + length * k / along;
+  }
+  add_sheet(mesh, rows);
+}
+
+}  // namespace
+
+double axis_offset(const Rig& rig) { return rig.trough_radius + 0.5 * rig.machine.value().partition; }
+
+TriangleMesh first_auger(const Rig& rig) {
+  const Machine& m = rig.machine.value();
+  return shifted(auger_mesh(rig, {0.0, m.length}, {m.opening, m.length - end_gap(rig)}, BladeEnds::closed),
+                 -axis_offset(rig));
+}
+
+TriangleMesh second_auger(const Rig& rig) {
+  const Machine& m = rig.machine.value();
+  return shifted(auger_mesh(rig, {0.0, m.length}, {end_gap(rig), m.length - m.opening}, BladeEnds::closed),
+                 axis_offset(rig));
+}
+
+TriangleMesh double_trough(const Rig& rig, double top) {
+  const Machine& m = rig.machine.value();
+  const Outline o = outline(rig, top);
+  TriangleMesh mesh;
+  const double open = m.opening, last = m.length - m.opening;
+  add_along(mesh, across(o, false), {0.0, open}, rig.pitch);
+  add_along(mesh, across(o, true), {open, last}, rig.pitch);
+  add_along(mesh, across(o, false), {last, m.length}, rig.pitch);
+  for (const double x : {open, last}) {  // the partition's ends
+    std::vector<std::vector<Vec3>> rows;
+    for (const Vec3 p : o.partition) rows.push_back({at_x(mirrored(p), x), at_x(p, x)});
+    if (x == last) std::reverse(rows.begin(), rows.end());
+    add_sheet(mesh, rows);
+  }
+  const double side = axis_offset(rig) + rig.trough_radius, bottom = -rig.trough_radius;
+  for (const double x : {0.0, m.length}) {
+    std::vector<std::vector<Vec3>> rows{{{x, -side, bottom}, {x, side, bottom}}, {{x, -side, top}, {x, side, top}}};
+    if (x == 0.0) std::reverse(rows.begin(), rows.end());
+    add_sheet(mesh, rows);
+  }
+  return weld(mesh, 1e-9 * rig.trough_radius);
+}
+
+TroughFill fill_of_machine(const Case& c) {
+  const double bed = summarise_bed(c).volume / packing_fraction, r = c.rig.trough_radius;
+  const auto room = [&](double z) { return machine_room_below(c.rig, z); };
+  double low = -r, high = c.rig.blade_radius;
+  TroughFill fill{bed / room(high), 0.0};
+  while (room(high) < bed) high += r + (bed - room(high)) / (4.0 * r * c.rig.machine->length);
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (low + high);
+    (room(middle) < bed ? low : high) = middle;
+  }
+  fill.surface = high;
+  return fill;
+}
+
+namespace {
+
+BuiltRig build(const Case& c, std::uint64_t seed) {
+  const Rig& rig = c.rig;
+  const Machine& m = *rig.machine;
+  const BedSummary bed = summarise_bed(c);
+  const double side = axis_offset(rig) + rig.trough_radius, y = axis_offset(rig);
+  // High enough that a grain which a blade pinches and lets go does not fly over the rim.
+  const double top =
+      std::max({fill_of_machine(c).surface, rig.blade_radius, m.partition_height}) + 8.0 * rig.blade_radius;
+  BuiltRig built;
+  built.low = {0.0, -side, -rig.trough_radius};
+  built.high = {m.length, side, top};
+  for (const bool first : {true, false}) {
+    Motion motion;
+    motion.point = {0.0, first ? -y : y, 0.0};
+    motion.axis = {first ? 1.0 : -1.0, 0.0, 0.0};
+    motion.programme = {{0.0, rig.angular_velocity}};
+    const double resists = rig.angular_velocity > 0.0 ? -1.0 : 1.0;
+    built.sensor.driven.push_back({built.bodies.size(), resists * motion.axis});
+    built.bodies.push_back(
+        {first ? "first_mixer" : "second_mixer", first ? first_auger(rig) : second_auger(rig), motion});
+  }
+  built.bodies.push_back({"trough", double_trough(rig, top), {}});
+  built.sensor.flow_axis = {rig.angular_velocity > 0.0 ? 1.0 : -1.0, 0.0, 0.0};
+  built.two_streams = {m.opening, m.length - m.opening};
+  built.sensor.flow_length = 2.0 * (m.length - 2.0 * m.opening);
+  built.sensor.circulates = true;
+  built.sensor.period = period(built.bodies[first_mixer].motion);
+  built.sensor.picture = {{}, {}, -built.down};  // two that turn against each other have no rising side
+
+  built.grains = draw_grains(c, seed);
+  const FillRegion inside{.low = built.low, .high = built.high};
+  built.position = grow({inside, built.low, built.high, built.periodic, built.down}, built.bodies, built.grains,
+                        {bed.spheres, seed});
+  if (built.position.empty()) {
+    throw data::InputError(data::ExitStatus::bad_study,
+                           {"rig.fill",
+                            fmt::format("makes {} spheres up to {:.3g} m wide, for which the machine has no room",
+                                        bed.spheres, bed.largest),
+                            "lower the fill, or make the machine larger"});
+  }
+  return built;
+}
+
+std::vector<data::Problem> problems_of(const Case& c) {
+  std::vector<data::Problem> found = auger_problems(c);
+  const Rig& rig = c.rig;
+  const Machine& m = *rig.machine;
+  const double size = summarise_bed(c).largest;
+  if (!(m.partition_height > std::max(0.0, m.sill)))
+    found.push_back({"rig.partition_height",
+                     fmt::format("is {:g} m above the axes, but must lie above them and above the sill, {:g} m",
+                                 m.partition_height, m.sill),
+                     "make the partition higher"});
+  if (!(m.sill > -rig.trough_radius))
+    found.push_back({"rig.sill",
+                     fmt::format("is {:g} m, below the trough's bottom, {:g} m", m.sill, -rig.trough_radius),
+                     "raise the sill"});
+  if (!(m.opening >= 3.0 * size))
+    found.push_back({"rig.opening",
+                     fmt::format("is {:g} m long, too short for three of the largest sphere, {:g} m", m.opening, size),
+                     "make the openings longer"});
+  if (!(m.length - m.opening - end_gap(rig) >= rig.pitch && m.length > 2.0 * m.opening))
+    found.push_back(
+        {"rig.machine_length",
+         fmt::format("is {:g} m, which leaves no pitch of blade between openings of {:g} m", m.length, m.opening),
+         fmt::format("make the machine at least {:g} m long",
+                     std::max(2.0 * m.opening, m.opening + end_gap(rig)) + rig.pitch)});
+  if (!found.empty()) return found;
+  if (const TroughFill fill = fill_of_machine(c); fill.share > most_fill) {
+    const BedSummary bed = summarise_bed(c);
+    found.push_back({rig.level       ? "rig.level"
+                     : rig.fill_mass ? "rig.fill_mass"
+                                     : "rig.fill",
+                     fmt::format("makes {} spheres, {:.3g} g, which fill the troughs up to {:.3g} times the room below "
+                                 "the blades' top",
+                                 bed.spheres, 1e3 * bed.mass, fill.share),
+                     fmt::format("lower the fill to {:.2g} g, or check density, diameter and the machine's lengths",
+                                 1e3 * bed.mass / fill.share)});
+  }
+  return found;
+}
+
+std::vector<NamedMesh> meshes(const Case& c) {
+  return {{"first_mixer", first_auger(c.rig)},
+          {"second_mixer", second_auger(c.rig)},
+          {"trough", double_trough(c.rig, 2.0 * c.rig.machine->partition_height)}};
+}
+
+}  // namespace
+
+const RigKind machine_rig{
+    .name = "machine",
+    .build = build,
+    .meshes = meshes,
+    .warnings = [](const Case&) { return std::vector<std::string>{}; },
+    .problems = problems_of,
+    .settings = [](const Case&) { return std::string{}; },
+    .labels =
+        [](const Case&) {
+          return std::vector<BodyLabel>{{"first_mixer", "wall"}, {"second_mixer", "wall"}, {"trough", "wall"}};
+        },
+    .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.blade_radius; },
+    .fill_depth = [](const Case& c,
+                     double volume) { return volume / (c.rig.machine->length * 4.0 * c.rig.trough_radius); }};
+
+}  // namespace dem
