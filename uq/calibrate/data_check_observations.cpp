@@ -1,8 +1,8 @@
 // Of the observations: copies, magnitudes beside the runs', standard errors that cannot be meant; and what building the
 // cases would refuse.
 //
-// Errors in percent: readings along one control are smooth, so their scatter about a line or a parabola in it says how
-// large their errors can be. With residuals r_i, errors s_i and as many degrees of freedom as the curve leaves,
+// Errors in percent: readings along one control are smooth, so their scatter about a simple curve in it says how large
+// their errors can be. With residuals r_i, errors s_i and as many degrees of freedom as the curve leaves,
 //   P(chi2 <= sum r_i^2 / s_i^2) below a threshold and s_i over 5 % of the value: a percentage is suspected;
 //   P(chi2 >= ...) as small, and not with s_i times the value: a share is suspected.
 #include <fmt/format.h>
@@ -150,13 +150,14 @@ void check_control_unit(const data::Study& study, const data::RunTable& table, c
   }
 }
 
-/// Coefficients of the curve about which readings scatter.
+/// Coefficients of the curve about which readings scatter too little: a line, or from seven points on a parabola. One
+/// that bends would make scatter of bending, so readings that scatter too much do so about a curve of one more.
 Eigen::Index terms_of(Eigen::Index rows) { return rows < 7 ? 2 : 3; }
 
-/// Squared residuals about a line, or from seven points on a parabola, in the one control that varies; nothing where
-/// there is no such line of points.
-std::optional<Eigen::ArrayXd> residuals2(const data::Study& study, const data::ObservationSet& set,
-                                         std::size_t column) {
+/// Squared residuals about a polynomial of so many terms in the one control that varies, or in its logarithm or its
+/// reciprocal, whichever comes nearest; nothing where there is no such line of points.
+std::optional<Eigen::ArrayXd> residuals2(const data::Study& study, const data::ObservationSet& set, std::size_t column,
+                                         Eigen::Index terms) {
   const auto rows = static_cast<Eigen::Index>(set.points.size());
   if (rows < 5) return {};
   std::size_t varied = study.controls.size();
@@ -168,24 +169,39 @@ std::optional<Eigen::ArrayXd> residuals2(const data::Study& study, const data::O
     varied = c;
   }
   if (varied == study.controls.size()) return {};
-  const Eigen::Index terms = terms_of(rows);
-  Eigen::MatrixXd basis(rows, terms);
-  Eigen::VectorXd y(rows);
-  const data::Control& control = study.controls[varied];
+  Eigen::ArrayXd x(rows), y(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
     const data::Observation& point = set.points[static_cast<std::size_t>(i)];
-    const double x = control.axis().to_unit(point.controls[varied]);
-    for (Eigen::Index k = 0; k < terms; ++k) basis(i, k) = std::pow(x, static_cast<double>(k));
+    x[i] = point.controls[varied];
     y[i] = point.values[column];
   }
-  const Eigen::VectorXd coefficients = basis.colPivHouseholderQr().solve(y);
-  return (y - basis * coefficients).array().square();
+  std::vector<Eigen::ArrayXd> scales{x};
+  if (x.minCoeff() > 0.0) scales.insert(scales.end(), {x.log(), x.inverse()});
+  Eigen::ArrayXd least;
+  for (Eigen::ArrayXd& scale : scales) {
+    scale = (scale - scale.minCoeff()) / (scale.maxCoeff() - scale.minCoeff());
+    Eigen::MatrixXd basis(rows, terms);
+    for (Eigen::Index k = 0; k < terms; ++k) basis.col(k) = scale.pow(static_cast<double>(k));
+    const Eigen::ArrayXd squares =
+        (y.matrix() - basis * basis.colPivHouseholderQr().solve(y.matrix())).array().square();
+    if (least.size() == 0 || squares.sum() < least.sum()) least = squares;
+  }
+  return least;
+}
+
+/// Relative errors that are taken for absolute ones are as large for a large reading as for a small one; a column that
+/// follows its readings holds absolute errors.
+bool follows(const Eigen::ArrayXd& error, const Eigen::ArrayXd& value) {
+  const auto spread = [](const Eigen::ArrayXd& x) { return (x.log() - x.log().mean()).square().sum(); };
+  return spread(error / value) < spread(error);
 }
 
 void check_errors(const data::Study& study, const data::ObservationSet& set, const DataCheckThresholds& t,
                   std::vector<Finding>& findings) {
   for (std::size_t column = 0; column < set.outputs.size(); ++column) {
-    const auto found = residuals2(study, set, column);
+    const auto points = static_cast<Eigen::Index>(set.points.size());
+    const auto found = residuals2(study, set, column, terms_of(points));
+    const auto bent = residuals2(study, set, column, terms_of(points) + 1);
     if (!found) continue;
     const data::Output& output = study.outputs[set.outputs[column]];
     const Eigen::Index rows = found->size();
@@ -195,17 +211,21 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
       value[i] = std::abs(output.unit.from_si(set.points[static_cast<std::size_t>(i)].values[column]));
     }
     const double dof = static_cast<double>(rows - terms_of(rows));
-    const auto chi2 = [&](const Eigen::ArrayXd& s) {
-      return (*found / (output.unit.factor * output.unit.factor) / s.square()).sum();
+    const auto chi2 = [&](const Eigen::ArrayXd& residuals2, const Eigen::ArrayXd& s) {
+      return (residuals2 / (output.unit.factor * output.unit.factor) / s.square()).sum();
     };
     const Eigen::ArrayXd percent = error * value / 100.0, share = error * value;
-    const double below = gsl_cdf_chisq_P(chi2(error), dof), above = gsl_cdf_chisq_Q(chi2(error), dof);
+    const double below = gsl_cdf_chisq_P(chi2(*found, error), dof);
+    const double above = gsl_cdf_chisq_Q(chi2(*bent, error), dof - 1.0);
     const double least = (error / value).minCoeff();
     const bool too_large = below < t.unlikely_scatter && least > 0.05;
-    const bool percent_fits = gsl_cdf_chisq_Q(chi2(percent), dof) > 1e-3 && chi2(percent) > chi2(error);
-    const bool too_small = above < 1e-9 && gsl_cdf_chisq_Q(chi2(share), dof) > 1e-3 && value.minCoeff() > 1.5;
+    const bool percent_fits =
+        gsl_cdf_chisq_Q(chi2(*found, percent), dof) > 1e-3 && chi2(*found, percent) > chi2(*found, error);
+    const bool share_fits = gsl_cdf_chisq_Q(chi2(*bent, share), dof - 1.0) > 1e-3;
+    const bool too_small = above < 1e-9 && share_fits && value.minCoeff() > 1.5 && !follows(error, value);
     if (!(too_large && percent_fits) && !too_small) continue;
-    const double scatter = std::sqrt(chi2(error) / dof);
+    const double scatter =
+        too_small ? std::sqrt(chi2(*bent, error) / (dof - 1.0)) : std::sqrt(chi2(*found, error) / dof);
     Finding finding{.kind = "standard errors",
                     .place = fmt::format("{}: {}_se", place_of(set, set.points.front()), output.name),
                     .severity = Severity::warning,

@@ -232,6 +232,22 @@ TEST_CASE("standard errors in percent are suspected from the scatter, and as sha
     files.each_reading([](Row& row) { row.error = 0.02; });
     CHECK_THAT(only(files, "standard errors").what, Contains("Are they relative?"));
   }
+  SECTION("honest errors of one and two percent about curves that bend") {
+    const std::vector<std::function<double(double)>> curves{
+        [](double w) { return 2.0 + w * w; }, [](double w) { return 2.0 + 4.0 / w; },
+        [](double w) { return 3.0 + 6.0 * (1.0 - std::exp(-w)); }, [](double w) { return 6.0 * std::pow(w, -0.7); },
+        [](double w) { return 4.0 + std::cos(2.0 * w); }};
+    for (const auto& curve : curves) {
+      for (const double share : {0.01, 0.02}) {
+        for (int i = 0; i < 6; ++i) {
+          Row& row = files.bench[static_cast<std::size_t>(i)];
+          row.torque = curve(row.speed / 150.0) * (1.0 + share * scatter[i]);
+          row.error = share * row.torque;
+        }
+        for (const data::Finding& finding : look(files).findings) CHECK(finding.kind != "standard errors");
+      }
+    }
+  }
   SECTION("honest errors of ten percent") {
     for (int i = 0; i < 6; ++i) {
       Row& row = files.bench[static_cast<std::size_t>(i)];
