@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "dem/reading/target.hpp"
 #include "dem/run/outputs.hpp"
@@ -137,6 +138,16 @@ TEST_CASE("there is no picture along a vertical axis, nor across a periodic one"
   CHECK(dem::picture_plane(dem::picture_along({0.0, 0.0, 1.0}, {}, down), box, 0.01).columns == 0);
   CHECK(dem::picture_plane(dem::picture_along({0.0, 1.0, 0.0}, {}, down), repeats, 0.01).columns == 0);
   CHECK(dem::picture_plane(dem::picture_along({1.0, 0.0, 0.0}, {}, down), repeats, 0.01).columns > 0);
+  const auto stirred_about = [](dem::Vec3 axis) {
+    dem::StlRig rig{.low = {-1.0, -1.0, -1.0}, .high = {1.0, 1.0, 1.0}};
+    rig.meshes.push_back({.name = "stirrer", .motion = {.axis = axis}});
+    dem::Case c;
+    c.rig.stl = std::make_shared<const dem::StlRig>(rig);
+    return c;
+  };
+  CHECK_FALSE(dem::has_output(stirred_about({0.0, 0.0, 1.0}), "silhouette_x"));
+  CHECK(dem::has_output(stirred_about({0.0, 0.0, 1.0}), "centre_z"));
+  CHECK(dem::has_output(stirred_about({1.0, 0.0, 0.0}), "silhouette_x"));
   CHECK(dem::has_output(small_drum(), "silhouette_x"));
   CHECK(dem::has_output(dem::Case{}, "upper_angle"));
   CHECK_FALSE(dem::has_output(dem::Case{}, "silhouette_y"));
