@@ -71,10 +71,20 @@ Workspace open_workspace(const StudyOptions& options) {
       check_target(file.root().child("parameters").child(p.name), p.target, p.unit, p.low, p.high);
     for (const data::Control& c : study.controls)
       check_target(file.root().child("controls").child(c.name), c.target, c.unit, c.low, c.high);
-    for (const data::Output& output : study.outputs)
+    for (const data::Output& output : study.outputs) {
+      const auto seen = [&](const auto& material) { return dem::has_output(material.second, output.name); };
       if (!dem::has_output(output.name))
         file.root().child("outputs").problem(output.name, fmt::format("the simulation has no output '{}'", output.name),
                                              "choose one of: " + dem::output_names());
+      else if (!std::all_of(workspace.cases.begin(), workspace.cases.end(), seen))
+        file.root().child("outputs").problem(
+            output.name,
+            fmt::format(
+                "{} is measured on the picture along a horizontal axis, but this rig's axis is vertical, or its "
+                "box repeats across it",
+                output.name),
+            "leave it out");
+    }
   }
   workspace.unsteady = file.root().child("training").choice("unsteady", {"leave_out", "use"}, "leave_out") == "use"
                            ? Unsteady::use

@@ -79,7 +79,9 @@ std::string summary(const Workspace& workspace, const Point& point, const dem::R
         "  {:<20} {}{}\n", output.name,
         uq::format_with_error(output.unit.from_si(row.outputs[i]), row.standard_errors[i] / output.unit.factor,
                               output.unit.symbol, uq::Typography::ascii),
-        dem::output(result, output.name).reliable ? "" : " (too short to know this error)");
+        std::isnan(row.outputs[i])                  ? " (not measured: too short, or not seen)"
+        : dem::output(result, output.name).reliable ? ""
+                                                    : " (too short to know this error)");
   }
   return text;
 }

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
+
+#include "dem/case/stl_rig.hpp"
 
 namespace dem {
 namespace {
@@ -49,6 +52,21 @@ const std::vector<MeanOutput>& mean_outputs() {
   return all;
 }
 
+const std::vector<CameraOutput>& camera_outputs() {
+  static const std::vector<CameraOutput> all{
+      {"silhouette_x", "m", &Series::silhouette_x, &Silhouette::x},
+      {"silhouette_z", "m", &Series::silhouette_z, &Silhouette::z},
+      {"silhouette_area", "m2", &Series::silhouette_area, &Silhouette::area},
+      {"upper_angle", "rad", &Series::upper_angle, &Silhouette::upper_angle},
+      {"lower_angle", "rad", &Series::lower_angle, &Silhouette::lower_angle},
+  };
+  return all;
+}
+
+std::size_t samples_in_window(const RunControl& run) {
+  return static_cast<std::size_t>(std::max(1.0, std::round(run.window / run.sample_interval)));
+}
+
 const std::vector<Output>& outputs() {
   static const std::vector<Output> all = [] {
     std::vector<Output> made;
@@ -56,6 +74,7 @@ const std::vector<Output>& outputs() {
       made.push_back({o.name, o.unit});
       if (made.size() == 1) made.push_back({"torque_fluctuation", o.unit});
     }
+    for (const CameraOutput& o : camera_outputs()) made.push_back({o.name, o.unit});
     return made;
   }();
   return all;
@@ -63,6 +82,19 @@ const std::vector<Output>& outputs() {
 
 bool has_output(std::string_view name) {
   return std::any_of(outputs().begin(), outputs().end(), [&](const Output& o) { return o.name == name; });
+}
+
+bool has_output(const Case& c, std::string_view name) {
+  const auto& seen = camera_outputs();
+  if (std::none_of(seen.begin(), seen.end(), [&](const CameraOutput& o) { return o.name == name; }))
+    return has_output(name);
+  if (!c.rig.stl || c.rig.stl->meshes.empty()) return true;  // slice and drum lie
+  const StlRig& rig = *c.rig.stl;
+  const Motion motion = motion_of(rig.meshes[rig.measured], c.rig.angular_velocity);
+  constexpr double any_radius = 1.0;
+  return picture_plane(picture_along(motion.axis, motion.point, rig.down), {rig.low, rig.high, rig.periodic},
+                       any_radius)
+             .columns > 0;
 }
 
 std::string output_names() {

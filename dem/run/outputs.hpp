@@ -1,7 +1,8 @@
 #pragma once
 // The outputs of a run that are means over time, as a table: what a step adds to the sample under way, and what the
 // sample's mean is divided by. A new output is a row here and a member of Series (dem/run/run.hpp), which says what it
-// means. torque_fluctuation is made of the torque's series (dem/run/summary.hpp).
+// means. torque_fluctuation is made of the torque's series (dem/run/summary.hpp). A second table has what is measured on
+// the silhouette of each window.
 #include <vector>
 
 #include "dem/engine/simulation.hpp"
@@ -16,6 +17,7 @@ struct Sampling {
   double spheres = 0.0;
   double solid_volume = 0.0;  ///< m3
   double mass = 0.0;          ///< kg
+  PicturePlane plane;
 };
 
 struct MeanOutput {
@@ -28,5 +30,17 @@ struct MeanOutput {
 
 /// Torque first.
 const std::vector<MeanOutput>& mean_outputs();
+
+/// An output that is measured on the time-averaged projection of a window (dem/run/silhouette.hpp).
+struct CameraOutput {
+  const char* name;
+  const char* unit;
+  std::vector<double> Series::*series;
+  double Silhouette::*value;
+};
+const std::vector<CameraOutput>& camera_outputs();
+
+/// Samples in a window of RunControl::window.
+std::size_t samples_in_window(const RunControl& run);
 
 }  // namespace dem

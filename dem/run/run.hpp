@@ -16,6 +16,12 @@
 //   centre_x, centre_z  m, the centre of mass seen along the axis: from the axis to the side where the measured body
 //                       rises, and above it. In the steady flow of a drum whose turning parts are all measured, torque
 //                       = weight * centre_x. Of a vertical axis centre_x is 0; across a periodic axis they say nothing.
+//   silhouette_x, silhouette_z, silhouette_area, upper_angle, lower_angle
+//                       m, m, m2, rad, rad: of the silhouette that a camera sees along the axis
+//                       (dem/run/silhouette.hpp). The time-averaged projection is of RunControl::window, and each
+//                       window has a value. Their mean leaves out windows in which none is found, and is itself not
+//                       measured where these are more than one in twenty. A rig whose axis is vertical, or whose box
+//                       repeats across its axis, has none of them.
 // What of the series is measured, and when the run has been long enough, is in dem/run/looks.hpp.
 #include <cstdint>
 #include <functional>
@@ -30,20 +36,27 @@
 #include "dem/contact/state.hpp"
 #include "dem/engine/simulation.hpp"
 #include "dem/run/looks.hpp"
+#include "dem/run/silhouette.hpp"
 
 namespace dem {
 
 struct Series {
-  std::vector<double> time;            ///< s since the mixer started to turn, end of the sample
-  std::vector<double> torque;          ///< N m
-  std::vector<double> axial_flow;      ///< kg/s
-  std::vector<double> coordination;    ///< 1
-  std::vector<double> kinetic_energy;  ///< J
-  std::vector<double> normal_stress;   ///< Pa
-  std::vector<double> centre_x;        ///< m
-  std::vector<double> centre_z;        ///< m
-  std::vector<double> look_time;       ///< s, of the looks at the bed, each 0.05 s
-  std::vector<double> bond_order;      ///< 1, dem/engine/order.hpp, at a look
+  std::vector<double> time;             ///< s since the mixer started to turn, end of the sample
+  std::vector<double> torque;           ///< N m
+  std::vector<double> axial_flow;       ///< kg/s
+  std::vector<double> coordination;     ///< 1
+  std::vector<double> kinetic_energy;   ///< J
+  std::vector<double> normal_stress;    ///< Pa
+  std::vector<double> centre_x;         ///< m
+  std::vector<double> centre_z;         ///< m
+  std::vector<double> look_time;        ///< s, of the looks at the bed, each 0.05 s
+  std::vector<double> bond_order;       ///< 1, dem/engine/order.hpp, at a look
+  std::vector<double> window_time;      ///< s, end of each window
+  std::vector<double> silhouette_x;     ///< m, of a window, as all below
+  std::vector<double> silhouette_z;     ///< m
+  std::vector<double> silhouette_area;  ///< m2
+  std::vector<double> upper_angle;      ///< rad
+  std::vector<double> lower_angle;      ///< rad
 };
 
 struct Output {
@@ -53,6 +66,8 @@ struct Output {
 const std::vector<Output>& outputs();
 bool has_output(std::string_view name);
 std::string output_names();  ///< "torque, torque_fluctuation, ..."
+/// Whether the case's rig has it: one without a picture along its axis has no silhouette.
+bool has_output(const Case& c, std::string_view name);
 
 struct Diagnostics {
   Derived derived;  ///< pull-off, Bond number, time step, ...
@@ -85,6 +100,7 @@ struct Progressing {
   std::uint64_t deep_contacts = 0;
   double max_overlap = 0.0;
   double cpu_seconds = 0.0;
+  Exposure exposure;  ///< of the window under way
 };
 
 /// Enough to go on as if nothing had happened, to the bit.

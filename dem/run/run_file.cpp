@@ -97,6 +97,12 @@ void each_series(AnySeries& s, Visit&& visit) {
   visit("bond_order", "1", s.bond_order);
 }
 
+template <class AnySeries, class Visit>
+void each_window_series(AnySeries& s, Visit&& visit) {
+  visit("window_time", "s", s.window_time);
+  for (const CameraOutput& output : camera_outputs()) visit(output.name, output.unit, s.*output.series);
+}
+
 void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
   group.set("step", static_cast<std::int64_t>(now.state.step));
   group.set("rebuilds", static_cast<std::int64_t>(now.state.rebuilds));
@@ -120,6 +126,8 @@ void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
   group.write("under_way", std::vector<double>{static_cast<double>(p.steps), static_cast<double>(p.deep_contacts),
                                                p.max_overlap, p.cpu_seconds});
   group.write("sums_under_way", p.sums);
+  group.set("pictures_under_way", std::int64_t{p.exposure.pictures});
+  group.write("covered_under_way", p.exposure.covered);
 }
 
 Checkpoint read_checkpoint(const data::Hdf5Group& group) {
@@ -148,11 +156,14 @@ Checkpoint read_checkpoint(const data::Hdf5Group& group) {
   if (p.size() != 4)
     throw data::InputError(data::ExitStatus::bad_data, {group.place("under_way"), "is a checkpoint of another build",
                                                         "start the run again from the beginning"});
+  if (!group.has("covered_under_way")) return {};  // of before there were silhouettes
   now.under_way = {.steps = static_cast<std::uint64_t>(p[0]),
                    .sums = group.read<double>("sums_under_way").values,
                    .deep_contacts = static_cast<std::uint64_t>(p[1]),
                    .max_overlap = p[2],
-                   .cpu_seconds = p[3]};
+                   .cpu_seconds = p[3],
+                   .exposure = {.pictures = static_cast<int>(group.integer("pictures_under_way")),
+                                .covered = group.read<std::uint8_t>("covered_under_way").values}};
   // Of before there was one of the outputs, or of a steady run that was kept without its last state.
   if (now.under_way.sums.size() != mean_outputs().size()) return {};
   return now;
@@ -223,15 +234,18 @@ void write_run(const std::string& path, const Case& c, const RunResult& result) 
     file.set("cpu_seconds", result.summary.cpu_seconds);
     file.write_texts("warnings", result.warnings);
     const data::Hdf5Group series = file.create_group("series");
-    each_series(result.series, [&](const char* name, const char* unit, const std::vector<double>& values) {
+    const auto write = [&](const char* name, const char* unit, const std::vector<double>& values) {
       series.write(name, values);
       series.set("unit", unit, name);
-    });
+    };
+    each_series(result.series, write);
+    if (!result.series.window_time.empty()) each_window_series(result.series, write);
     const data::Hdf5Group summary = file.create_group("summary");
     std::vector<std::string> names, units;
     std::array<std::vector<double>, 7> columns;
     for (std::size_t k = 0; k < result.summary.mean.size(); ++k) {
       const data::SeriesMean& m = result.summary.mean[k];
+      if (k >= outputs().size() - camera_outputs().size() && result.series.window_time.empty()) break;  // not seen
       names.push_back(outputs()[k].name);
       units.push_back(outputs()[k].unit);
       const std::array<double, 7> row{m.mean,
@@ -277,6 +291,9 @@ SavedRun read_run(const std::string& path) {
   r.warnings = file.read_texts("warnings");
   r.summary.cpu_seconds = file.number("cpu_seconds");
   const data::Hdf5Group series = file.group("series");
+  each_window_series(r.series, [&](const char* name, const char*, std::vector<double>& values) {
+    if (series.has(name)) values = series.read<double>(name).values;
+  });
   each_series(r.series, [&](const char* name, const char*, std::vector<double>& values) {
     // A run of before there was this output.
     if (series.has(name))

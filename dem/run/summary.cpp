@@ -46,6 +46,18 @@ data::SeriesMean mean_of(std::span<const double> values) {
   return s.mean;
 }
 
+/// Of what is measured on silhouettes: windows in which it was not found are left out where they are few.
+data::SeriesMean mean_of_found(std::span<const double> values) {
+  constexpr double most_missing = 0.05;
+  std::vector<double> found;
+  for (const double value : values)
+    if (std::isfinite(value)) found.push_back(value);
+  const double missing = static_cast<double>(values.size() - found.size());
+  if (!found.empty() && missing <= most_missing * static_cast<double>(values.size())) return mean_of(found);
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  return {.mean = unknown, .standard_error = unknown, .reliable = false};
+}
+
 /// Of the values at times in [from, to).
 double mean_between(const std::vector<double>& time, const std::vector<double>& values, double from, double to) {
   double sum = 0.0, count = 0.0;
@@ -104,12 +116,20 @@ Summary summarise(const Case& c, double turn, const Series& s, const Looks& look
     const std::size_t first = std::min(m.first, values.size());
     return std::span(values).subspan(first, std::min(m.count, values.size() - first));
   };
-  const auto window = static_cast<std::size_t>(std::max(1.0, std::round(c.run.window / sample)));
+  const std::size_t window = samples_in_window(c.run);
   for (const MeanOutput& output : mean_outputs()) {
     summary.mean.push_back(mean_of(measured(s.*output.series)));
     if (summary.mean.size() == 1) summary.mean.push_back(fluctuation(measured(s.torque), window));
   }
   for (data::SeriesMean& mean : summary.mean) mean.dropped = m.first;
+  const std::size_t first_window = (m.first + window - 1) / window;
+  for (const CameraOutput& output : camera_outputs()) {
+    const std::vector<double>& values = s.*output.series;
+    const std::size_t last = std::min((m.first + m.count) / window, values.size()),
+                      first = std::min(first_window, last);
+    summary.mean.push_back(mean_of_found(std::span(values).subspan(first, last - first)));
+    summary.mean.back().dropped = first;
+  }
   const data::SeriesMean& torque = summary.mean.front();
   summary.reached_target = torque.standard_error <= c.run.standard_error * std::abs(torque.mean);
   summary.state = m.state;

@@ -1,4 +1,5 @@
-// The two studies on other groups' runs of a drum: what one determines, and what the other's model cannot reproduce.
+// The studies of drums: what another group's table determines, what another's model cannot reproduce, and one on pictures
+// of a real powder.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -39,6 +40,15 @@ TEST_CASE("a table of another code: the intervals hold the design that was left 
       if (c == 0) CHECK(parameter["verdict"] != "identified");  // the torque alone leaves all of them traded
     }
   for (const char* name : {"sliding", "rolling", "cohesion"}) CHECK(sd[1].at(name) < 0.9 * sd[0].at(name));
+}
+
+TEST_CASE("the study on pictures of a real powder can be run, and keeps two speeds for the prediction") {
+  const Folder folder;
+  const auto outcome = folder.demcal({"check", DEMCAL_SOURCE_DIR "/data/drum-mcc"});
+  INFO(outcome.out << outcome.err);
+  CHECK(outcome.status == 0);
+  CHECK_THAT(outcome.out + outcome.err,
+             Contains("48 runs are missing") && Contains("2 observation sets, 1 case") && Contains("no problems"));
 }
 
 TEST_CASE("a model that cannot reproduce its data is refused, and the datum is named", "[slow]") {

@@ -195,6 +195,10 @@ TEST_CASE("a drum's run stopped and gone on from its checkpoint ends with the sa
   CHECK(resumed.series.torque == whole.series.torque);
   CHECK(resumed.series.centre_x == whole.series.centre_x);
   CHECK(resumed.series.centre_z == whole.series.centre_z);
+  REQUIRE(whole.series.window_time.size() >= 10);
+  CHECK(resumed.series.window_time == whole.series.window_time);
+  CHECK(resumed.series.silhouette_x == whole.series.silhouette_x);
+  CHECK(resumed.series.silhouette_area == whole.series.silhouette_area);
 }
 
 TEST_CASE("number, mass and level say the same fill, and the last one said counts") {
