@@ -72,18 +72,18 @@ Workspace open_workspace(const StudyOptions& options) {
     for (const data::Control& c : study.controls)
       check_target(file.root().child("controls").child(c.name), c.target, c.unit, c.low, c.high);
     for (const data::Output& output : study.outputs) {
-      const auto seen = [&](const auto& material) { return dem::has_output(material.second, output.name); };
-      if (!dem::has_output(output.name))
-        file.root().child("outputs").problem(output.name, fmt::format("the simulation has no output '{}'", output.name),
-                                             "choose one of: " + dem::output_names());
-      else if (!std::all_of(workspace.cases.begin(), workspace.cases.end(), seen))
-        file.root().child("outputs").problem(
-            output.name,
-            fmt::format(
-                "{} is measured on the picture along a horizontal axis, but this rig's axis is vertical, or its "
-                "box repeats across it",
-                output.name),
-            "leave it out");
+      const data::Section outputs = file.root().child("outputs");
+      if (!dem::has_output(output.name)) {
+        outputs.problem(output.name, fmt::format("the simulation has no output '{}'", output.name),
+                        "choose one of: " + dem::output_names());
+        continue;
+      }
+      for (const auto& [material, of] : workspace.cases) {
+        const std::string why = dem::no_output_because(of, output.name);
+        if (why.empty()) continue;
+        outputs.problem(output.name, why, "leave it out");
+        break;
+      }
     }
   }
   workspace.unsteady = file.root().child("training").choice("unsteady", {"leave_out", "use"}, "leave_out") == "use"

@@ -252,6 +252,7 @@ const RigKind stl_rig{.name = "stl",
                       .problems = problems_of,
                       .settings = settings,
                       .labels = labels,
+                      .measured_bodies = [](const Case&) { return std::size_t{1}; },
                       .tool_speed = [](const Case& c) { return mesh_speed(*c.rig.stl, c.rig.angular_velocity); },
                       .fill_depth = fill_depth};
 

@@ -174,6 +174,8 @@ const RigKind drum_rig{
     .problems = problems_of,
     .settings = settings,
     .labels = labels,
+    .measured_bodies =
+        [](const Case& c) { return std::size_t{c.rig.drum->end_plates == EndPlates::turning ? 2u : 1u}; },
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.drum->radius; },
     .fill_depth = [](const Case& c,
                      double volume) { return volume / (c.rig.drum->length * 2.0 * c.rig.drum->radius); }};

@@ -237,6 +237,7 @@ const RigKind machine_rig{
         [](const Case&) {
           return std::vector<BodyLabel>{{"first_mixer", "wall"}, {"second_mixer", "wall"}, {"trough", "wall"}};
         },
+    .measured_bodies = [](const Case&) { return std::size_t{2}; },
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.blade_radius; },
     .fill_depth = [](const Case& c,
                      double volume) { return volume / (c.rig.machine->length * 4.0 * c.rig.trough_radius); }};

@@ -57,6 +57,9 @@ const char* rig_kind(const Case& c);
 /// Throws data::InputError (78) when the spheres do not fit or start outside.
 BuiltRig build_rig(const Case& c, std::uint64_t seed);
 
+/// How many bodies' torques make the output.
+std::size_t measured_bodies(const Case& c);
+
 /// One box length of each mesh, for the user to look at.
 struct NamedMesh {
   std::string name;

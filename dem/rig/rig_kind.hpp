@@ -14,6 +14,7 @@ struct RigKind {
   std::vector<data::Problem> (*problems)(const Case& c);  ///< what of the rig alone cannot be simulated
   std::string (*settings)(const Case& c);                 ///< that no target names, one "name = value" a line
   std::vector<BodyLabel> (*labels)(const Case& c);        ///< of the bodies, in their order
+  std::size_t (*measured_bodies)(const Case& c);          ///< whose torques make the output
   double (*tool_speed)(const Case& c);                    ///< m/s, highest of any point of a moving body
   double (*fill_depth)(const Case& c, double volume);     ///< m, of a lattice of this volume in the box without bodies
 };

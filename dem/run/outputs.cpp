@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "dem/case/stl_rig.hpp"
@@ -13,6 +14,13 @@ namespace {
 
 double one(const Sampling&) { return 1.0; }
 double mass(const Sampling& of) { return of.mass; }
+
+/// Of the k-th body whose torque is measured; not a number where there are fewer.
+double torque_of(std::size_t k, const Sampling& of, const Simulation& now) {
+  if (k >= of.sensor.driven.size()) return std::numeric_limits<double>::quiet_NaN();
+  const Driven& d = of.sensor.driven[k];
+  return dot(d.torque_axis, now.sums().body[d.body].torque);
+}
 
 /// Mass times the distance of its centre from the axis along a direction of the picture [kg m].
 double moment(const Sampling& of, const Simulation& now, Vec3 direction) {
@@ -26,7 +34,7 @@ const std::vector<MeanOutput>& mean_outputs() {
       {"torque", "N m", &Series::torque,
        [](const Sampling& of, const Simulation& now) {
          double sum = 0.0;
-         for (const Driven& d : of.sensor.driven) sum += dot(d.torque_axis, now.sums().body[d.body].torque);
+         for (std::size_t k = 0; k < of.sensor.driven.size(); ++k) sum += torque_of(k, of, now);
          return sum;
        },
        one},
@@ -48,6 +56,10 @@ const std::vector<MeanOutput>& mean_outputs() {
        [](const Sampling& of, const Simulation& now) { return moment(of, now, of.sensor.picture.right); }, mass},
       {"centre_z", "m", &Series::centre_z,
        [](const Sampling& of, const Simulation& now) { return moment(of, now, of.sensor.picture.up); }, mass},
+      {"first_torque", "N m", &Series::first_torque,
+       [](const Sampling& of, const Simulation& now) { return torque_of(0, of, now); }, one},
+      {"second_torque", "N m", &Series::second_torque,
+       [](const Sampling& of, const Simulation& now) { return torque_of(1, of, now); }, one},
   };
   return all;
 }
@@ -80,21 +92,36 @@ const std::vector<Output>& outputs() {
   return all;
 }
 
+namespace {
+
+bool has_picture(const Rig& rig) {
+  if (!rig.stl || rig.stl->meshes.empty()) return true;  // slice and drum lie
+  const StlRig& stl = *rig.stl;
+  const Motion motion = motion_of(stl.meshes[stl.measured], rig.angular_velocity);
+  constexpr double any_radius = 1.0;
+  return picture_plane(picture_along(motion.axis, motion.point, stl.down), {stl.low, stl.high, stl.periodic},
+                       any_radius)
+             .columns > 0;
+}
+
+}  // namespace
+
 bool has_output(std::string_view name) {
   return std::any_of(outputs().begin(), outputs().end(), [&](const Output& o) { return o.name == name; });
 }
 
-bool has_output(const Case& c, std::string_view name) {
+std::string no_output_because(const Case& c, std::string_view name) {
   const auto& seen = camera_outputs();
-  if (std::none_of(seen.begin(), seen.end(), [&](const CameraOutput& o) { return o.name == name; }))
-    return has_output(name);
-  if (!c.rig.stl || c.rig.stl->meshes.empty()) return true;  // slice and drum lie
-  const StlRig& rig = *c.rig.stl;
-  const Motion motion = motion_of(rig.meshes[rig.measured], c.rig.angular_velocity);
-  constexpr double any_radius = 1.0;
-  return picture_plane(picture_along(motion.axis, motion.point, rig.down), {rig.low, rig.high, rig.periodic},
-                       any_radius)
-             .columns > 0;
+  const Rig& rig = c.rig;
+  if (std::any_of(seen.begin(), seen.end(), [&](const CameraOutput& o) { return o.name == name; })) {
+    if (std::string_view(rig_kind(c)) == "machine")
+      return "is measured on the picture along one axis, and the machine has two";
+    return has_picture(rig) ? ""
+                            : "is measured on the picture along a horizontal axis, but this rig's axis is vertical, or "
+                              "its box repeats across it";
+  }
+  if (name == "second_torque" && measured_bodies(c) < 2) return "is that of a second body, and this rig measures one";
+  return "";
 }
 
 std::string output_names() {

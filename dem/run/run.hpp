@@ -16,6 +16,9 @@
 //   centre_x, centre_z  m, the centre of mass seen along the axis: from the axis to the side where the measured body
 //                       rises, and above it. In the steady flow of a drum whose turning parts are all measured, torque
 //                       = weight * centre_x. Of a vertical axis centre_x is 0; across a periodic axis they say nothing.
+//   first_torque, second_torque
+//                       N m, of the parts of the torque: of the machine's two mixers, of a drum's shell and its turning
+//                       end plates. A rig with one measured body has no second.
 //   silhouette_x, silhouette_z, silhouette_area, upper_angle, lower_angle
 //                       m, m, m2, rad, rad: of the silhouette that a camera sees along the axis
 //                       (dem/run/silhouette.hpp). The time-averaged projection is of RunControl::window, and each
@@ -49,6 +52,8 @@ struct Series {
   std::vector<double> normal_stress;    ///< Pa
   std::vector<double> centre_x;         ///< m
   std::vector<double> centre_z;         ///< m
+  std::vector<double> first_torque;     ///< N m
+  std::vector<double> second_torque;    ///< N m
   std::vector<double> look_time;        ///< s, of the looks at the bed, each 0.05 s
   std::vector<double> bond_order;       ///< 1, dem/engine/order.hpp, at a look
   std::vector<double> window_time;      ///< s, end of each window
@@ -66,8 +71,8 @@ struct Output {
 const std::vector<Output>& outputs();
 bool has_output(std::string_view name);
 std::string output_names();  ///< "torque, torque_fluctuation, ..."
-/// Whether the case's rig has it: one without a picture along its axis has no silhouette.
-bool has_output(const Case& c, std::string_view name);
+/// Why the case's rig lacks an output of that name; empty where it has it.
+std::string no_output_because(const Case& c, std::string_view name);
 
 struct Diagnostics {
   Derived derived;  ///< pull-off, Bond number, time step, ...

@@ -208,6 +208,24 @@ TEST_CASE("the machine's output is the sum of both mixers' torques about their o
   CHECK(rig.sensor.driven[1].torque_axis.x == -rig.bodies[1].motion.axis.x);
 }
 
+TEST_CASE("a run of the machine has both mixers' torques, which sum to the output, and says how its powder circulates",
+          "[slow]") {
+  dem::Case c = small_machine();
+  c.rig.level = 0.5;
+  c.run.settle = 0.02;
+  c.run.start_up = 0.02;
+  c.run.start_up_turns = c.run.shortest_turns = 0.0;
+  c.run.shortest = 0.03;
+  c.run.longest = 0.05;
+  c.run.window = 3e-3;
+  const dem::RunResult result = dem::run(c, 1, {});
+  const auto mean = [&](const char* name) { return dem::output(result, name).mean; };
+  CHECK(mean("first_torque") + mean("second_torque") == Approx(mean("torque")).epsilon(1e-12));
+  CHECK(mean("first_torque") > 0.0);
+  CHECK(mean("second_torque") > 0.0);
+  CHECK(std::isnan(mean("silhouette_x")));
+}
+
 TEST_CASE("a machine that cannot be is refused with its key, and a level that stops the powder is warned of") {
   const auto place = [](auto&& change) {
     dem::Case c = small_machine();
@@ -226,6 +244,9 @@ TEST_CASE("a machine that cannot be is refused with its key, and a level that st
           c.rig.level.reset();
           c.rig.fill_mass = 1.0;
         }) == "rig.fill_mass");
+  CHECK(dem::no_output_because(small_machine(), "second_torque").empty());
+  CHECK_FALSE(dem::no_output_because(small_machine(), "silhouette_x").empty());
+  CHECK_FALSE(dem::no_output_because(dem::Case{}, "second_torque").empty());
   dem::Case low = small_machine();
   low.rig.level = 0.15;
   const dem::Forecast f = dem::forecast(low, 1);
