@@ -118,6 +118,8 @@ class GaussianProcess {
 
   Prediction predict(const Eigen::MatrixXd& points) const;
   void predict(const Eigen::MatrixXd& points, PredictionWorkspace& workspace, Prediction& result) const;
+  /// The means of predict alone. On a linear scale they need no solve and cost a fraction of it.
+  Eigen::VectorXd predict_mean(const Eigen::MatrixXd& points) const;
   PredictionGradient predict_with_gradient(const Eigen::MatrixXd& points, std::span<const int> coordinates) const;
   void predict_with_gradient(const Eigen::MatrixXd& points, std::span<const int> coordinates,
                              PredictionWorkspace& workspace, PredictionGradient& result) const;

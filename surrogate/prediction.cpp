@@ -14,15 +14,17 @@ namespace surrogate {
 
 using Eigen::Index;
 
-void cross(const Conditioned& part, const GaussianProcess& process, const Eigen::MatrixXd& points, Slopes slopes,
-           PredictionWorkspace& workspace) {
+namespace {
+
+/// The first half of cross(): correlations with the runs, slopes and basis.
+void correlate_with_runs(const Conditioned& part, const GaussianProcess& process, const Eigen::MatrixXd& points,
+                         Slopes slopes, PredictionWorkspace& workspace) {
   const bool with_slopes = slopes == Slopes::yes;
   const std::vector<int>& active = process.data().active;
   const Index n = part.scaled_points.rows(), d = part.scaled_points.cols(), m = points.rows();
   workspace.points.resize(m, d);
   for (Index k = 0; k < d; ++k) workspace.points.col(k) = points.col(active[k]);
-  const Index p = part.factorised.whitened_basis.cols();
-  if (p > 0) workspace.basis = basis_matrix(process.mean(), workspace.points);
+  if (part.factorised.whitened_basis.cols() > 0) workspace.basis = basis_matrix(process.mean(), workspace.points);
   for (Index k = 0; k < d; ++k) workspace.points.col(k) /= part.parameters.length_scales[k];
 
   workspace.squares.setZero(n, m);
@@ -36,7 +38,22 @@ void cross(const Conditioned& part, const GaussianProcess& process, const Eigen:
                                {with_slopes ? workspace.slopes.data() : nullptr, with_slopes ? n * m : 0}});
   workspace.correlations *= part.parameters.signal_variance;
   if (with_slopes) workspace.slopes *= part.parameters.signal_variance;
+}
 
+void latent_mean(const Conditioned& part, PointRange range, const PredictionWorkspace& workspace,
+                 Eigen::VectorXd& mean) {
+  const Index first = range.first, m = range.count;
+  mean.noalias() = workspace.correlations.middleCols(first, m).transpose() * part.factorised.residual_weights;
+  if (part.factorised.whitened_basis.cols() > 0)
+    mean.noalias() += workspace.basis.middleRows(first, m) * part.factorised.mean_coefficients;
+}
+
+}  // namespace
+
+void cross(const Conditioned& part, const GaussianProcess& process, const Eigen::MatrixXd& points, Slopes slopes,
+           PredictionWorkspace& workspace) {
+  correlate_with_runs(part, process, points, slopes, workspace);
+  const Index p = part.factorised.whitened_basis.cols(), m = points.rows();
   multiply_lower(part.factorised.inverse_factor, workspace.correlations, workspace.whitened);
   if (p > 0) {
     workspace.projected = workspace.basis.transpose();
@@ -51,8 +68,7 @@ void latent(const Conditioned& part, const GaussianProcess& process, PointRange 
             Prediction& result) {
   const Index first = range.first, m = range.count;
   const Index p = workspace.projected.rows();
-  result.mean.noalias() = workspace.correlations.middleCols(first, m).transpose() * part.factorised.residual_weights;
-  if (p > 0) result.mean.noalias() += workspace.basis.middleRows(first, m) * part.factorised.mean_coefficients;
+  latent_mean(part, range, workspace, result.mean);
 
   result.covariance.resize(m, m);
   workspace.squares.resize(m, m);  // free by now
@@ -112,6 +128,24 @@ void GaussianProcess::predict(const Eigen::MatrixXd& points, PredictionWorkspace
     mixture.add(part.weight, workspace.part);
   }
   result = mixture.result();
+}
+
+Eigen::VectorXd GaussianProcess::predict_mean(const Eigen::MatrixXd& points) const {
+  check_points(points, dimension());
+  if (data_->scale != OutputScale::linear) return predict(points).mean;
+  PredictionWorkspace workspace;
+  Eigen::VectorXd origin, shift, mean;
+  for (const Conditioned& part : *parts_) {
+    correlate_with_runs(part, *this, points, Slopes::no, workspace);
+    latent_mean(part, {0, points.rows()}, workspace, mean);
+    mean = (data_->shift + data_->unit * mean.array()).matrix();
+    if (origin.size() == 0) {
+      origin = mean;
+      shift = Eigen::VectorXd::Zero(mean.size());
+    }
+    shift += part.weight * (mean - origin);  // as Mixture sums
+  }
+  return origin + shift;
 }
 
 std::vector<Prediction> GaussianProcess::predict_batch(const Eigen::MatrixXd& points, int group) const {

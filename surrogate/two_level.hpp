@@ -53,6 +53,7 @@ class TwoLevelProcess {
   TwoLevelProcess(GaussianProcess low, HighLevel high);
 
   Prediction predict(const Eigen::MatrixXd& points) const;  ///< of the high level, latent
+  Eigen::VectorXd predict_mean(const Eigen::MatrixXd& points) const { return predict(points).mean; }
   /// Points stacked in groups of `group` rows.
   std::vector<Prediction> predict_batch(const Eigen::MatrixXd& points, int group) const;
   /// With derivatives with respect to a common shift of each coordinate, by central differences of predict (step 1e-4

@@ -140,6 +140,7 @@ TEST_CASE("prediction gradients agree with differences on both output scales and
       const std::vector<int> coordinates{0, 1, 2};
       const PredictionGradient at = process.predict_with_gradient(points, coordinates);
       CHECK(largest(at.value.covariance - process.predict(points).covariance) < 1e-12);
+      CHECK(largest(at.value.mean - process.predict_mean(points)) < 1e-12);
       for (const int k : coordinates) {
         constexpr double h = 1e-5;
         MatrixXd up = points, down = points;

@@ -98,6 +98,7 @@ TEST_CASE("gradients and batches of an integrated process agree with differences
     const PredictionGradient at = process.predict_with_gradient(points, coordinates);
     const std::vector<Prediction> batch = process.predict_batch(points, 2);
     CHECK((batch[0].covariance - at.value.covariance.topLeftCorner(2, 2)).cwiseAbs().maxCoeff() < 1e-12);
+    CHECK((process.predict_mean(points) - at.value.mean).cwiseAbs().maxCoeff() < 1e-12);
     CHECK((process.predict_marginal(points).variance - at.value.covariance.diagonal()).cwiseAbs().maxCoeff() < 1e-12);
     for (const int k : coordinates) {
       constexpr double h = 1e-5;

@@ -36,6 +36,8 @@ struct Emulator {
   std::map<std::size_t, double> constants;  ///< parameters that the material's runs hold at one value, SI
   std::map<std::size_t, std::pair<double, double>> control_range;  ///< SI, of the runs
   std::function<surrogate::Prediction(const Eigen::MatrixXd& points)> predict;
+  /// The means of `predict` alone; empty where it has no cheaper way.
+  std::function<Eigen::VectorXd(const Eigen::MatrixXd& points)> predict_mean = {};
   /// Derivatives to a common shift of each coordinate of all rows; empty where there are none.
   std::function<surrogate::PredictionGradient(const Eigen::MatrixXd& points, std::span<const int> coordinates)>
       predict_with_gradient = {};
@@ -57,6 +59,9 @@ Emulator make_emulator(std::shared_ptr<const Process> process, std::string mater
                     .predict = {}};
   emulator.predict = [process](const Eigen::MatrixXd& points) -> surrogate::Prediction {
     return process->predict(points);
+  };
+  emulator.predict_mean = [process](const Eigen::MatrixXd& points) -> Eigen::VectorXd {
+    return process->predict_mean(points);
   };
   emulator.predict_with_gradient = [process](const Eigen::MatrixXd& points,
                                              std::span<const int> coordinates) -> surrogate::PredictionGradient {

@@ -26,6 +26,12 @@ Eigen::MatrixXd inputs_at(const RowGroup& group, const Yardstick::Group& looked,
   return points;
 }
 
+Eigen::VectorXd means_at(const RowGroup& group, const Yardstick::Group& looked, const Eigen::VectorXd& u) {
+  if (looked.rows.empty()) return {};
+  const Eigen::MatrixXd points = inputs_at(group, looked, u);
+  return group.emulator.predict_mean ? group.emulator.predict_mean(points) : group.emulator.predict(points).mean;
+}
+
 bool acts_on_emulators(const CaseModel& model, int unknown) {
   return std::any_of(model.groups.begin(), model.groups.end(),
                      [&](const RowGroup& group) { return (group.slot.array() == unknown).any(); });
@@ -77,6 +83,22 @@ Difference difference(const CaseModel& model, const Yardstick& yardstick, const 
     }
   }
   return {.size = std::sqrt(size), .doubt = std::sqrt(doubt)};
+}
+
+DistanceFrom::DistanceFrom(const CaseModel& model, const Yardstick& yardstick, const Eigen::VectorXd& v)
+    : model_(model), yardstick_(yardstick) {
+  for (std::size_t g = 0; g < model.groups.size(); ++g)
+    means_.push_back(means_at(model.groups[g], yardstick.groups[g], v));
+}
+
+double DistanceFrom::operator()(const Eigen::VectorXd& u) const {
+  double square = 0.0;
+  for (std::size_t g = 0; g < model_.groups.size(); ++g) {
+    const Yardstick::Group& looked = yardstick_.groups[g];
+    const Eigen::VectorXd d = means_at(model_.groups[g], looked, u) - means_[g];
+    square += looked.stands_for * looked.weight.cwiseProduct(d).squaredNorm();
+  }
+  return std::sqrt(square);
 }
 
 std::vector<Influence> find_influence(const CaseModel& model, const Eigen::VectorXd& best, const Eigen::MatrixXd& draws,

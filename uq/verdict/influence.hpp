@@ -39,6 +39,18 @@ struct Difference {
 Difference difference(const CaseModel& model, const Yardstick& yardstick, const Eigen::VectorXd& u,
                       const Eigen::VectorXd& v);
 
+/// The size of the difference from one point v: many u at the cost of their means.
+class DistanceFrom {
+ public:
+  DistanceFrom(const CaseModel& model, const Yardstick& yardstick, const Eigen::VectorXd& v);
+  double operator()(const Eigen::VectorXd& u) const;
+
+ private:
+  const CaseModel& model_;
+  const Yardstick& yardstick_;
+  std::vector<Eigen::VectorXd> means_;  ///< of each group at v
+};
+
 struct Influence {
   bool shown = true;      ///< the surrogate can tell it from none
   double deviance = 0.0;  ///< that the whole range brings about, largest of the points looked at

@@ -34,12 +34,13 @@ std::pair<double, double> hull(const Profile& profile) {
 Eigen::VectorXd nearest_prediction(const CaseModel& model, const Yardstick& yardstick, const Eigen::VectorXd& best,
                                    Held held, const Eigen::MatrixXd& starts) {
   const Box box{model.lower(), model.upper()};
+  const DistanceFrom distance(model, yardstick, best);
   const auto match = [&](const Eigen::VectorXd& u) {
     // What only widens the spread explains nothing, and stays; what a certificate says of a nuisance counts.
     Eigen::VectorXd at = u;
     for (int s = 0; s < model.dimension(); ++s)
       if (model.slots[static_cast<std::size_t>(s)].nuisance == Acts::on_spread) at[s] = best[s];
-    const double size = difference(model, yardstick, at, best).size;
+    const double size = distance(at);
     return -size * size + 2.0 * log_certificates(model, at).value;
   };
   return maximise(with_differences(match, box), box, starts, held).x;
