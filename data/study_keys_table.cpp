@@ -54,7 +54,8 @@ const std::vector<StudyKey>& study_keys() {
       {"outputs.NAME.unit", "text", "", "", "N m",
        "unit of the output's column and of the report; NAME is torque unless more is measured", "\"mN m\""},
       {"rig.kind", "choice", "", "slice, machine, drum, stl", "slice",
-       "a built-in auger slice, a machine of two augers that circulate the powder, a drum without lifters, or meshes of "
+       "a built-in auger slice, a machine of two augers that circulate the powder, a drum without lifters, or meshes "
+       "of "
        "your own",
        "\"stl\""},
       {"rig.shaft_radius", "quantity", "m", "from 1e-06 to 10", "0.0025", "radius of the auger's shaft", "\"2.5 mm\""},
