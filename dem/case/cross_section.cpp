@@ -31,11 +31,13 @@ double trough_room_below(const Rig& rig, double z) {
   return trough_below(rig.trough_radius, z) - shaft_below(rig, z) - blade_below(rig, z);
 }
 
+double end_gap(const Rig& rig) { return 2.0 * rig.clearance() + 0.5 * rig.blade_thickness; }
+
 double machine_room_below(const Rig& rig, double z) {
   const Machine& m = rig.machine.value();
   const double r = rig.trough_radius;
   double room = 2.0 * (m.length * (trough_below(r, z) - shaft_below(rig, z)) -
-                       (m.length - m.opening - rig.clearance() - 0.5 * rig.blade_thickness) * blade_below(rig, z));
+                       (m.length - m.opening - end_gap(rig)) * blade_below(rig, z));
   // Above the sill the openings are wider than two troughs by what the partition takes elsewhere: its thickness, and
   // below the axes what the two half circles leave between them.
   if (z > m.sill) {

@@ -11,6 +11,10 @@ double disc_below(double radius, double z);
 /// Area of one trough with its auger below z [m2]: what the powder of the slice takes, per length.
 double trough_room_below(const Rig& rig, double z);
 
+/// Of the middle of the machine's blades from the end wall where their powder comes in [m]: twice the clearance between
+/// blade and trough, as there the blade's blunt end goes first, and would pinch grains against wall and trough.
+double end_gap(const Rig& rig);
+
 /// Volume of the machine below z, without its augers [m3].
 double machine_room_below(const Rig& rig, double z);
 

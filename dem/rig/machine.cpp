@@ -20,9 +20,6 @@ TriangleMesh shifted(TriangleMesh mesh, double y) {
   return mesh;
 }
 
-/// Of the blade's middle from the end wall where powder comes in [m].
-double end_gap(const Rig& rig) { return rig.clearance() + 0.5 * rig.blade_thickness; }
-
 /// Half of the trough's outline, at y >= 0, in the plane x = 0.
 struct Outline {
   std::vector<Vec3> below;      ///< from the outer wall's top down and up again to the sill

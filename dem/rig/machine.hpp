@@ -8,8 +8,8 @@
 //         |           |===================|           |
 //         |<-- first: turns about +x, moves to -x     |     y < 0
 //
-// Both rise on the side of the partition. The blade of each begins one clearance of blade and trough from the end wall
-// where its powder comes in, and ends where the other opening begins: there powder that arrives pushes what is before
+// Both rise on the side of the partition. The blade of each begins two clearances of blade and trough from the end
+// wall where its powder comes in, and ends where the other opening begins: there powder that arrives pushes what is before
 // it over the sill. The openings reach from the sill up. Partition and troughs meet without a step: the axes are
 // 2 trough_radius + partition apart.
 //

@@ -143,8 +143,8 @@ TEST_CASE("the augers of the machine are closed at their blades' ends and keep c
     }
     const dem::Machine& m = *rig.machine;
     const double slack = rig.pitch / 48 + rig.blade_thickness;
-    CHECK(from == Approx(first ? m.opening : rig.clearance()).margin(slack));
-    CHECK(to == Approx(first ? m.length - rig.clearance() : m.length - m.opening).margin(slack));
+    CHECK(from == Approx(first ? m.opening : 2.0 * rig.clearance()).margin(slack));
+    CHECK(to == Approx(first ? m.length - 2.0 * rig.clearance() : m.length - m.opening).margin(slack));
     CHECK(from > 0.0);
     CHECK(to < m.length);
   }
