@@ -51,6 +51,21 @@ double machine_room_below(const Rig& rig, double z) {
   return room;
 }
 
+TroughFill level_out(const Rig& rig, double bed, const std::function<double(double z)>& room_below) {
+  double low = -rig.trough_radius, high = rig.blade_radius;
+  TroughFill fill{bed / room_below(high), 0.0};
+  while (room_below(high) < bed) {
+    low = high;
+    high += rig.trough_radius + (high + rig.trough_radius);
+  }
+  for (int k = 0; k < 80; ++k) {
+    const double middle = 0.5 * (low + high);
+    (room_below(middle) < bed ? low : high) = middle;
+  }
+  fill.surface = high;
+  return fill;
+}
+
 double level_volume(const Rig& rig) {
   if (rig.drum) return rig.drum->volume();
   return rig.machine ? machine_room_below(rig, rig.blade_radius) : 0.0;

@@ -1,6 +1,8 @@
 #pragma once
 // Areas and volumes of the auger rigs below a height, in closed form: how much powder brings the bed how high.
 // Heights are counted from the augers' axes. Of an auger the mean over its length is taken out.
+#include <functional>
+
 #include "dem/case/case.hpp"
 
 namespace dem {
@@ -26,5 +28,7 @@ struct TroughFill {
   double share = 0.0;    ///< of the room below the blade's top
   double surface = 0.0;  ///< m above the axis
 };
+/// Of a bed as large as `bed` in a vessel of this room below a height, in the same unit; the room grows without end.
+TroughFill level_out(const Rig& rig, double bed, const std::function<double(double z)>& room_below);
 
 }  // namespace dem

@@ -104,4 +104,16 @@ std::vector<data::Problem> auger_problems(const Case& c) {
   return found;
 }
 
+void check_fill(const Case& c, const TroughFill& fill, std::vector<data::Problem>& found) {
+  if (!(fill.share > most_fill)) return;
+  const BedSummary bed = summarise_bed(c);
+  const char* const key = c.rig.level ? "rig.level" : c.rig.fill_mass ? "rig.fill_mass" : "rig.fill";
+  found.push_back({key,
+                   fmt::format("makes {} spheres, {:.3g} g, which fill the trough up to {:.3g} times the room below "
+                               "the blade's top",
+                               bed.spheres, 1e3 * bed.mass, fill.share),
+                   fmt::format("lower the fill to {:.2g} g, or check density, diameter and the {}'s lengths",
+                               1e3 * bed.mass / fill.share, c.rig.machine ? "machine" : "slice")});
+}
+
 }  // namespace dem

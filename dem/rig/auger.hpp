@@ -7,6 +7,7 @@
 
 #include "data/error.hpp"
 #include "dem/case/case.hpp"
+#include "dem/case/cross_section.hpp"
 #include "dem/walls/mesh.hpp"
 
 namespace dem {
@@ -35,5 +36,6 @@ std::vector<data::Problem> auger_problems(const Case& c);
 /// A trough fuller than this many times the room below the blade's top is refused: the mixer would turn deep under the
 /// powder.
 inline constexpr double most_fill = 2.0;
+void check_fill(const Case& c, const TroughFill& fill, std::vector<data::Problem>& found);
 
 }  // namespace dem

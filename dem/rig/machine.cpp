@@ -118,17 +118,8 @@ TriangleMesh double_trough(const Rig& rig, double top) {
 }
 
 TroughFill fill_of_machine(const Case& c) {
-  const double bed = summarise_bed(c).volume / packing_fraction, r = c.rig.trough_radius;
-  const auto room = [&](double z) { return machine_room_below(c.rig, z); };
-  double low = -r, high = c.rig.blade_radius;
-  TroughFill fill{bed / room(high), 0.0};
-  while (room(high) < bed) high += r + (bed - room(high)) / (4.0 * r * c.rig.machine->length);
-  for (int k = 0; k < 60; ++k) {
-    const double middle = 0.5 * (low + high);
-    (room(middle) < bed ? low : high) = middle;
-  }
-  fill.surface = high;
-  return fill;
+  return level_out(c.rig, summarise_bed(c).volume / packing_fraction,
+                   [&](double z) { return machine_room_below(c.rig, z); });
 }
 
 namespace {
@@ -201,17 +192,7 @@ std::vector<data::Problem> problems_of(const Case& c) {
          fmt::format("make the machine at least {:g} m long",
                      std::max(2.0 * m.opening, m.opening + end_gap(rig)) + rig.pitch)});
   if (!found.empty()) return found;
-  if (const TroughFill fill = fill_of_machine(c); fill.share > most_fill) {
-    const BedSummary bed = summarise_bed(c);
-    found.push_back({rig.level       ? "rig.level"
-                     : rig.fill_mass ? "rig.fill_mass"
-                                     : "rig.fill",
-                     fmt::format("makes {} spheres, {:.3g} g, which fill the troughs up to {:.3g} times the room below "
-                                 "the blades' top",
-                                 bed.spheres, 1e3 * bed.mass, fill.share),
-                     fmt::format("lower the fill to {:.2g} g, or check density, diameter and the machine's lengths",
-                                 1e3 * bed.mass / fill.share)});
-  }
+  check_fill(c, fill_of_machine(c), found);
   return found;
 }
 

@@ -105,17 +105,8 @@ Packing pack(const Case& c, std::uint64_t seed) {
 
 TroughFill fill_of_slice(const Case& c) {
   const Rig& rig = c.rig;
-  const double area = summarise_bed(c).volume / packing_fraction / (rig.pitches * rig.pitch);
-  double low = -rig.trough_radius, high = rig.blade_radius;
-  TroughFill fill{area / trough_room_below(rig, high), 0.0};
-  while (trough_room_below(rig, high) < area)
-    high += rig.trough_radius + 0.5 * (area - trough_room_below(rig, high)) / rig.trough_radius;
-  for (int k = 0; k < 60; ++k) {
-    const double middle = 0.5 * (low + high);
-    (trough_room_below(rig, middle) < area ? low : high) = middle;
-  }
-  fill.surface = high;
-  return fill;
+  return level_out(rig, summarise_bed(c).volume / packing_fraction / (rig.pitches * rig.pitch),
+                   [&](double z) { return trough_room_below(rig, z); });
 }
 
 namespace {
@@ -151,15 +142,7 @@ std::vector<data::Problem> problems_of(const Case& c) {
                      "raise pitches"});
   }
   if (!found.empty()) return found;
-  if (const TroughFill fill = fill_of_slice(c); fill.share > most_fill) {
-    const BedSummary bed = summarise_bed(c);
-    found.push_back({rig.fill_mass ? "rig.fill_mass" : "rig.fill",
-                     fmt::format("makes {} spheres, {:.3g} g, which fill the trough up to {:.3g} times the room below "
-                                 "the blade's top",
-                                 bed.spheres, 1e3 * bed.mass, fill.share),
-                     fmt::format("lower the fill to {:.2g} g, or check density, diameter and the slice's lengths",
-                                 1e3 * bed.mass / fill.share)});
-  }
+  check_fill(c, fill_of_slice(c), found);
   return found;
 }
 

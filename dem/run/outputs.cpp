@@ -95,7 +95,7 @@ const std::vector<Output>& outputs() {
 namespace {
 
 bool has_picture(const Rig& rig) {
-  if (!rig.stl || rig.stl->meshes.empty()) return true;  // slice and drum lie
+  if (!rig.stl || rig.stl->meshes.empty()) return true;  // the axes of slice and drum are horizontal
   const StlRig& stl = *rig.stl;
   const Motion motion = motion_of(stl.meshes[stl.measured], rig.angular_velocity);
   constexpr double any_radius = 1.0;

@@ -235,15 +235,13 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
     if (too_small) {
       finding.what = fmt::format(
           "the readings scatter {:.3g} times more than their standard errors ({:.3g} {}) say; as shares of the value "
-          "they "
-          "would fit. Are they relative?",
+          "they would fit. Are they relative?",
           scatter, error.mean(), output.unit.symbol);
       finding.remedy = fmt::format("multiply the column by {}", output.name);
     } else {
       finding.what = fmt::format(
           "the readings scatter {:.3g} times less than their standard errors ({:.3g} {}, {:.0f} % of the value) say; "
-          "as "
-          "percentages they would fit. Are they in percent?",
+          "as percentages they would fit. Are they in percent?",
           1.0 / scatter, error.mean(), output.unit.symbol, 100.0 * (error / value).mean());
       finding.remedy = fmt::format("multiply the column by {} / 100", output.name);
     }
