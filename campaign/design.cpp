@@ -19,13 +19,15 @@ namespace {
 /// The value that is typed with five digits in the unit, so that table, terminal and simulation mean the same point.
 double rounded(double si, const data::Unit& unit) { return unit.to_si(fmt::format("{:.5g}", unit.from_si(si))); }
 
-std::string point_key(const Workspace& workspace, const Point& point) {
+std::string key_of(const Workspace& workspace, const Point& point, const std::string& settings) {
   // Another code's rows have no seed and settings of ours: the point alone tells them apart.
   if (workspace.cases.empty()) return data::row_key({.material = point.material, .inputs = point.inputs});
-  return data::row_key({.material = point.material,
-                        .inputs = point.inputs,
-                        .seed = workspace.study.seed,
-                        .settings = settings_hash(workspace, point.material)});
+  return data::row_key(
+      {.material = point.material, .inputs = point.inputs, .seed = workspace.study.seed, .settings = settings});
+}
+
+std::string point_key(const Workspace& workspace, const Point& point) {
+  return key_of(workspace, point, settings_hash(workspace, point.material));
 }
 
 /// Whether the run that the row is of would stop where it stopped.
@@ -175,8 +177,8 @@ void write_points(const Workspace& workspace, const std::string& path, const std
 }
 
 std::string run_name(const Workspace& workspace, const Point& point) {
-  return (point.material.empty() ? "run" : data::file_name(point.material)) + "-" +
-         data::hash_text(point_key(workspace, point)).substr(0, 12);
+  const std::string key = key_of(workspace, point, course_hash(workspace, point.material));
+  return (point.material.empty() ? "run" : data::file_name(point.material)) + "-" + data::hash_text(key).substr(0, 12);
 }
 
 std::string run_path(const Workspace& workspace, const Point& point) {

@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include "dem/reading/target.hpp"
+#include "dem/rig/drive.hpp"
+#include "dem/run/looks.hpp"
 
 namespace campaign {
 Foretold foretell(const Workspace& workspace, const Point& point) {
@@ -13,6 +15,8 @@ Foretold foretell(const Workspace& workspace, const Point& point) {
   Foretold told{dem::derive(c), dem::forecast(c, workspace.study.seed)};
   if (!told.forecast.problems.empty())
     throw data::InputError(data::ExitStatus::bad_study, std::move(told.forecast.problems));
+  if (std::string short_of = too_short(workspace, {point}); !short_of.empty())
+    told.forecast.warnings.push_back(std::move(short_of));
   return told;
 }
 
@@ -56,9 +60,33 @@ std::vector<std::string> problems_at_ends(const Workspace& workspace, const Poin
       for (const data::Problem& p : dem::problems(case_at(workspace, point)))
         found.push_back(
             fmt::format("at {} {}: {}", inputs[i].name, with_unit(end, inputs[i].unit), data::describe({p})));
+      if (const std::string short_of = too_short(workspace, {point}); !short_of.empty())
+        found.push_back(fmt::format("at {} {}: {}", inputs[i].name, with_unit(end, inputs[i].unit), short_of));
     }
   }
   return found;
+}
+
+std::string too_short(const Workspace& workspace, const std::vector<Point>& points) {
+  std::size_t count = 0;
+  double worst = 0.0;
+  dem::Case of_worst;
+  for (const Point& point : points) {
+    const dem::Case c = case_at(workspace, point);
+    const double wanted = dem::turning_missed(c.run, dem::turn_of(c));
+    if (wanted > 0.0) ++count;
+    if (wanted > worst) {
+      worst = wanted;
+      of_worst = c;
+    }
+  }
+  if (count == 0) return {};
+  const dem::RunControl& run = of_worst.run;
+  return fmt::format(
+      "{} of {} runs would be too short: run.longest, {:g} s, ends before the start-up ({:g} turns and {:g} s at "
+      "least) "
+      "and the measurement ({:g} turns and {:g} s at least) are done, which takes up to {:.3g} s: raise run.longest",
+      count, points.size(), run.longest, run.start_up_turns, run.start_up, run.shortest_turns, run.shortest, worst);
 }
 
 std::vector<std::string> outside_ranges(const Workspace& workspace, const Point& point) {

@@ -35,6 +35,10 @@ std::string duration_text(double seconds);
 /// Problems at the ends of each parameter's and control's range, the others amid theirs.
 std::vector<std::string> problems_at_ends(const Workspace& workspace, const Point& middle);
 
+/// Of the points whose run ends, at run.longest, before it has measured what it must: none of them will train anything.
+/// One sentence of the worst of them; empty where there is none.
+std::string too_short(const Workspace& workspace, const std::vector<Point>& points);
+
 /// For each input of the point that the study's range does not cover, a sentence.
 std::vector<std::string> outside_ranges(const Workspace& workspace, const Point& point);
 

@@ -105,23 +105,37 @@ dem::Case case_at(const Workspace& workspace, const Point& point) {
   return result;
 }
 
-std::string settings_hash(const Workspace& workspace, const std::string& material) {
-  if (!workspace.cases.contains(material)) return "";  // another code's runs
+namespace {
+
+/// The material's DEM settings with every input at one value, whatever its range is: rows stay good when a range is
+/// moved. How long a run is decides its standard error, not what it estimates: rows of any length stay good.
+dem::Case settings_of(const Workspace& workspace, const std::string& material) {
   dem::Case settings = workspace.cases.at(material);
-  // What is an input stands at one value, whatever its range is: rows stay good when a range is moved.
   for (const Input& input : inputs_of(workspace.study)) {
     const dem::Target target = dem::target(input.target);
     dem::set_target(settings, input.target, std::clamp(1.0, target.low, target.high));
   }
-  // How long a run is decides its standard error, not what it estimates: rows of any length stay good.
   const dem::RunControl usual;
   settings.run.standard_error = usual.standard_error;
   settings.run.shortest = usual.shortest;
   settings.run.shortest_turns = usual.shortest_turns;
-  settings.run.start_up_turns = usual.start_up_turns;
   settings.run.longest = usual.longest;
   // Whether a run is stopped, not what it gives.
   settings.run.overlap_limit = usual.overlap_limit;
+  return settings;
+}
+
+}  // namespace
+
+std::string settings_hash(const Workspace& workspace, const std::string& material) {
+  if (!workspace.cases.contains(material)) return "";  // another code's runs
+  return data::hash_text(dem::settings_text(settings_of(workspace, material)));
+}
+
+std::string course_hash(const Workspace& workspace, const std::string& material) {
+  if (!workspace.cases.contains(material)) return "";
+  dem::Case settings = settings_of(workspace, material);
+  settings.run.start_up_turns = 0.25;  // any one value
   return data::hash_text(dem::settings_text(settings));
 }
 
@@ -130,7 +144,7 @@ std::uint64_t number_from(const std::string& text) {
 }
 
 std::uint64_t run_seed(const Workspace& workspace, const Point& point) {
-  std::string text = fmt::format("{} {}", workspace.study.seed, settings_hash(workspace, point.material));
+  std::string text = fmt::format("{} {}", workspace.study.seed, course_hash(workspace, point.material));
   for (const double value : point.inputs) text += fmt::format(" {:.12g}", value);
   return number_from(text);
 }

@@ -35,13 +35,18 @@ std::string describe(const data::Study& study, const Point& point);
 /// The material's DEM case with the point's values set by target.
 dem::Case case_at(const Workspace& workspace, const Point& point);
 
-/// Hash of every DEM setting of the material that is not an input: rows with another hash are stale.
+/// Hash of every DEM setting of the material that decides what a run estimates and is not an input: rows with another
+/// hash are stale.
 std::string settings_hash(const Workspace& workspace, const std::string& material);
+
+/// Hash of those that decide how the bed moves: run.start_up_turns, what is dropped of a run, is not among them. A run
+/// kept in a file goes on, with its seed, when another part of it is wanted.
+std::string course_hash(const Workspace& workspace, const std::string& material);
 
 /// A 64-bit number that depends on every character of the text.
 std::uint64_t number_from(const std::string& text);
 
-/// Seed of the point's random streams: a function of the study's seed, the point and the settings alone.
+/// Seed of the point's random streams: a function of the study's seed, the point and the course's settings alone.
 std::uint64_t run_seed(const Workspace& workspace, const Point& point);
 
 /// The row of the run table that a finished run makes. Outputs that the DEM does not give are an InputError (78).

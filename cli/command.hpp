@@ -58,6 +58,7 @@ Action add_plan(CLI::App& program);
 Action add_report(CLI::App& program);
 Action add_observe(CLI::App& program);
 Action add_render(CLI::App& program);
+Action add_export(CLI::App& program);
 Action add_help(CLI::App& program);
 
 }  // namespace cli

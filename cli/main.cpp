@@ -29,9 +29,9 @@ int run(int argc, char** argv) {
       "demcal help KEY");
 
   std::vector<std::pair<CLI::App*, cli::Action>> commands;
-  for (const auto add :
-       {cli::add_new, cli::add_check, cli::add_simulate, cli::add_design, cli::add_train, cli::add_fit, cli::add_sample,
-        cli::add_calibrate, cli::add_plan, cli::add_report, cli::add_observe, cli::add_render, cli::add_help}) {
+  for (const auto add : {cli::add_new, cli::add_check, cli::add_simulate, cli::add_design, cli::add_train, cli::add_fit,
+                         cli::add_sample, cli::add_calibrate, cli::add_plan, cli::add_report, cli::add_observe,
+                         cli::add_render, cli::add_export, cli::add_help}) {
     cli::Action action = add(program);
     commands.emplace_back(program.get_subcommands({}).back(), std::move(action));
   }

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "campaign/design.hpp"
+#include "campaign/foretell.hpp"
 #include "campaign/run_batch.hpp"
 #include "cli/command.hpp"
 #include "cli/train_posterior.hpp"
@@ -90,6 +91,8 @@ Action add_train(CLI::App& program) {
     else
       say(common, fmt::format("{} runs to make{}; the table has {}", campaign.points.size(),
                               campaign.continues ? ", left by an unfinished campaign" : "", before));
+    if (const std::string warning = too_short(workspace, campaign.points); !warning.empty())
+      say(common, "warning: " + warning);
 
     std::vector<PlannedRun> runs;
     for (const Point& point : campaign.points) runs.push_back({point, workspace.study.seed});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace dem {
 
@@ -18,6 +19,13 @@ bool drive_sign_corrected(const Case& c) {
   const Motion motion = motion_of(c.rig.stl->meshes[c.rig.stl->measured], c.rig.angular_velocity);
   const double at_last = programme_speed(motion, std::numeric_limits<double>::max()) > 0.0 ? -1.0 : 1.0;
   return drive_sign(motion, c.run) != at_last;
+}
+
+double turn_of(const Case& c) {
+  if (c.rig.stl && !c.rig.stl->meshes.empty())
+    return period(motion_of(c.rig.stl->meshes[c.rig.stl->measured], c.rig.angular_velocity));
+  const double speed = std::abs(c.rig.angular_velocity);
+  return speed > 0.0 ? 2.0 * std::numbers::pi / speed : 0.0;
 }
 
 }  // namespace dem

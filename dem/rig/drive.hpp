@@ -14,4 +14,7 @@ double drive_sign(const Motion& motion, const RunControl& run);
 /// rig are not those of before.
 bool drive_sign_corrected(const Case& c);
 
+/// Time of a turn of the measured body, 0 when it does not move [s].
+double turn_of(const Case& c);
+
 }  // namespace dem

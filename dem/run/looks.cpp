@@ -47,6 +47,12 @@ LookRule look_rule(const RunControl& run, double time, double turn) {
   return rule;
 }
 
+double turning_missed(const RunControl& run, double turn) {
+  const double wanted =
+      std::max(run.start_up, run.start_up_turns * turn) + std::max(run.shortest, run.shortest_turns * turn);
+  return wanted > run.longest * (1.0 + 1e-9) ? wanted : 0.0;
+}
+
 Measured measure(const LookRule& rule, const Series& series, std::size_t samples) {
   const std::size_t usable = samples - std::min(samples, rule.start_up);
   Measured found;

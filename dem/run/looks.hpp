@@ -42,6 +42,9 @@ struct LookRule {
 /// `time` is that of a sample, `turn` that of a turn of the tool, 0 when it has none [s].
 LookRule look_rule(const RunControl& run, double time, double turn);
 
+/// How much turning start-up and shortest measurement take together, where run.longest ends before; else 0 [s].
+double turning_missed(const RunControl& run, double turn);
+
 inline constexpr double drift_level = 0.05;
 
 /// Of this file's rule: raised when it comes to stop elsewhere, so that runs kept in files are judged again.

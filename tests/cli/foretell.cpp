@@ -107,9 +107,10 @@ TEST_CASE("a problem of the whole case stands at its key's line, and a value tha
 
 TEST_CASE("simulate says where the study has no runs, keeps another point's file, and goes back to it") {
   const Folder folder;
-  const std::vector<std::string> few{"--set", "run.start_up=\"0.004 s\"", "--set", "run.shortest=\"0.008 s\"",
-                                     "--set", "run.shortest_turns=0",     "--set", "run.longest=\"0.01 s\"",
-                                     "--set", "run.window=\"0.5 ms\"",    "--set", "run.sample_interval=\"0.1 ms\""};
+  const std::vector<std::string> few{"--set", "run.start_up=\"0.004 s\"",      "--set", "run.shortest=\"0.008 s\"",
+                                     "--set", "run.shortest_turns=0",          "--set", "run.start_up_turns=0",
+                                     "--set", "run.longest=\"0.01 s\"",        "--set", "run.window=\"0.5 ms\"",
+                                     "--set", "run.sample_interval=\"0.1 ms\""};
   const auto simulate = [&](const std::string& at) {
     std::vector<std::string> words{"simulate", quick, "--out", "out", "--json", "--at", at};
     words.insert(words.end(), few.begin(), few.end());
@@ -137,10 +138,16 @@ TEST_CASE("a torque that is exactly 0 is said, with status 2") {
   const Folder folder;
   // The mixer turns over powder that it reaches only with its lowest sphere's width: for so short a time it touches
   // none.
-  const auto outcome = folder.demcal({"simulate", quick, "--set", "rig.fill=130", "--set", "run.settle=\"0.02 s\"",
-                                      "--set", "run.start_up=\"1 ms\"", "--set", "run.shortest=\"2 ms\"", "--set",
-                                      "run.shortest_turns=0", "--set", "run.longest=\"4 ms\"", "--set",
-                                      "run.window=\"0.3 ms\"", "--set", "run.sample_interval=\"0.1 ms\""});
+  const auto outcome = folder.demcal({"simulate", quick,
+                                      "--set",    "rig.fill=130",
+                                      "--set",    "run.settle=\"0.02 s\"",
+                                      "--set",    "run.start_up=\"1 ms\"",
+                                      "--set",    "run.shortest=\"2 ms\"",
+                                      "--set",    "run.shortest_turns=0",
+                                      "--set",    "run.start_up_turns=0",
+                                      "--set",    "run.longest=\"4 ms\"",
+                                      "--set",    "run.window=\"0.3 ms\"",
+                                      "--set",    "run.sample_interval=\"0.1 ms\""});
   INFO(outcome.err);
   CHECK(outcome.status == 2);
   CHECK_THAT(outcome.err, Contains("warning: the torque is exactly 0: no sphere ever touched mixer"));

@@ -124,11 +124,15 @@ TEST_CASE("training runs are interrupted, go on where they were, and give the ta
 TEST_CASE("shipped rows of the steady flow and an observed point come out again", "[slow]") {
   const Folder folder;
   const fs::path study = fs::path(DEMCAL_SOURCE_DIR) / "data" / "developer";
-  std::vector<Row> rows;  // those from before runs were tested for it have no state
-  for (const Row& row : read_rows(study / "training.csv"))
-    if (row.field.count("state") > 0 && row.field.at("state") == "steady") rows.push_back(row);
-  for (std::size_t which = 1; which < rows.size(); which += std::max<std::size_t>(1, rows.size() - 2)) {
-    const Row& row = rows[which];
+  // The quickest run without attraction and the quickest with it. Rows from before runs were tested have no state.
+  std::vector<Row> quickest(2);
+  for (const Row& row : read_rows(study / "training.csv")) {
+    if (row.field.count("state") == 0 || row.field.at("state") != "steady") continue;
+    Row& best = quickest[row.number("hamaker") > 0.0 ? 1 : 0];
+    if (best.field.empty() || row.number("cpu_seconds") < best.number("cpu_seconds")) best = row;
+  }
+  for (const Row& row : quickest) {
+    REQUIRE_FALSE(row.field.empty());
     const nlohmann::json run = simulate(
         folder,
         {"--material", row.field.at("material"), "--at",
@@ -155,8 +159,8 @@ TEST_CASE("shipped rows of the steady flow and an observed point come out again"
 TEST_CASE("a run with another instruction set is recorded as such and gives the same") {
   const Folder folder;
   std::vector<std::string> few{"--set", "run.start_up=\"0.004 s\"", "--set", "run.shortest=\"0.008 s\"",
-                               "--set", "run.shortest_turns=0",     "--set", "run.longest=\"0.01 s\"",
-                               "--set", "run.window=\"0.6 ms\""};
+                               "--set", "run.shortest_turns=0",     "--set", "run.start_up_turns=0",
+                               "--set", "run.longest=\"0.01 s\"",   "--set", "run.window=\"0.6 ms\""};
   nlohmann::json widest = simulate(folder, few);
   few.insert(few.end(), {"--isa", "x86-64"});
   nlohmann::json least = simulate(folder, few);

@@ -347,6 +347,7 @@ TEST_CASE("names of a study lead to no file outside the results folder") {
                                       "--set",  "run.shortest=\"0.002 s\"",
                                       "--set",  "run.longest=\"0.004 s\"",
                                       "--set",  "run.shortest_turns=0",
+                                      "--set",  "run.start_up_turns=0",
                                       "--set",  "run.window=\"0.2 ms\"",
                                       "--set",  "run.sample_interval=\"0.1 ms\"",
                                       "--out",  "a/b/c/o"});

@@ -1,0 +1,113 @@
+// What `demcal export` writes for LIGGGHTS, and what it refuses; LIGGGHTS itself is run by tests/exchange/liggghts.py.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/cli/program.hpp"
+
+namespace fs = std::filesystem;
+using Catch::Contains;
+using test::Folder;
+
+namespace {
+
+const std::string quick = DEMCAL_SOURCE_DIR "/data/quick";
+
+}  // namespace
+
+TEST_CASE("an exported bed has the spheres, masses and pairs of the study's run") {
+  const Folder folder;
+  const auto outcome =
+      folder.demcal({"export", quick, "case", "--to", "liggghts", "--json", "--quiet", "--at", "hamaker=0,rpm=120"});
+  INFO(outcome.err);
+  REQUIRE(outcome.status == 0);
+  for (const std::string file : nlohmann::json::parse(outcome.out)["files"])
+    CHECK(fs::exists(folder.path / "case" / file));
+
+  std::istringstream bed(folder.read("case/bed.data"));
+  std::string line;
+  while (std::getline(bed, line) && line != "Atoms") {
+  }
+  int spheres = 0;
+  double mass = 0.0;
+  int largest_type = 0;
+  for (int id = 0, type = 0; bed >> id >> type;) {
+    double diameter = 0.0, density = 0.0, x = 0.0, y = 0.0, z = 0.0;
+    bed >> diameter >> density >> x >> y >> z;
+    mass += density * 3.14159265358979 / 6.0 * diameter * diameter * diameter;
+    largest_type = std::max(largest_type, type);
+    ++spheres;
+  }
+  CHECK(spheres == 420);
+  CHECK(largest_type == 3);  // its three sizes
+  const auto told = nlohmann::json::parse(folder.demcal({"check", quick, "--json", "--quiet"}).out);
+  CHECK(mass == Approx(told["materials"][0]["mass_kg"].get<double>()).epsilon(1e-9));
+
+  const std::string script = folder.read("case/in.liggghts");
+  CHECK_THAT(script, Contains("boundary p f f") && Contains("period 0.5\n") && Contains("v_torque file torque.dat"));
+  // Half a second's turn about +x: the mixer alone.
+  CHECK_THAT(script, Contains("move/mesh mesh m0 rotate") && !Contains("move/mesh mesh m1"));
+
+  // Written again over its own files; not over those of others.
+  CHECK(folder.demcal({"export", quick, "case", "--to", "liggghts", "--quiet", "--at", "hamaker=0"}).status == 0);
+  folder.write("case/bed.data", "mine\n");
+  CHECK(folder.demcal({"export", quick, "case", "--to", "liggghts", "--quiet", "--at", "hamaker=0"}).status == 73);
+  CHECK(folder.read("case/bed.data") == "mine\n");
+}
+
+TEST_CASE("what LIGGGHTS has not is refused with the nearest, and a folder without its answer says what to do") {
+  const Folder folder;
+  const auto refuse = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"export", quick, "case", "--to", "liggghts"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto outcome = folder.demcal(words);
+    CHECK(outcome.status == 78);
+    CHECK_FALSE(fs::exists(folder.path / "case" / "in.liggghts"));
+    return outcome.err;
+  };
+  CHECK_THAT(refuse({}), Contains("contact.cohesion: LIGGGHTS has no attraction") && Contains("cohesion sjkr"));
+  CHECK_THAT(
+      refuse({"--at", "hamaker=0", "--set", "contact.resistance=\"spring\"", "--set", "contact.rolling_friction=0.1"}),
+      Contains("contact.resistance: LIGGGHTS has no rolling spring") && Contains("rolling_friction cdt"));
+
+  CHECK_THAT(folder.demcal({"export", quick, "case"}).err, Contains("--to liggghts"));
+  REQUIRE(folder.demcal({"export", quick, "case", "--to", "liggghts", "--quiet", "--at", "hamaker=0"}).status == 0);
+  const auto early = folder.demcal({"export", quick, "case", "--collect"});
+  CHECK(early.status == 66);
+  CHECK_THAT(early.err, Contains("torque.dat"));
+  const auto changed = folder.demcal({"export", quick, "case", "--collect", "--set", "contact.restitution=0.5"});
+  CHECK(changed.status == 65);
+  CHECK_THAT(changed.err, Contains("other settings than the study has now"));
+}
+
+TEST_CASE("the mean that comes back is that of the samples after the start-up, and too few of them are refused") {
+  const Folder folder;
+  REQUIRE(folder.demcal({"export", quick, "case", "--to", "liggghts", "--quiet", "--at", "hamaker=0,rpm=300"}).status ==
+          0);
+  const auto write = [&](int samples) {
+    std::ostringstream torque, state;
+    torque << "# Time-averaged data for fix torque\n# TimeStep v_torque\n";
+    state << "# Time-averaged data for fix state\n# TimeStep c_coordination v_energy\n0 0 0\n";
+    // Twice the torque for the first turn, then noise about 2 uN m that does not repeat.
+    unsigned random = 1;
+    for (int k = 1; k <= samples; ++k) {
+      random = random * 1664525u + 1013904223u;
+      const double noise = static_cast<double>(random >> 8) / 16777216.0 - 0.5;
+      torque << 71 * k << " " << (k < 1000 ? 4e-6 : 2e-6) * (1.0 + 0.2 * noise) << "\n";
+      state << 71 * k << " " << 2.4 + 0.01 * noise << " " << 1e-7 * (1.0 + 0.1 * noise) << "\n";
+    }
+    folder.write("case/torque.dat", torque.str());
+    folder.write("case/state.dat", state.str());
+  };
+  write(500);
+  CHECK(folder.demcal({"export", quick, "case", "--collect", "--out", "back"}).status == 65);
+  CHECK_FALSE(fs::exists(folder.path / "back" / "liggghts.csv"));
+  write(6000);
+  const auto outcome = folder.demcal({"export", quick, "case", "--collect", "--out", "back", "--json"});
+  INFO(outcome.err);
+  CHECK(outcome.status == 0);
+  const auto json = nlohmann::json::parse(outcome.out);
+  CHECK(json["state"] == "steady");
+  CHECK(json["torque"]["mean"].get<double>() == Approx(2.0).epsilon(0.01));
+}
