@@ -80,8 +80,9 @@ Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, 
   };
   std::map<std::string, int> next;
   if (simulated) {
-    add_missing(read_design(workspace));
-    campaign.continues = !campaign.points.empty();
+    const std::vector<Point> left = read_design(workspace);
+    add_missing(left);
+    campaign.continues = !left.empty();  // also where all of them were made, and only their end was not written
     for (const data::Material& material : workspace.study.materials) {
       next[material.name] = material.runs.value_or(workspace.study.training.runs);
       add_missing(training_design(workspace, material.name, 0, next[material.name]));

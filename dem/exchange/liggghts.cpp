@@ -242,7 +242,7 @@ std::string script(const Case& c, const Derived& d, const BuiltRig& rig, const T
       torque_of(rig.sensor));
   for (std::size_t body = 0; body < meshes.size(); ++body) {
     const Motion& m = rig.bodies[body].motion;
-    const double speed = programme_speed(m, 0.0);
+    const double speed = m.programme.empty() ? 0.0 : m.programme.front().angular_velocity;
     if (speed == 0.0) continue;
     const double sign = speed > 0.0 ? 1.0 : -1.0;
     text += fmt::format(

@@ -109,6 +109,12 @@ Forecast of_machine(const Case& c, Forecast f) {
   if (fill.surface > rig.machine->partition_height)
     f.warnings.push_back(fmt::format(
         "the powder will stand above the partition, at {} mm: it passes over it everywhere", mm(fill.surface)));
+  // An auger carries its powder by a pitch a turn at most.
+  if (const double round = 2.0 * rig.machine->length / rig.pitch; c.run.start_up_turns < round)
+    f.warnings.push_back(fmt::format(
+        "the powder goes round this machine once in {:.3g} turns at best, and run.start_up_turns is {:g}: where the "
+        "bed lies is not yet what it will be (raise it)",
+        round, c.run.start_up_turns));
   return f;
 }
 

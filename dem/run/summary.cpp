@@ -91,8 +91,8 @@ std::string why_not(const Case& c, const Measured& m, double turns) {
     if (turns > 0.0 && turns < c.run.shortest_turns * (1.0 - 1e-6))
       return fmt::format("by run.longest, {:g} s, it measured {:.3g} turns, fewer than run.shortest_turns, {:g}",
                          c.run.longest, turns, c.run.shortest_turns);
-    return fmt::format("by run.longest, {:g} s, it measured {} samples, too few for how long they are correlated",
-                       c.run.longest, m.count);
+    return fmt::format("by run.longest, {:g} s, it measured {} sample{}, too few for how long they are correlated",
+                       c.run.longest, m.count, m.count == 1 ? "" : "s");
   }
   static constexpr const char* names[]{"torque", "coordination", "kinetic energy"};
   std::string drifting;

@@ -109,7 +109,7 @@ TEST_CASE("simulate says where the study has no runs, keeps another point's file
   const Folder folder;
   const std::vector<std::string> few{"--set", "run.start_up=\"0.004 s\"",      "--set", "run.shortest=\"0.008 s\"",
                                      "--set", "run.shortest_turns=0",          "--set", "run.start_up_turns=0",
-                                     "--set", "run.longest=\"0.01 s\"",        "--set", "run.window=\"0.5 ms\"",
+                                     "--set", "run.longest=\"0.012 s\"",       "--set", "run.window=\"0.5 ms\"",
                                      "--set", "run.sample_interval=\"0.1 ms\""};
   const auto simulate = [&](const std::string& at) {
     std::vector<std::string> words{"simulate", quick, "--out", "out", "--json", "--at", at};

@@ -282,6 +282,10 @@ TEST_CASE("a machine that cannot be is refused with its key, and a level that st
   dem::Case low = small_machine();
   low.rig.level = 0.15;
   const dem::Forecast f = dem::forecast(low, 1);
-  REQUIRE(f.warnings.size() >= 1);
-  CHECK_THAT(f.warnings.back(), Contains("below the openings' sill"));
+  REQUIRE(f.warnings.size() >= 2);
+  CHECK_THAT(f.warnings[f.warnings.size() - 2], Contains("below the openings' sill"));
+  CHECK_THAT(f.warnings.back(), Contains("goes round this machine once in 6 turns at best"));
+  low.rig.level = 0.5;
+  low.run.start_up_turns = 6.0;
+  CHECK(dem::forecast(low, 1).warnings.empty());
 }

@@ -1,0 +1,57 @@
+// Which runs are missing, and which are not added a second time.
+#include "campaign/design.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "campaign/run_point.hpp"
+#include "tests/campaign/fake_slurm.hpp"
+#include "tests/temporary.hpp"
+
+using namespace campaign;
+
+TEST_CASE("a campaign that was killed as its last run had ended is not begun a second time") {
+  const TemporaryFolder folder;
+  const Workspace workspace = test::small_study(folder.path("out"));
+  make_out(workspace, "runs");
+  data::RunTable table = data::empty_table(workspace.study);
+  const auto make = [&](const std::vector<Point>& points) {
+    for (const Point& point : points) {
+      test::write_result(workspace, {point, workspace.study.seed});
+      const auto result = ended_run(workspace, point, run_path(workspace, point));
+      REQUIRE(result);
+      table.rows.push_back(to_row(workspace, point, *result));
+    }
+  };
+  make(plan_campaign(workspace, table, 0).points);
+  CHECK(plan_campaign(workspace, table, 0).points.empty());
+
+  const Campaign more = plan_campaign(workspace, table, 3);
+  CHECK(more.points.size() == 3);
+  CHECK_FALSE(more.continues);
+  write_design(workspace, more.points);
+  make({more.points[0], more.points[1]});
+  const Campaign rest = plan_campaign(workspace, table, 3);
+  CHECK(rest.continues);
+  CHECK(rest.points.size() == 1);
+  make({more.points[2]});
+  CHECK(plan_campaign(workspace, table, 3).points.empty());  // the design still stands
+  write_design(workspace, {});
+  CHECK(plan_campaign(workspace, table, 3).points.size() == 3);
+}
+
+TEST_CASE(
+    "what is dropped of a run changes what its row means, and neither its course nor the file that it is kept in") {
+  const TemporaryFolder folder;
+  const Workspace workspace = test::small_study(folder.path("out"));
+  const Point point = test::planned(workspace, 1).front().point;
+  Workspace other = workspace;
+  for (auto& [material, c] : other.cases) c.run.start_up_turns += 1.0;
+  CHECK(settings_hash(other, point.material) != settings_hash(workspace, point.material));
+  CHECK(course_hash(other, point.material) == course_hash(workspace, point.material));
+  CHECK(run_seed(other, point) == run_seed(workspace, point));
+  CHECK(run_path(other, point) == run_path(workspace, point));
+  Workspace softer = workspace;
+  for (auto& [material, c] : softer.cases) c.contact.stiffness *= 0.5;
+  CHECK(course_hash(softer, point.material) != course_hash(workspace, point.material));
+  CHECK(run_path(softer, point) != run_path(workspace, point));
+}
