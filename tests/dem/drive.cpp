@@ -6,6 +6,7 @@
 TEST_CASE("a programme that ends at rest keeps the sign of its turning, and one that ends backwards is not fooled") {
   dem::RunControl run;
   run.start_up = 0.1;
+  run.start_up_turns = 0.25;
   run.longest = 1.0;
   dem::Motion m;
   const auto sign = [&](std::vector<dem::SpeedPoint> programme) {

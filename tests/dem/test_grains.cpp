@@ -161,6 +161,7 @@ TEST_CASE("a mixture runs to its torque, and its coordination and stress are tho
   c.run.overlap_limit = 0.3;  // of grains wedged between blade and trough
   c.run.settle = 0.04;
   c.run.start_up = 0.02;
+  c.run.start_up_turns = 0.25;
   c.run.shortest = c.run.longest = 0.06;
   c.run.window = 5e-3;
   const dem::RunResult result = dem::run(c, 2);

@@ -15,6 +15,7 @@ dem::Case pinched() {
   c.rig.angular_velocity = 60.0;
   c.run.settle = 0.02;
   c.run.start_up = 0.01;
+  c.run.start_up_turns = 0.25;
   c.run.shortest = c.run.longest = 0.05;
   c.run.window = 5e-3;
   return c;

@@ -96,6 +96,7 @@ TEST_CASE("a run file gives back the run, and its checkpoint goes on with the sa
   c.contact.stiffness = 400.0;
   c.run.settle = 0.02;
   c.run.start_up = 0.01;
+  c.run.start_up_turns = 0.25;
   c.run.shortest = 0.01;
   c.run.longest = 0.03;
   c.run.window = 2e-3;
@@ -140,6 +141,7 @@ TEST_CASE("a finished run goes on to more turns, or is cut to fewer, with the bi
   longer.contact.stiffness = 400.0;
   longer.run.settle = 0.02;
   longer.run.start_up = 0.01;
+  longer.run.start_up_turns = 0.25;
   longer.run.longest = 0.12;
   longer.run.window = 2e-3;
   dem::Case brief = longer;
@@ -178,6 +180,7 @@ TEST_CASE("every output's sample is the mean over its interval: ten short ones m
   fine.contact.stiffness = 400.0;
   fine.run.settle = 0.02;
   fine.run.start_up = 0.01;
+  fine.run.start_up_turns = 0.25;
   fine.run.longest = 0.05;
   fine.run.window = 4e-3;
   fine.run.time_step = 1e-5;
@@ -206,6 +209,7 @@ TEST_CASE("a run too short to be steady, or to know its error, says so in its re
   c.contact.stiffness = 400.0;
   c.run.settle = 0.02;
   c.run.start_up = 0.01;
+  c.run.start_up_turns = 0.25;
   c.run.longest = 0.03;
   c.run.window = 2e-3;
   const dem::RunResult run = dem::run(c, 6);

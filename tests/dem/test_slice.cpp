@@ -20,6 +20,7 @@ dem::Case small_case() {
   c.contact.friction = 0.4;
   c.run.settle = 0.03;
   c.run.start_up = 0.02;
+  c.run.start_up_turns = 0.25;
   c.run.shortest = 0.03;
   c.run.longest = 0.05;
   c.run.window = 3e-3;

@@ -55,6 +55,7 @@ diameter = "1.4 mm"
 [run]
 settle = "20 ms"
 start_up = "10 ms"
+start_up_turns = 0.25
 shortest = "10 ms"
 longest = "30 ms"
 window = "2 ms"
@@ -87,6 +88,7 @@ TEST_CASE("a slice given as STL runs like the slice itself: same steps, same tor
   c.run.overlap_limit = 0.5;  // the spheres are wider than the gap between blade and trough, and pinched there
   c.run.settle = 0.05;
   c.run.start_up = 0.05;
+  c.run.start_up_turns = 0.25;
   c.run.shortest = c.run.longest = 0.25;
   const dem::RunResult stl = dem::run(c, 1);
   REQUIRE(stl.status == dem::RunStatus::done);
