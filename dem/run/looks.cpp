@@ -40,9 +40,10 @@ std::string_view name_of(Steady state) {
 
 LookRule look_rule(const RunControl& run, double time, double turn) {
   LookRule rule;
-  rule.start_up = samples_in(std::max(run.start_up, run.start_up_turns * turn), time);
+  rule.longest = std::max<std::size_t>(1, samples_in(run.longest, time));
+  // Where the start-up does not end in time one sample is left, by which the run is too short.
+  rule.start_up = std::min(samples_in(std::max(run.start_up, run.start_up_turns * turn), time), rule.longest - 1);
   rule.shortest = std::max<std::size_t>(1, samples_in(std::max(run.shortest, run.shortest_turns * turn), time));
-  rule.longest = std::max(samples_in(run.longest, time), rule.start_up + 1);
   rule.standard_error = run.standard_error;
   return rule;
 }

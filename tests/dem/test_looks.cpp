@@ -154,6 +154,17 @@ TEST_CASE("turns and seconds count, whichever are more") {
   CHECK(slow.longest == 5000);
 }
 
+TEST_CASE("run.longest ends a run also where its start-up would take longer, which is foretold") {
+  dem::RunControl run;
+  run.start_up_turns = 1.5;
+  run.longest = 6.0;
+  const dem::LookRule rule = dem::look_rule(run, 1e-3, 6.0);  // 10 rpm: 9 s of start-up
+  CHECK(rule.longest == 6000);
+  CHECK(rule.start_up == 5999);
+  CHECK(dem::turning_missed(run, 6.0) == Approx(1.5 * 6.0 + 2.0 * 6.0));
+  CHECK(dem::turning_missed(run, 1.0) == 0.0);
+}
+
 TEST_CASE("a run that ends before its turns are done says so") {
   dem::LookRule brief = rule;
   brief.longest = 500;
