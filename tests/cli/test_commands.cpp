@@ -104,6 +104,7 @@ TEST_CASE("training runs are interrupted, go on where they were, and give the ta
                                            "--runs", "3",
                                            "--set",  "rig.fill=200",
                                            "--set",  "run.longest=\"0.4 s\"",
+                                           "--set",  "run.start_up_turns=0.25",
                                            "--set",  "training.unsteady=\"use\""};
   CHECK(whole.demcal(arguments).status == 0);
   CHECK(halted.demcal(arguments, "quick-results/runs").status == 75);

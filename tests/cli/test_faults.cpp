@@ -301,8 +301,8 @@ TEST_CASE("rows of other settings stay in the table, and runs of other points st
   const Folder folder;
   const auto train = [&](const std::string& restitution, const char* runs) {
     return folder.demcal({"train", DEMCAL_SOURCE_DIR "/data/quick", "--runs", runs, "--set", "rig.fill=200", "--set",
-                          "run.longest=\"0.4 s\"", "--set", "training.unsteady=\"use\"", "--set",
-                          "contact.restitution=" + restitution, "--out", "o"});
+                          "run.longest=\"0.4 s\"", "--set", "run.start_up_turns=0.25", "--set",
+                          "training.unsteady=\"use\"", "--set", "contact.restitution=" + restitution, "--out", "o"});
   };
   const auto rows = [&] {
     return data::open_hdf5((folder.path / "o/training.h5").string()).group("runs").read_texts("settings");
@@ -326,7 +326,8 @@ TEST_CASE("rows of other settings stay in the table, and runs of other points st
 
   const auto simulate = [&](const char* rpm) {
     return folder.demcal({"simulate", DEMCAL_SOURCE_DIR "/data/quick", "--set", "rig.fill=200", "--set",
-                          "run.longest=\"0.4 s\"", "--at", std::string("rpm=") + rpm, "--out", "s"});
+                          "run.longest=\"0.4 s\"", "--set", "run.start_up_turns=0.25", "--at",
+                          std::string("rpm=") + rpm, "--out", "s"});
   };
   simulate("100");
   const auto other = simulate("200");

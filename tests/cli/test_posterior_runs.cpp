@@ -126,6 +126,7 @@ TEST_CASE("training around the posterior is interrupted, goes on, and makes the 
                                            "--jobs",  "2",
                                            "--set",   "rig.fill=200",
                                            "--set",   "run.longest=\"0.4 s\"",
+                                           "--set",   "run.start_up_turns=0.25",
                                            "--set",   "training.unsteady=\"use\"",
                                            "--set",   "run.shortest=\"0.1 s\""};
   const auto all = whole.demcal(arguments);

@@ -32,7 +32,7 @@ def commands(data):
         "calibrate": ["calibrate", study, "--out", "out", "--no-scan"],
         "design": ["design", str(data / "quick"), "--out", "out", "--runs", "5"],
         "train": ["train", str(data / "quick"), "--out", "out", "--set", "training.runs=2", "--jobs", "1", "--set", "rig.fill=200", "--set",
-                  'run.longest="0.4 s"', "--set", 'training.unsteady="use"'],
+                  'run.longest="0.4 s"', "--set", "run.start_up_turns=0.25", "--set", 'training.unsteady="use"'],
         "new": ["new", "mixer"],
         "observe": (["observe", "log.csv"], log),
     }

@@ -41,7 +41,7 @@ def check(true, what):
 
 
 def settings(longest):
-    return ["--set", "rig.fill=200", "--set", f'run.longest="{longest} s"', "--set", 'training.unsteady="use"']
+    return ["--set", "rig.fill=200", "--set", f'run.longest="{longest} s"', "--set", "run.start_up_turns=0.25", "--set", 'training.unsteady="use"']
 
 
 def train(out, runs, longest, *more):
