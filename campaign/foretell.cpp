@@ -50,6 +50,7 @@ std::vector<std::string> problems_at_ends(const Workspace& workspace, const Poin
   std::vector<std::string> found;
   const std::vector<Input> inputs = inputs_of(workspace.study);
   const auto& fixed = workspace.study.material(middle.material).fixed;
+  const bool short_amid = !too_short(workspace, {middle}).empty();  // then `foretell` says so once
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     if (fixed.count(inputs[i].name) > 0) continue;
     for (const double end : {inputs[i].low, inputs[i].high}) {
@@ -60,7 +61,7 @@ std::vector<std::string> problems_at_ends(const Workspace& workspace, const Poin
       for (const data::Problem& p : dem::problems(case_at(workspace, point)))
         found.push_back(
             fmt::format("at {} {}: {}", inputs[i].name, with_unit(end, inputs[i].unit), data::describe({p})));
-      if (const std::string short_of = too_short(workspace, {point}); !short_of.empty())
+      if (const std::string short_of = too_short(workspace, {point}); !short_amid && !short_of.empty())
         found.push_back(fmt::format("at {} {}: {}", inputs[i].name, with_unit(end, inputs[i].unit), short_of));
     }
   }
@@ -83,9 +84,9 @@ std::string too_short(const Workspace& workspace, const std::vector<Point>& poin
   if (count == 0) return {};
   const dem::RunControl& run = of_worst.run;
   return fmt::format(
-      "{} of {} runs would be too short: run.longest, {:g} s, ends before the start-up ({:g} turns and {:g} s at "
-      "least) "
-      "and the measurement ({:g} turns and {:g} s at least) are done, which takes up to {:.3g} s: raise run.longest",
+      "{} of {} runs would be too short: run.longest, {:g} s, ends before the start-up "
+      "({:g} turns and {:g} s at least) and the measurement ({:g} turns and {:g} s at least) are done, which takes up "
+      "to {:.3g} s: raise run.longest",
       count, points.size(), run.longest, run.start_up_turns, run.start_up, run.shortest_turns, run.shortest, worst);
 }
 

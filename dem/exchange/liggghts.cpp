@@ -21,6 +21,16 @@ namespace dem {
 namespace {
 
 constexpr double steps_per_contact = 50.0;
+
+/// What `script` writes and `read_liggghts` counts by.
+struct Clock {
+  double step = 0.0;    ///< s
+  double sample = 1.0;  ///< steps
+
+  explicit Clock(const Case& c, const Derived& d)
+      : step(d.contact_duration / steps_per_contact), sample(steps(c.run.sample_interval)) {}
+  double steps(double time) const { return std::max(1.0, std::round(time / step)); }
+};
 constexpr std::size_t most_types = 40;  // of spheres: tables of properties have their square
 
 /// A kind of sphere or a body.
@@ -118,7 +128,7 @@ std::string properties(const Case& c, const Types& types, const BedCoefficients&
   } else {
     pairs("coefficientRestitution", [](const PairCoefficients& p, double) {
       const double z = p.damping_ratio;
-      return std::max(1e-3, std::exp(-std::numbers::pi * z / std::sqrt(std::max(1e-12, 1.0 - z * z))));
+      return std::exp(-std::numbers::pi * z / std::sqrt(std::max(1e-12, 1.0 - z * z)));
     });
     const double q = 1.0 - c.contact.poisson_ratio * c.contact.poisson_ratio;
     each("youngsModulus", [&](std::size_t t) {
@@ -208,17 +218,16 @@ std::string torque_of(const Sensor& sensor) {
 
 std::string script(const Case& c, const Derived& d, const BuiltRig& rig, const Types& types,
                    const std::vector<std::string>& meshes) {
-  const double step = d.contact_duration / steps_per_contact;
-  const auto steps = [&](double time) { return std::max(1.0, std::round(time / step)); };
+  const Clock clock(c, d);
   std::string text = fmt::format(
       "# {}\n# For LIGGGHTS 3.8: liggghts -in in.liggghts, or mpirun -np 2 liggghts -in in.liggghts\n"
       "# -var px N cuts the box into N parts along x; -var nset N and -var nrun N change the lengths.\n"
       "variable dt   index {:.12g}\nvariable nset index {:.0f}\nvariable nrun index {:.0f}\nvariable px   index *\n\n"
-      "atom_style granular\natom_modify map array\nboundary {} {} {}\nnewton off\ncommunicate single vel yes\nunits "
-      "si\n"
-      "processors ${{px}} * *\nread_data bed.data\nneighbor {:.6g} bin\nneigh_modify delay 0\n\n",
-      data::blank_mark(), step, steps(c.run.settle), steps(c.run.longest), rig.periodic[0] ? "p" : "f",
-      rig.periodic[1] ? "p" : "f", rig.periodic[2] ? "p" : "f", 0.25 * d.largest);
+      "atom_style granular\natom_modify map array\nboundary {} {} {}\nnewton off\n"
+      "communicate single vel yes\nunits si\nprocessors ${{px}} * *\nread_data bed.data\nneighbor {:.6g} "
+      "bin\nneigh_modify delay 0\n\n",
+      data::blank_mark(), clock.step, clock.steps(c.run.settle), clock.steps(c.run.longest),
+      rig.periodic[0] ? "p" : "f", rig.periodic[1] ? "p" : "f", rig.periodic[2] ? "p" : "f", 0.25 * d.largest);
   text += properties(c, types, d.bed);
   text += fmt::format("\npair_style gran {}{}\npair_coeff * *\ntimestep ${{dt}}\n", models(c), model_settings(c));
   std::string all;
@@ -234,9 +243,9 @@ std::string script(const Case& c, const Derived& d, const BuiltRig& rig, const T
   text += fmt::format("fix gravity all gravity {:.12g} vector {:.12g} {:.12g} {:.12g}\nfix move all nve/sphere\n",
                       c.run.gravity, down.x, down.y, down.z);
   text += fmt::format(
-      "\ncompute ke all ke\ncompute rotation all erotate/sphere\ncompute contacts all contact/atom\ncompute "
-      "coordination "
-      "all reduce ave c_contacts\nvariable torque equal {}\nvariable energy equal c_ke+c_rotation\n"
+      "\ncompute ke all ke\ncompute rotation all erotate/sphere\ncompute contacts all contact/atom\n"
+      "compute coordination all reduce ave c_contacts\nvariable torque equal {}\nvariable energy equal "
+      "c_ke+c_rotation\n"
       "thermo_style custom step atoms c_ke v_torque cpu\nthermo 10000\nthermo_modify lost error norm no\n\n"
       "# The bed comes to rest; then the tool turns.\nrun ${{nset}}\nreset_timestep 0\n",
       torque_of(rig.sensor));
@@ -252,11 +261,10 @@ std::string script(const Case& c, const Derived& d, const BuiltRig& rig, const T
         2.0 * std::numbers::pi / std::abs(speed));
   }
   // LIGGGHTS averages every step; what is per sphere is taken once a sample.
-  const double sample = steps(c.run.sample_interval);
   text += fmt::format(
       "fix torque all ave/time 1 {0:.0f} {0:.0f} v_torque file torque.dat\n"
       "fix state all ave/time {0:.0f} 1 {0:.0f} c_coordination v_energy file state.dat\nrun ${{nrun}}\n",
-      sample);
+      clock.sample);
   return text;
 }
 
@@ -367,8 +375,8 @@ Measured read_liggghts(const Case& c, const std::string& folder) {
   series.torque = first(torque[0]);
   series.coordination = first(state[0]);
   series.kinetic_energy = first(state[1]);
-  const double step = derive(c).contact_duration / steps_per_contact;
-  const double sample = std::max(1.0, std::round(c.run.sample_interval / step)) * step;
+  const Clock clock(c, derive(c));
+  const double sample = clock.sample * clock.step;
   for (std::size_t k = 1; k <= samples; ++k) series.time.push_back(static_cast<double>(k) * sample);
   return measure(look_rule(c.run, sample, turn_of(c)), series, samples);
 }

@@ -23,12 +23,12 @@ namespace dem {
 std::vector<data::Problem> not_in_liggghts(const Case& c);
 
 /// Writes in.liggghts, bed.data and NAME.stl of each mesh into the folder, which exists. Returns the files' names. Its
-/// time step is the shortest contact's duration / 50, as its integrator needs. The sampled torque [N m], coordination
-/// and kinetic energy [J] come into torque.dat. Throws data::InputError: 78 for what not_in_liggghts names and for
+/// time step is the shortest contact's duration / 50, as its integrator needs. LIGGGHTS then writes
+/// the sampled torque [N m] into torque.dat, coordination and kinetic energy [J] into state.dat. Throws data::InputError: 78 for what not_in_liggghts names and for
 /// random sizes, which would take a type each; 73 where a file cannot be written.
 std::vector<std::string> write_liggghts(const Case& c, std::uint64_t seed, const std::string& folder);
 
-/// The mean of a torque.dat and whether it is that of the steady flow, by the rule of our own runs (dem/run/looks.hpp).
+/// The mean of the torque in them and whether it is that of the steady flow, by the rule of our own runs (dem/run/looks.hpp).
 /// Throws data::InputError (65, 66) for a file that is missing, empty, or not what write_liggghts asked for.
 Measured read_liggghts(const Case& c, const std::string& folder);
 

@@ -152,3 +152,20 @@ TEST_CASE("a torque that is exactly 0 is said, with status 2") {
   CHECK(outcome.status == 2);
   CHECK_THAT(outcome.err, Contains("warning: the torque is exactly 0: no sphere ever touched mixer"));
 }
+
+TEST_CASE("runs that would be too short are foretold once: amid the ranges, or at the slow end alone") {
+  const Folder folder;
+  const auto told = [&](const std::string& longest) {
+    const std::string err = folder.demcal({"check", quick, "--set", "run.longest=\"" + longest + "\""}).err;
+    std::size_t count = 0;
+    for (std::size_t at = err.find("too short"); at != std::string::npos; at = err.find("too short", at + 1)) ++count;
+    return std::pair{count, err};
+  };
+  CHECK(told("4 s").first == 0);
+  const auto slow = told("2 s");  // 2.5 turns at 50 rpm take 3 s
+  CHECK(slow.first == 1);
+  CHECK_THAT(slow.second, Contains("at rpm 50 rpm") && Contains("takes up to 3 s"));
+  const auto always = told("0.5 s");
+  CHECK(always.first == 1);
+  CHECK_THAT(always.second, !Contains("at rpm 50 rpm"));
+}
