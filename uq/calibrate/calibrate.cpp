@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <set>
@@ -15,6 +16,8 @@
 
 namespace uq {
 namespace {
+
+constexpr int scan_scouts = 8000;  // of each measurement error that is tried, at most
 
 void add_findings(CalibrationReport& report, const std::vector<data::Finding>& findings) {
   for (const data::Finding& finding : findings) {
@@ -136,6 +139,8 @@ std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& 
     CalibrateOptions own = options;
     own.seed = data::child_seed(seed_of(study, options), data::Purpose::error_scan_seed,
                                 static_cast<std::uint32_t>(case_index << 8) + index++);
+    // Words alone are asked of it, and the case's own search has looked for maxima.
+    own.mixture.explore.scouts = std::min(scouts_for(sampled.model->dimension()), scan_scouts);
     const Eigen::VectorXd sd = error * truth.cwiseAbs();
     const Eigen::VectorXd y = truth + sd.cwiseProduct(normal);
     const auto model = std::make_shared<const CaseModel>(with_data(*sampled.model, y, sd.cwiseAbs2()));

@@ -245,10 +245,7 @@ void write_file(const std::string& path, const data::Study& study, const Sampled
     Group group(file, "log_likelihood");
     chain_dimensions(group, sampled.draws);
     point_dimensions(group, study, blocks);
-    Eigen::MatrixXd values(draws.rows(), model.row_count());
-    for (Eigen::Index i = 0; i < draws.rows(); ++i)
-      values.row(i) = pointwise_log_likelihood(model, draws.row(i).transpose()).transpose();
-    write_blocks(group, blocks, values, [](const Block&) { return data::Unit{}; });
+    write_blocks(group, blocks, pointwise_log_likelihoods(model, draws), [](const Block&) { return data::Unit{}; });
   }
   const Eigen::VectorXd y = observed(model), variance = observed_variance(model);
   Group measured(file, "observed_data"), constant(file, "constant_data");

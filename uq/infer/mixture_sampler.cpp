@@ -10,6 +10,7 @@
 #include "uq/infer/mixture_halves.hpp"
 #include "uq/infer/mixture_moves.hpp"
 #include "uq/infer/parallel.hpp"
+#include "uq/infer/unconstrained.hpp"
 
 namespace uq {
 namespace {
@@ -98,7 +99,9 @@ Moves moves_of(const Target& target, const Half& half, const MixtureSamplerOptio
 
 }  // namespace
 
-Draws sample_mixture(const Target& target, const MixtureSamplerOptions& given) {
+namespace {
+
+Draws sample_as_given(const Target& target, const MixtureSamplerOptions& given) {
   MixtureSamplerOptions options = given;
   options.explore.threads = options.threads;
   Draws result;
@@ -181,6 +184,20 @@ Draws sample_mixture(const Target& target, const MixtureSamplerOptions& given) {
     result.reason = doubt;
   }
   return result;
+}
+
+}  // namespace
+
+Draws sample_mixture(const Target& target, const MixtureSamplerOptions& options) {
+  if (target.dimension < options.unconstrained_from) return sample_as_given(target, options);
+  Draws draws = sample_as_given(unconstrained_target(target), options);
+  for (Chain& chain : draws.chains)
+    for (Eigen::Index i = 0; i < chain.x.rows(); ++i) {
+      const Eigen::VectorXd z = chain.x.row(i).transpose();
+      chain.log_density[i] -= log_jacobian(target, z);
+      chain.x.row(i) = from_unconstrained(target, z).transpose();
+    }
+  return draws;
 }
 
 }  // namespace uq

@@ -1,7 +1,9 @@
 #pragma once
 // The gradient-free sampler: independent chains that mix global proposals with local ones; made for two to six
 // dimensions and for ridges, bounds and several modes, where local moves alone give under a hundredth of an independent
-// draw each.
+// draw each. With more dimensions most of a proposal on a box would lie outside it (0.8^8 = 0.17), so bounded
+// coordinates are sampled on the whole line then (uq/infer/unconstrained.hpp), where a flat one is a logistic density,
+// which a Student-t fits.
 //
 // 1. Scouts are drawn from the reference (uq/infer/explore.hpp). Each chain tempers a population of its own from its share of
 //    them (uq/infer/tempering.hpp): over-dispersed starts.
@@ -40,6 +42,7 @@ struct MixtureSamplerOptions {
   double missing_mass = 2e-3;   ///< of the whole, that may stay unknown after the last search
   int search_rounds = 3;        ///< in which unknown maxima are added
   double apart_max = 4.5;       ///< standard errors by which the halves may differ
+  int unconstrained_from = 7;   ///< dimensions, from which bounded coordinates are mapped to the whole line
   TemperingOptions tempering = {};
   ProposalOptions proposal = {};
   ExploreOptions explore = {};

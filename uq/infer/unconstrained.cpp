@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace uq {
 namespace {
@@ -63,27 +64,68 @@ Eigen::VectorXd from_unconstrained(const Target& target, const Eigen::VectorXd& 
   return x;
 }
 
+double log_jacobian(const Target& target, const Eigen::VectorXd& z) {
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k < z.size(); ++k) switch (ends(target, k)) {
+      case Ends::both:
+        // log s + log(1 - s) = -|z| - 2 log(1 + exp(-|z|))
+        sum +=
+            std::log(target.upper[k] - target.lower[k]) - std::abs(z[k]) - 2.0 * std::log1p(std::exp(-std::abs(z[k])));
+        break;
+      case Ends::low:
+      case Ends::high:
+        sum += z[k];
+        break;
+      case Ends::none:
+        break;
+    }
+  return sum;
+}
+
 Evaluation unconstrained_density(const Target& target, const Eigen::VectorXd& z) {
   Evaluation found = target.log_density_gradient(from_unconstrained(target, z));
-  for (Eigen::Index k = 0; k < z.size(); ++k) {
-    switch (ends(target, k)) {
+  found.value += log_jacobian(target, z);
+  for (Eigen::Index k = 0; k < z.size(); ++k) switch (ends(target, k)) {
       case Ends::both: {
         const double width = target.upper[k] - target.lower[k], share = sigmoid(z[k]);
-        // log s + log(1 - s) = -|z| - 2 log(1 + exp(-|z|))
-        found.value += std::log(width) - std::abs(z[k]) - 2.0 * std::log1p(std::exp(-std::abs(z[k])));
         found.gradient[k] = found.gradient[k] * width * share * (1.0 - share) + 1.0 - 2.0 * share;
         break;
       }
       case Ends::low:
       case Ends::high:
-        found.value += z[k];
         found.gradient[k] = found.gradient[k] * (ends(target, k) == Ends::low ? 1.0 : -1.0) * std::exp(z[k]) + 1.0;
         break;
       case Ends::none:
         break;
     }
-  }
   return found;
+}
+
+Target unconstrained_target(const Target& target) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Target whole{.dimension = target.dimension,
+               .lower = Eigen::VectorXd::Constant(target.dimension, -infinity),
+               .upper = Eigen::VectorXd::Constant(target.dimension, infinity)};
+  whole.reference.draw = [target](data::RandomStream& random) {
+    return to_unconstrained(target, target.reference.draw(random));
+  };
+  whole.reference.log_density = [target](const Eigen::VectorXd& z) {
+    return target.reference.log_density(from_unconstrained(target, z)) + log_jacobian(target, z);
+  };
+  whole.log_density = [target](const Eigen::VectorXd& z) {
+    return target.log_density(from_unconstrained(target, z)) + log_jacobian(target, z);
+  };
+  if (target.log_density_gradient)
+    whole.log_density_gradient = [target](const Eigen::VectorXd& z) { return unconstrained_density(target, z); };
+  whole.log_densities = [target](const Eigen::MatrixXd& points) {
+    Eigen::MatrixXd x(points.rows(), points.cols());
+    for (Eigen::Index i = 0; i < points.rows(); ++i)
+      x.row(i) = from_unconstrained(target, points.row(i).transpose()).transpose();
+    Eigen::VectorXd values = evaluate(target, x);
+    for (Eigen::Index i = 0; i < points.rows(); ++i) values[i] += log_jacobian(target, points.row(i).transpose());
+    return values;
+  };
+  return whole;
 }
 
 }  // namespace uq

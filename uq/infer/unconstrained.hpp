@@ -15,4 +15,11 @@ Eigen::VectorXd from_unconstrained(const Target& target, const Eigen::VectorXd& 
 /// Log density of z and its gradient. Needs target.log_density_gradient.
 Evaluation unconstrained_density(const Target& target, const Eigen::VectorXd& z);
 
+/// Log of the map's Jacobian |dx/dz|.
+double log_jacobian(const Target& target, const Eigen::VectorXd& z);
+
+/// The density of z as a target of its own, for samplers that know nothing of the map. Its reference has a log density
+/// where the target's has one.
+Target unconstrained_target(const Target& target);
+
 }  // namespace uq

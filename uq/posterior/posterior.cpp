@@ -11,6 +11,7 @@ namespace uq {
 namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::infinity();
+constexpr Eigen::Index points_at_once = 32;  // predicted together
 
 /// Writes the rows of a group at u into `points`, from row `first` on.
 void place_rows(const RowGroup& group, const Eigen::VectorXd& u, Eigen::MatrixXd& points, Eigen::Index first) {
@@ -106,9 +107,12 @@ void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::Ve
   }
 }
 
-/// The prediction of a group's rows from that of its distinct rows.
-GroupLaw spread(const GroupLaw& distinct, const std::vector<Eigen::Index>& row) {
-  return {.mean = distinct.mean(row), .covariance = distinct.covariance(row, row), .noise = {}};
+/// The laws of all groups' distinct rows at u.
+std::vector<GroupLaw> laws_at(const CaseModel& full, const Eigen::VectorXd& u) {
+  const CaseModel& model = distinct_rows(full);
+  std::vector<GroupLaw> laws;
+  for (const RowGroup& group : model.groups) laws.push_back(group_law(model, group, u));
+  return laws;
 }
 
 }  // namespace
@@ -132,43 +136,81 @@ GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::V
   return law_of(group.measurement, model.slots, group.variance, group.emulator.predict(rows_at(group, u)), u);
 }
 
-StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u) {
+StackedPrediction stack(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u) {
   const Eigen::Index rows = model.row_count();
   StackedPrediction stacked{
       .mean = Eigen::VectorXd(rows), .covariance = Eigen::MatrixXd::Zero(rows, rows), .noise = Eigen::VectorXd(rows)};
   Eigen::Index first = 0;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
     const RowGroup& group = model.groups[g];
-    GroupLaw part = model.distinct
-                        ? spread(group_law(*model.distinct, model.distinct->groups[g], u), group.distinct_row)
-                        : group_law(model, group, u);
-    if (model.distinct) part.noise = noise_of(group.measurement, model.slots, group.variance, u);
-    const Eigen::Index count = part.mean.size();
-    stacked.mean.segment(first, count) = part.mean;
-    stacked.covariance.block(first, first, count, count) = part.covariance;
-    stacked.noise.segment(first, count) = part.noise;
+    const Eigen::Index count = group.observed.size();
+    if (model.distinct) {
+      stacked.mean.segment(first, count) = laws[g].mean(group.distinct_row);
+      stacked.covariance.block(first, first, count, count) = laws[g].covariance(group.distinct_row, group.distinct_row);
+    } else {
+      stacked.mean.segment(first, count) = laws[g].mean;
+      stacked.covariance.block(first, first, count, count) = laws[g].covariance;
+    }
+    stacked.noise.segment(first, count) = noise_of(group.measurement, model.slots, group.variance, u);
     first += count;
   }
   return stacked;
 }
 
-RowMoments row_moments(const CaseModel& model, const Eigen::VectorXd& u) {
-  const Eigen::Index rows = model.row_count();
-  RowMoments moments{.mean = Eigen::VectorXd(rows), .variance = Eigen::VectorXd(rows)};
-  const CaseModel& distinct = distinct_rows(model);
+StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u) {
+  return stack(model, laws_at(model, u), u);
+}
+
+RowMoments moments(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u) {
+  RowMoments found{.mean = Eigen::VectorXd(model.row_count()), .variance = Eigen::VectorXd(model.row_count())};
   Eigen::Index first = 0;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
     const RowGroup& group = model.groups[g];
-    const GroupLaw law = group_law(distinct, distinct.groups[g], u);
     const Eigen::VectorXd noise = noise_of(group.measurement, model.slots, group.variance, u);
     for (Eigen::Index i = 0; i < noise.size(); ++i) {
       const Eigen::Index at = model.distinct ? group.distinct_row[static_cast<std::size_t>(i)] : i;
-      moments.mean[first + i] = law.mean[at];
-      moments.variance[first + i] = law.covariance(at, at) + noise[i];
+      found.mean[first + i] = laws[g].mean[at];
+      found.variance[first + i] = laws[g].covariance(at, at) + noise[i];
     }
     first += noise.size();
   }
-  return moments;
+  return found;
+}
+
+RowMoments row_moments(const CaseModel& model, const Eigen::VectorXd& u) {
+  return moments(model, laws_at(model, u), u);
+}
+
+std::vector<surrogate::Prediction> predictions(const RowGroup& group, const Eigen::MatrixXd& points) {
+  std::vector<surrogate::Prediction> found;
+  if (!group.emulator.predict_batch) {
+    for (Eigen::Index i = 0; i < points.rows(); ++i)
+      found.push_back(group.emulator.predict(rows_at(group, points.row(i).transpose())));
+    return found;
+  }
+  const Eigen::Index rows = rows_asked(group);
+  Eigen::MatrixXd stacked(points.rows() * rows, group.base.cols());
+  for (Eigen::Index i = 0; i < points.rows(); ++i) place_rows(group, points.row(i).transpose(), stacked, i * rows);
+  return group.emulator.predict_batch(stacked, static_cast<int>(rows));
+}
+
+void for_each_law(const CaseModel& full, const Eigen::MatrixXd& points,
+                  const std::function<void(Eigen::Index point, const std::vector<GroupLaw>& laws)>& use) {
+  const CaseModel& model = distinct_rows(full);
+  for (Eigen::Index from = 0; from < points.rows(); from += points_at_once) {
+    const Eigen::MatrixXd part = points.middleRows(from, std::min(points_at_once, points.rows() - from));
+    std::vector<std::vector<surrogate::Prediction>> found;
+    for (const RowGroup& group : model.groups) found.push_back(predictions(group, part));
+    for (Eigen::Index i = 0; i < part.rows(); ++i) {
+      std::vector<GroupLaw> laws;
+      for (std::size_t g = 0; g < model.groups.size(); ++g) {
+        const RowGroup& group = model.groups[g];
+        laws.push_back(law_of(group.measurement, model.slots, group.variance, found[g][static_cast<std::size_t>(i)],
+                              part.row(i).transpose()));
+      }
+      use(from + i, laws);
+    }
+  }
 }
 
 double log_prior(const CaseModel& model, const Eigen::VectorXd& u) {
@@ -210,34 +252,25 @@ Evaluation log_likelihood_gradient(const CaseModel& full, const Eigen::VectorXd&
 Eigen::VectorXd log_likelihoods(const CaseModel& full, const Eigen::MatrixXd& points) {
   const CaseModel& model = distinct_rows(full);
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(points.rows());
-  for (const auto& group : model.groups) {
-    const Eigen::Index rows = rows_asked(group);
-    if (!group.emulator.predict_batch) {
-      for (Eigen::Index i = 0; i < points.rows(); ++i) {
-        const Eigen::VectorXd u = points.row(i).transpose();
-        sums[i] += log_group_density(model, group, group.emulator.predict(rows_at(group, u)), u);
-      }
-      continue;
+  for (const auto& group : model.groups)
+    for (Eigen::Index from = 0; from < points.rows(); from += points_at_once) {
+      const Eigen::MatrixXd part = points.middleRows(from, std::min(points_at_once, points.rows() - from));
+      const std::vector<surrogate::Prediction> found = predictions(group, part);
+      for (Eigen::Index i = 0; i < part.rows(); ++i)
+        sums[from + i] += log_group_density(model, group, found[static_cast<std::size_t>(i)], part.row(i).transpose());
     }
-    constexpr Eigen::Index block = 32;
-    for (Eigen::Index from = 0; from < points.rows(); from += block) {
-      const Eigen::Index count = std::min(block, points.rows() - from);
-      Eigen::MatrixXd stacked(count * rows, group.base.cols());
-      for (Eigen::Index i = 0; i < count; ++i) place_rows(group, points.row(from + i).transpose(), stacked, i * rows);
-      const std::vector<surrogate::Prediction> found = group.emulator.predict_batch(stacked, static_cast<int>(rows));
-      for (Eigen::Index i = 0; i < count; ++i)
-        sums[from + i] +=
-            log_group_density(model, group, found[static_cast<std::size_t>(i)], points.row(from + i).transpose());
-    }
-  }
   return sums;
 }
 
-Eigen::VectorXd pointwise_log_likelihood(const CaseModel& model, const Eigen::VectorXd& u) {
-  const RowMoments moments = row_moments(model, u);
-  const Eigen::ArrayXd variance = moments.variance.array();
-  const Eigen::ArrayXd residual = (observed(model) - moments.mean).array();
-  return -0.5 * (residual.square() / variance + (2.0 * std::numbers::pi * variance).log());
+Eigen::MatrixXd pointwise_log_likelihoods(const CaseModel& model, const Eigen::MatrixXd& points) {
+  Eigen::MatrixXd values(points.rows(), model.row_count());
+  const Eigen::ArrayXd y = observed(model).array();
+  for_each_law(model, points, [&](Eigen::Index point, const std::vector<GroupLaw>& laws) {
+    const RowMoments found = moments(model, laws, points.row(point).transpose());
+    const Eigen::ArrayXd variance = found.variance.array(), residual = y - found.mean.array();
+    values.row(point) = -0.5 * (residual.square() / variance + (2.0 * std::numbers::pi * variance).log()).transpose();
+  });
+  return values;
 }
 
 double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& y, double noise_factor) {
@@ -249,12 +282,16 @@ double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& y
   return residual.squaredNorm();
 }
 
-double chi_squared(const CaseModel& full, const Eigen::VectorXd& u) {
+double chi_squared(const CaseModel& full, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u) {
   const CaseModel& model = distinct_rows(full);
-  double sum = chi_squared(predict(model, u), observed(model));
+  double sum = chi_squared(stack(model, laws, u), observed(model));
   for (const RowGroup& group : model.groups)
     for (const Repeats& repeats : group.repeats) sum += scatter_of(model, repeats, u).chi_squared;
   return sum;
+}
+
+double chi_squared(const CaseModel& model, const Eigen::VectorXd& u) {
+  return chi_squared(model, laws_at(model, u), u);
 }
 
 Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u) {

@@ -8,7 +8,9 @@
 // the next, and counting it as independent would make posteriors too narrow. Gradient, with r = y - mean, a = S^-1 r:
 //   dlogL/dk = a' dmean/dk + 1/2 (a' dS/dk a - tr(S^-1 dS/dk))
 #include <Eigen/Dense>
+#include <functional>
 #include <memory>
+#include <vector>
 
 #include "uq/infer/log_density.hpp"
 #include "uq/posterior/case_model.hpp"
@@ -29,11 +31,14 @@ struct StackedPrediction {
   }
 };
 StackedPrediction predict(const CaseModel& model, const Eigen::VectorXd& u);
+/// From the laws of the groups' distinct rows at u, as for_each_law gives them.
+StackedPrediction stack(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u);
 /// Mean and variance, noise included, of each row alone.
 struct RowMoments {
   Eigen::VectorXd mean, variance;
 };
 RowMoments row_moments(const CaseModel& model, const Eigen::VectorXd& u);
+RowMoments moments(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u);
 
 /// Rows at which a group's emulator is asked: the measured ones and their shifted copies.
 Eigen::Index rows_asked(const RowGroup& group);
@@ -41,8 +46,13 @@ Eigen::MatrixXd rows_at(const RowGroup& group, const Eigen::VectorXd& u);
 /// Of the group's numbers, given the emulator's prediction at those rows.
 double log_group_density(const CaseModel& model, const RowGroup& group, const surrogate::Prediction& prediction,
                          const Eigen::VectorXd& u);
+/// The emulator's predictions of a group's rows at each of `points`: many at once are several times cheaper.
+std::vector<surrogate::Prediction> predictions(const RowGroup& group, const Eigen::MatrixXd& points);
 /// Of one group's rows.
 GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u);
+/// Calls `use` for each of `points` in turn, with the law of each group's distinct rows.
+void for_each_law(const CaseModel& model, const Eigen::MatrixXd& points,
+                  const std::function<void(Eigen::Index point, const std::vector<GroupLaw>& laws)>& use);
 
 double log_prior(const CaseModel& model, const Eigen::VectorXd& u);
 Evaluation log_prior_gradient(const CaseModel& model, const Eigen::VectorXd& u);
@@ -52,14 +62,15 @@ Evaluation log_likelihood_gradient(const CaseModel& model, const Eigen::VectorXd
 /// Of each row of `points`.
 Eigen::VectorXd log_likelihoods(const CaseModel& model, const Eigen::MatrixXd& points);
 
-/// Log likelihood of each measured number on its own (its marginal), in the order of the rows.
-Eigen::VectorXd pointwise_log_likelihood(const CaseModel& model, const Eigen::VectorXd& u);
+/// Log likelihood of each measured number on its own (its marginal): points x rows.
+Eigen::MatrixXd pointwise_log_likelihoods(const CaseModel& model, const Eigen::MatrixXd& points);
 
 /// (y - mean)' S^-1 (y - mean) of other data y, with the noise's variance times `noise_factor`.
 double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& y, double noise_factor = 1.0);
 
 /// Of the case's own data at u.
 double chi_squared(const CaseModel& model, const Eigen::VectorXd& u);
+double chi_squared(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u);
 
 /// What is known beside the data of the unknowns that no profile should leave free: log priors of the nuisances (a
 /// calibration certificate is a measurement, too), and the law of the unknowns that were cut from another case.

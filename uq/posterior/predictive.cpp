@@ -113,8 +113,9 @@ FitCheck check_fit(const CaseModel& model, const Eigen::MatrixXd& draws, const E
   const double n = count;
   const Eigen::MatrixXd used = thinned(draws, predictive_draws);
   FitCheck check;
-  for (Eigen::Index i = 0; i < used.rows(); ++i)
-    check.predictive_p += gsl_cdf_chisq_Q(chi_squared(model, used.row(i).transpose()), n);
+  for_each_law(model, used, [&](Eigen::Index i, const std::vector<GroupLaw>& laws) {
+    check.predictive_p += gsl_cdf_chisq_Q(chi_squared(model, laws, used.row(i).transpose()), n);
+  });
   check.predictive_p /= static_cast<double>(used.rows());
   check.chi2 = chi_squared(model, best);
   check.dof = std::max(1, count - fisher_spectrum(model, best).known_directions);
@@ -124,18 +125,16 @@ FitCheck check_fit(const CaseModel& model, const Eigen::MatrixXd& draws, const E
 
 Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws, std::uint64_t seed) {
   Eigen::MatrixXd made(draws.rows(), model.row_count());
-  const CaseModel& distinct = distinct_rows(model);
   data::RandomStream random(seed, data::Purpose::posterior_predictive);
-  for (Eigen::Index i = 0; i < draws.rows(); ++i) {
+  for_each_law(model, draws, [&](Eigen::Index i, const std::vector<GroupLaw>& laws) {
     const Eigen::VectorXd u = draws.row(i).transpose();
     Eigen::Index first = 0;
-    for (std::size_t g = 0; g < model.groups.size(); ++g) {
+    for (std::size_t g = 0; g < laws.size(); ++g) {
       // What rows of equal settings share, then each row's own noise.
       const RowGroup& group = model.groups[g];
-      const GroupLaw law = group_law(distinct, distinct.groups[g], u);
-      Eigen::VectorXd shared(law.mean.size());
+      Eigen::VectorXd shared(laws[g].mean.size());
       for (double& value : shared) value = random.normal();
-      shared = law.mean + semidefinite_root(law.covariance, "replicate data") * shared;
+      shared = laws[g].mean + semidefinite_root(laws[g].covariance, "replicate data") * shared;
       const Eigen::VectorXd noise = noise_of(group.measurement, model.slots, group.variance, u);
       for (Eigen::Index row = 0; row < noise.size(); ++row) {
         const Eigen::Index at = model.distinct ? group.distinct_row[static_cast<std::size_t>(row)] : row;
@@ -143,14 +142,16 @@ Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws,
       }
       first += noise.size();
     }
-  }
+  });
   return made;
 }
 
 Eigen::VectorXd mean_prediction(const CaseModel& model, const Eigen::MatrixXd& draws) {
   const Eigen::MatrixXd used = thinned(draws, predictive_draws);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(model.row_count());
-  for (Eigen::Index i = 0; i < used.rows(); ++i) sum += row_moments(model, used.row(i).transpose()).mean;
+  for_each_law(model, used, [&](Eigen::Index i, const std::vector<GroupLaw>& laws) {
+    sum += moments(model, laws, used.row(i).transpose()).mean;
+  });
   return sum / static_cast<double>(used.rows());
 }
 
@@ -202,6 +203,7 @@ void check_priors(const data::Study& study, const CaseModel& model) {
   const Eigen::VectorXd y = observed(model);
   const std::vector<RowOrigin> from = origins(model);
   data::RandomStream random(study.seed, data::Purpose::prior_predictive);
+  const Eigen::Index d = model.dimension();
   // Smallest distance of each measured number from the predictions, in sd, and which side they lie on.
   struct Reach {
     Eigen::VectorXd nearest;
@@ -211,17 +213,18 @@ void check_priors(const data::Study& study, const CaseModel& model) {
     Reach found{.nearest = Eigen::VectorXd::Constant(y.size(), 1e300),
                 .lowest = Eigen::VectorXd::Constant(y.size(), 1e300),
                 .highest = Eigen::VectorXd::Constant(y.size(), -1e300)};
-    for (int i = 0; i < count; ++i) {
-      const RowMoments prediction = row_moments(model, draw());
+    Eigen::MatrixXd draws(count, d);
+    for (int i = 0; i < count; ++i) draws.row(i) = draw().transpose();
+    for_each_law(model, draws, [&](Eigen::Index i, const std::vector<GroupLaw>& laws) {
+      const RowMoments prediction = moments(model, laws, draws.row(i).transpose());
       const Eigen::VectorXd sd = prediction.variance.cwiseSqrt();
       const Eigen::VectorXd away = (y - prediction.mean).cwiseQuotient(sd);
       found.nearest = found.nearest.cwiseMin(away.cwiseAbs());
       found.lowest = found.lowest.cwiseMin(prediction.mean);
       found.highest = found.highest.cwiseMax(prediction.mean);
-    }
+    });
     return found;
   };
-  const Eigen::Index d = model.dimension();
   const Reach prior = reach(400, [&] {
     Eigen::VectorXd u(d);
     for (Eigen::Index s = 0; s < d; ++s) u[s] = model.slots[static_cast<std::size_t>(s)].prior.draw(random);

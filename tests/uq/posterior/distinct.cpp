@@ -73,7 +73,8 @@ void is_the_same(const CaseModel& plain) {
     const Evaluation with = log_likelihood_gradient(pooled, u), without = log_likelihood_gradient(plain, u);
     CHECK(with.value == Approx(without.value).epsilon(1e-9));
     CHECK((with.gradient - without.gradient).norm() < 1e-4 * (1.0 + without.gradient.norm()));
-    CHECK((pointwise_log_likelihood(pooled, u) - pointwise_log_likelihood(plain, u)).norm() < 1e-9);
+    CHECK((pointwise_log_likelihoods(pooled, u.transpose()) - pointwise_log_likelihoods(plain, u.transpose())).norm() <
+          1e-9);
     CHECK((predict(pooled, u).total() - predict(plain, u).total()).norm() < 1e-12);
     CHECK((predict(pooled, u).mean - predict(plain, u).mean).norm() < 1e-12);
     CHECK((fisher_spectrum(pooled, u).eigenvalues - fisher_spectrum(plain, u).eigenvalues).norm() <
