@@ -124,7 +124,6 @@ TEST_CASE("training around the posterior is interrupted, goes on, and makes the 
                                            "--until", "posterior",
                                            "--runs",  "18",
                                            "--jobs",  "2",
-                                           "--set",   "rig.fill=200",
                                            "--set",   "run.longest=\"0.4 s\"",
                                            "--set",   "run.start_up_turns=0.25",
                                            "--set",   "training.unsteady=\"use\"",
