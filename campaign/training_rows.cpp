@@ -91,8 +91,9 @@ TrainingRows training_rows(const Workspace& workspace) {
 
 void require_rows(const Workspace& workspace, const TrainingRows& rows, const std::string& study) {
   if (data::used_rows(rows.table) > 0) return;
+  const std::string why = rows.notes.empty() ? "" : ": " + rows.notes.front();
   throw data::InputError(data::ExitStatus::missing_input,
-                         {workspace.study.file, "has no usable training runs",
+                         {workspace.study.file, "has no usable training runs" + why,
                           !workspace.cases.empty() ? "make them: demcal train " + study
                           : workspace.study.training.table.empty()
                               ? "name a table of runs under [training] table"

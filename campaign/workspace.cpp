@@ -78,6 +78,12 @@ Workspace open_workspace(const StudyOptions& options) {
                         "choose one of: " + dem::output_names());
         continue;
       }
+      const std::string& unit = dem::output_unit(output.name);
+      if (outputs.child(output.name).has("unit") && !data::convertible(output.unit.symbol, unit))
+        outputs.child(output.name)
+            .problem("unit",
+                     fmt::format("'{}' is no unit of {}, which is in {}", output.unit.symbol, output.name, unit),
+                     "choose a unit that converts to it");
       for (const auto& [material, of] : workspace.cases) {
         const std::string why = dem::no_output_because(of, output.name);
         if (why.empty()) continue;

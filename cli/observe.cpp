@@ -313,7 +313,7 @@ Action add_observe(CLI::App& program) {
   command->add_option("--control", options->control, "name of the speed in the study (default: rpm)");
   command->add_option("--output", options->output, "name of the torque in the study (default: torque)");
   command->add_option("--idle", options->idle, "torque of the empty machine at any speed, in the log's unit; taken off")
-      ->check(number_in(-1e30, 1e30, "a finite number"));
+      ->check(number_in(-1e30, 1e30, "a finite number (a log of the empty machine is given by --idle-log)"));
   command->add_option("--idle-error", options->idle_error, "its standard error, common to all rows")
       ->check(number_in(0.0, 1e30, "a number from 0"));
   command->add_option("--idle-log", options->idle_log, "a log of the empty machine at the same speeds, instead");

@@ -107,7 +107,7 @@ FileProblems read_observation_sets(const Section& root, Study& study) {
     if (file.empty() && section.has("file"))
       section.problem("file", "is empty", "name the CSV with the measured points");
     std::error_code unseen;
-    if (!file.empty() && !fs::is_regular_file(set.file, unseen)) {
+    if (!file.empty() && !fs::exists(set.file, unseen)) {
       add(ExitStatus::missing_input,
           {{section.place("file"), fmt::format("there is no file '{}'", shown_path(set.file)),
             "paths start at the study's folder"}});

@@ -55,7 +55,11 @@ void read_fill(const Section& s, Case& c) {
   const bool negative = text ? written.find('-') == written.find_first_not_of(" \t") && !written.empty() : fill > 0.0;
   if (std::isnan(fill)) return;
   if (negative) {
-    s.problem("fill", "is negative", "give a number of spheres, or a mass with its unit, above 0");
+    s.problem("fill", fmt::format("is {}", text ? written : fmt::format("{:g}", -fill)),
+              "give a number of spheres, or a mass with its unit, above 0");
+  } else if (fill < 0.0 && std::round(fill) != fill) {
+    s.problem("fill", fmt::format("is {:g}, and a number of spheres is whole", -fill),
+              "give a whole number, or a mass with its unit");
   } else if (fill < 0.0) {
     c.rig.fill = -fill;
     c.rig.fill_mass.reset();

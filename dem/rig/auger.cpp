@@ -83,12 +83,16 @@ std::vector<data::Problem> auger_problems(const Case& c) {
   std::vector<data::Problem> found;
   const Rig& rig = c.rig;
   const double size = summarise_bed(c).largest;
-  if (!(rig.shaft_radius < rig.blade_radius && rig.blade_radius < rig.trough_radius)) {
-    found.push_back({"rig",
-                     fmt::format("has radii of shaft {:g}, blade {:g} and trough {:g} m, which must grow in this order",
-                                 rig.shaft_radius, rig.blade_radius, rig.trough_radius),
-                     "correct the radii"});
-  }
+  if (!(rig.shaft_radius < rig.blade_radius))
+    found.push_back({"rig.shaft_radius",
+                     fmt::format("is {:g} m, but the blade reaches from the shaft to rig.blade_radius, {:g} m",
+                                 rig.shaft_radius, rig.blade_radius),
+                     "make the shaft thinner, or the blade wider"});
+  if (!(rig.blade_radius < rig.trough_radius))
+    found.push_back({"rig.blade_radius",
+                     fmt::format("is {:g} m, but the blade turns inside rig.trough_radius, {:g} m", rig.blade_radius,
+                                 rig.trough_radius),
+                     "make the blade narrower, or the trough wider"});
   if (!(rig.blade_thickness < rig.pitch - 2.0 * size)) {
     found.push_back({"rig.blade_thickness", "leaves no room for two spheres between the flights",
                      "make the blade thinner or the pitch longer"});

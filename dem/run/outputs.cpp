@@ -110,6 +110,10 @@ bool has_output(std::string_view name) {
   return std::any_of(outputs().begin(), outputs().end(), [&](const Output& o) { return o.name == name; });
 }
 
+const std::string& output_unit(std::string_view name) {
+  return std::find_if(outputs().begin(), outputs().end(), [&](const Output& o) { return o.name == name; })->unit;
+}
+
 std::string no_output_because(const Case& c, std::string_view name) {
   const auto& seen = camera_outputs();
   const Rig& rig = c.rig;

@@ -135,7 +135,7 @@ TEST_CASE("options that are no numbers are refused") {
     const auto outcome =
         folder.demcal({"check", DEMCAL_SOURCE_DIR "/data/quick", "--set", std::string("rig.fill=") + fill});
     CHECK(outcome.status == 78);
-    CHECK_THAT(outcome.err, Contains("is negative"));
+    CHECK_THAT(outcome.err, Contains("rig.fill: is -5"));
   }
 }
 
