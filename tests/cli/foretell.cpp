@@ -86,7 +86,7 @@ TEST_CASE("a slice's nonsense is refused or warned of") {
   const auto narrow = check(folder, quick, {"rig.trough_radius=\"4 mm\"", "rig.fill=200"});
   INFO(narrow.err);
   CHECK(narrow.status == 2);
-  CHECK_THAT(narrow.err, Contains("the gap between blade and trough is 0.4 mm, 0.45 of the largest sphere"));
+  CHECK_THAT(narrow.err, Contains("the gap between blade and trough is 0.4 mm, 0.43 of the largest sphere"));
   const auto light = check(folder, quick, {"materials.powder.density=\"2.5 kg/m3\""});
   CHECK(light.status == 2);
   CHECK_THAT(light.err, Contains("2.5 g/cm3"));
