@@ -92,6 +92,14 @@ inline uq::Target on_box(const uq::LogDensity auto& density, const VectorXd& low
   return uq::make_target(density, low, high, uq::uniform_reference(low, high));
 }
 
+/// The sum of the first two coordinates is known to be 1, of the others nothing.
+struct KnownSum {
+  int d = 8;
+  double sd = 0.05;
+  int dimension() const { return d; }
+  double log_density(const VectorXd& x) const { return -0.5 * std::pow((x[0] + x[1] - 1.0) / sd, 2); }
+};
+
 /// Modes at the centres, each coordinate of which is one number, on the unit cube.
 inline Adversary normals(const std::string& name, const Normals& density) {
   const auto d = static_cast<Eigen::Index>(density.dimension());
@@ -196,6 +204,28 @@ inline Adversary four_values() {
                                                         Eigen::Vector2d(0.58, 0.5), Eigen::Vector2d(0.67, 0.5)},
                                              .sd = {0.006, 0.006, 0.006, 0.006},
                                              .weight = {0.25, 0.25, 0.25, 0.25}});
+}
+
+inline Adversary known_sum(int d, double sd) {
+  // The sum s of two uniform numbers has the density 1 - |s - 1|; given s, each is uniform over the 1 - |s - 1| left.
+  double mass = 0.0, square = 0.0;
+  const double step = 1e-5;
+  for (double t = -1.0 + 0.5 * step; t < 1.0; t += step) {
+    const double left = 1.0 - std::abs(t), p = left * std::exp(-0.5 * t * t / (sd * sd)) * step;
+    mass += p;
+    square += p * (0.25 * t * t + left * left / 12.0);
+  }
+  VectorXd spread = VectorXd::Constant(d, 1.0 / std::sqrt(12.0));
+  spread.head(2).setConstant(std::sqrt(square / mass));
+  char name[64];
+  std::snprintf(name, sizeof(name), "one sum known to %g, %d-D", sd, d);
+  return {name, on_box(KnownSum{d, sd}, VectorXd::Zero(d), VectorXd::Ones(d)), VectorXd::Constant(d, 0.5), spread,
+          std::log(mass)};
+}
+
+/// Of many dimensions, where bounded coordinates are sampled on the whole line.
+inline std::vector<Adversary> many_dimensions() {
+  return {known_sum(8, 0.05), known_sum(8, 0.005), known_sum(10, 0.05), narrow_and_wide(8), askew(8), spike(8, 0.03)};
 }
 
 inline std::vector<Adversary> all() {
