@@ -9,6 +9,7 @@
 #include "dem/reading/target.hpp"
 #include "dem/rig/drum.hpp"
 #include "dem/run/run.hpp"
+#include "same_bits.hpp"
 #include "scene.hpp"
 
 using Catch::Contains;
@@ -163,36 +164,11 @@ TEST_CASE("the sensor sums what turns: the shell alone where the end plates rest
 TEST_CASE("a drum has the same bits with 1, 2 and 4 threads") {
   dem::Case c = small_drum();
   c.rig.drum->length = 24e-3;  // several chunks
-  std::vector<std::uint64_t> hashes;
-  for (const int threads : {1, 2, 4}) {
-    dem::Simulation s(scene::rig(c, 1, 0, threads));
-    for (int k = 0; k < 1200; ++k) s.step();
-    CHECK(s.state().rebuilds > 3);
-    hashes.push_back(scene::hash(s.state()));
-  }
-  CHECK(hashes[0] == hashes[1]);
-  CHECK(hashes[0] == hashes[2]);
+  scene::check_threads_agree(c, 1200);
 }
 
 TEST_CASE("a drum's run stopped and gone on from its checkpoint ends with the same bits") {
-  const dem::Case c = short_run(small_drum());
-  const dem::RunResult whole = dem::run(c, 1);
-  REQUIRE(whole.status == dem::RunStatus::done);
-  dem::Checkpoint middle;
-  int calls = 0;
-  dem::RunOptions first;
-  first.checkpoint_interval = 0.0;
-  first.checkpoint = [&](const dem::Checkpoint& now) {
-    if (++calls == 5) middle = now;
-  };
-  dem::run(c, 1, first);
-  REQUIRE(calls >= 5);
-  dem::RunOptions second;
-  second.resume = &middle;
-  second.threads = 2;
-  const dem::RunResult resumed = dem::run(c, 1, second);
-  CHECK(scene::hash(resumed.checkpoint.state) == scene::hash(whole.checkpoint.state));
-  CHECK(resumed.series.torque == whole.series.torque);
+  const auto [whole, resumed] = scene::check_resumed_agrees(short_run(small_drum()), 5);
   CHECK(resumed.series.centre_x == whole.series.centre_x);
   CHECK(resumed.series.centre_z == whole.series.centre_z);
   REQUIRE(whole.series.window_time.size() >= 10);

@@ -6,6 +6,7 @@
 #include "dem/reading/target.hpp"
 #include "dem/rig/slice.hpp"
 #include "dem/run/run.hpp"
+#include "same_bits.hpp"
 #include "scene.hpp"
 
 namespace {
@@ -83,40 +84,14 @@ TEST_CASE("the slice has the same bits with 1, 2 and 4 threads, in one chunk and
     dem::Case c = small_case();
     c.rig.pitches = pitches;
     c.rig.fill *= pitches;
+    c.rig.angular_velocity = 100.0;
     c.contact.hamaker = hamaker;
-    std::vector<std::uint64_t> hashes;
-    for (const int threads : {1, 2, 4}) {
-      c.rig.angular_velocity = 100.0;
-      dem::Simulation s(scene::rig(c, 1, 0, threads));
-      for (int k = 0; k < 800; ++k) s.step();
-      CHECK(s.state().rebuilds > 3);
-      hashes.push_back(scene::hash(s.state()));
-    }
-    CHECK(hashes[0] == hashes[1]);
-    CHECK(hashes[0] == hashes[2]);
+    scene::check_threads_agree(c, 800);
   }
 }
 
 TEST_CASE("a run stopped and gone on from its checkpoint ends with the same bits") {
-  const dem::Case c = small_case();
-  const dem::RunResult whole = dem::run(c, 1);
-  REQUIRE(whole.status == dem::RunStatus::done);
-  dem::Checkpoint middle;
-  int calls = 0;
-  dem::RunOptions first;
-  first.checkpoint_interval = 0.0;
-  first.checkpoint = [&](const dem::Checkpoint& now) {
-    if (++calls == 12) middle = now;
-  };
-  dem::run(c, 1, first);
-  REQUIRE(calls >= 12);
-  dem::RunOptions second;
-  second.resume = &middle;
-  second.threads = 2;
-  const dem::RunResult resumed = dem::run(c, 1, second);
-  CHECK(scene::hash(resumed.checkpoint.state) == scene::hash(whole.checkpoint.state));
-  CHECK(resumed.series.torque == whole.series.torque);
-  CHECK(resumed.summary.mean[0].mean == whole.summary.mean[0].mean);
+  scene::check_resumed_agrees(small_case(), 12);
 }
 
 TEST_CASE("a stop request ends a run early with a checkpoint to go on from") {
