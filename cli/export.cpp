@@ -7,6 +7,7 @@
 
 #include "campaign/foretell.hpp"
 #include "cli/command.hpp"
+#include "cli/point_options.hpp"
 #include "data/atomic_file.hpp"
 #include "data/provenance.hpp"
 #include "data/run_table.hpp"
@@ -19,8 +20,8 @@ namespace fs = std::filesystem;
 
 struct Options {
   Common common;
-  std::string folder, to, material;
-  std::vector<std::string> at;
+  PointOptions point;
+  std::string folder, to;
   bool collect = false;
 };
 
@@ -36,7 +37,7 @@ std::vector<std::string> at_of(const Workspace& workspace, const Point& point) {
 }
 
 data::ExitStatus write(const Options& options, const Workspace& workspace) {
-  const Point point = parse_point(workspace, choose_material(workspace.study, options.material), options.at);
+  const Point point = point_of(workspace, options.point);
   for (const std::string& warning : foretell(workspace, point).forecast.warnings)
     say(options.common, "note: " + warning);
   std::error_code failed;
@@ -142,12 +143,7 @@ Action add_export(CLI::App& program) {
   command->add_option("FOLDER", options->folder, "what LIGGGHTS reads and writes")->required();
   CLI::Option* to = command->add_option("--to", options->to, "write the case into FOLDER for this engine")
                         ->check(one_of({"liggghts"}));
-  command->add_option("--material", options->material, "which of the study's materials (default: the first)");
-  command
-      ->add_option("--at", options->at,
-                   "NAME=VALUE of parameters and controls, separated by commas; the others take the material's fixed "
-                   "value or the middle of their range")
-      ->delimiter(',');
+  add_point_options(*command, options->point);
   command->add_flag("--collect", options->collect, "read the torque in FOLDER into OUT/liggghts.csv")->excludes(to);
   return [options] {
     const Workspace workspace = open_workspace(options->common);

@@ -8,6 +8,7 @@
 #include "campaign/foretell.hpp"
 #include "campaign/run_point.hpp"
 #include "cli/command.hpp"
+#include "cli/point_options.hpp"
 #include "data/file_name.hpp"
 #include "data/hash.hpp"
 #include "data/interrupt.hpp"
@@ -24,8 +25,7 @@ namespace {
 
 struct Options {
   Common common;
-  std::string material;
-  std::vector<std::string> at;
+  PointOptions point;
   int threads = 1;
   int frames = 0;
   bool stl = false;
@@ -109,12 +109,7 @@ Action add_simulate(CLI::App& program) {
   CLI::App* command = add_study_command(
       program, "simulate", "run the DEM at one point and say its torque",
       "demcal simulate data/developer --material carrier --at friction=0.4,hamaker=9e-18,rpm=150", options->common);
-  command->add_option("--material", options->material, "which of the study's materials (default: the first)");
-  command
-      ->add_option("--at", options->at,
-                   "NAME=VALUE of parameters and controls, separated by commas; the others take the material's fixed "
-                   "value or the middle of their range")
-      ->delimiter(',');
+  add_point_options(*command, options->point);
   command->add_option("--threads", options->threads, "threads of this run; the result does not depend on it")
       ->check(CLI::Range(1, 256));
   add_isa_option(*command);
@@ -129,7 +124,7 @@ Action add_simulate(CLI::App& program) {
     const Common& common = options->common;
     const Workspace workspace = open_workspace(common);
     require_rig(workspace);
-    const Point point = parse_point(workspace, choose_material(workspace.study, options->material), options->at);
+    const Point point = point_of(workspace, options->point);
     std::vector<std::string> notes = outside_ranges(workspace, point);
     for (const std::string& warning : foretell(workspace, point).forecast.warnings) notes.push_back(warning);
     for (const std::string& warning : dem::rig_warnings(case_at(workspace, point))) notes.push_back(warning);
