@@ -97,9 +97,70 @@ Moves moves_of(const Target& target, const Half& half, const MixtureSamplerOptio
           .per_draw = efficiency > 0.2 ? 1 : (efficiency > 0.05 ? 3 : 10)};
 }
 
-}  // namespace
+/// Draws under moves that no longer change. Chains start at a point of their own population; after a short burn-in
+/// there are rounds until the stop rule is met, each of which doubles the number of draws.
+void draw(const Target& target, const std::vector<Population>& populations, std::vector<Half>& halves,
+          std::vector<Walker>& walkers, const MixtureSamplerOptions& options, Draws& result) {
+  std::vector<Moves> moves;
+  result.proposal_efficiency = 1.0;
+  for (const Half& half : halves) {
+    moves.push_back(moves_of(target, half, options));
+    result.proposal_efficiency = std::min(result.proposal_efficiency, half.proposal.efficiency);
+  }
+  const auto half_of = [&](std::size_t c) { return halves.size() > 1 && c >= halves[0].chains.size() ? 1U : 0U; };
+  for_each_index(options.chains, options.threads, [&](int c) {
+    const auto i = static_cast<std::size_t>(c);
+    Walker& walker = walkers[i];
+    const auto row = static_cast<Eigen::Index>(walker.random.uniform() * static_cast<double>(populations[i].x.rows()));
+    walker.x = populations[i].x.row(row).transpose();
+    walker.log_density = populations[i].log_density[row];
+    walker.log_proposal = moves[half_of(i)].mixture.log_density(walker.x);
+    walker.weights = {};
+    Chain left_out;
+    extend(moves[half_of(i)], walker, left_out, options.burn_in);
+  });
+  result.chains.assign(walkers.size(), {});
+  int drawn = 0;
+  while (true) {
+    const int more = std::min(drawn == 0 ? options.draws : drawn, options.draws_max - drawn);
+    for_each_index(options.chains, options.threads, [&](int c) {
+      const auto i = static_cast<std::size_t>(c);
+      extend(moves[half_of(i)], walkers[i], result.chains[i], more);
+    });
+    drawn += more;
+    assess(result, options.stop);
+    if (result.converged) result.reason = disagreement(result, halves, options);
+    result.converged = result.converged && result.reason.empty();
+    if (result.converged || drawn >= options.draws_max) break;
+  }
+  if (!result.converged) result.reason += " after " + std::to_string(drawn) + " draws per chain";
+  for (Half& half : halves) {
+    WeightRecord weights;
+    for (const std::size_t c : half.chains) weights.add(walkers[c].weights);
+    half.evidence = evidence_of(weights);
+  }
+  set_evidence(result, halves);
+}
 
-namespace {
+/// Each half's proposal begins anew from the draws of its own chains, which have been where the old one does not reach.
+void learn_from_draws(const Draws& draws, std::vector<Half>& halves, const MixtureSamplerOptions& options) {
+  for (Half& half : halves) {
+    Eigen::Index rows = 0;
+    for (const std::size_t c : half.chains) rows += draws.chains[c].x.rows();
+    Eigen::MatrixXd all(rows, draws.dimension());
+    rows = 0;
+    for (const std::size_t c : half.chains) {
+      all.middleRows(rows, draws.chains[c].x.rows()) = draws.chains[c].x;
+      rows += draws.chains[c].x.rows();
+    }
+    const Eigen::Index count = std::min<Eigen::Index>(rows, options.proposal.points_max);
+    Eigen::MatrixXd points(count, all.cols());
+    for (Eigen::Index i = 0; i < count; ++i) points.row(i) = all.row(i * rows / count);
+    const std::int64_t evaluations = half.proposal.evaluations;
+    half.proposal = begin_proposal(points, half.random, options.proposal);
+    half.proposal.evaluations = evaluations;
+  }
+}
 
 Draws sample_as_given(const Target& target, const MixtureSamplerOptions& given) {
   MixtureSamplerOptions options = given;
@@ -132,57 +193,21 @@ Draws sample_as_given(const Target& target, const MixtureSamplerOptions& given) 
   std::vector<Half> halves = make_halves(populations, options);
   adapt_halves(target, halves, options);
   const std::string unknown = find_unknown(target, scouts, populations[best], halves, options, result);
-  std::vector<Moves> moves;
-  result.proposal_efficiency = 1.0;
-  for (const Half& half : halves) {
-    moves.push_back(moves_of(target, half, options));
-    result.evaluations += half.proposal.evaluations;
-    result.proposal_efficiency = std::min(result.proposal_efficiency, half.proposal.efficiency);
-  }
-  const auto half_of = [&](std::size_t c) { return halves.size() > 1 && c >= halves[0].chains.size() ? 1U : 0U; };
-
-  // Chains start at a point of their own population. A short burn-in under the final moves, then rounds until the stop
-  // rule is met; each round doubles the number of draws.
-  for_each_index(options.chains, options.threads, [&](int c) {
-    const auto i = static_cast<std::size_t>(c);
-    const auto row =
-        static_cast<Eigen::Index>(walkers[i].random.uniform() * static_cast<double>(populations[i].x.rows()));
-    walkers[i].x = populations[i].x.row(row).transpose();
-    walkers[i].log_density = populations[i].log_density[row];
-    walkers[i].log_proposal = moves[half_of(i)].mixture.log_density(walkers[i].x);
-    Chain left_out;
-    extend(moves[half_of(i)], walkers[i], left_out, options.burn_in);
-  });
-  result.chains.resize(chains);
-  int drawn = 0;
-  while (true) {
-    const int more = std::min(drawn == 0 ? options.draws : drawn, options.draws_max - drawn);
-    for_each_index(options.chains, options.threads, [&](int c) {
-      const auto i = static_cast<std::size_t>(c);
-      extend(moves[half_of(i)], walkers[i], result.chains[i], more);
-    });
-    drawn += more;
-    assess(result, options.stop);
-    if (result.converged) result.reason = disagreement(result, halves, options);
-    result.converged = result.converged && result.reason.empty();
-    if (result.converged || drawn >= options.draws_max) break;
-  }
-  if (!result.converged) result.reason += " after " + std::to_string(drawn) + " draws per chain";
-
-  for (Half& half : halves) {
-    WeightRecord weights;
-    for (const std::size_t c : half.chains) {
-      weights.add(walkers[c].weights);
-      result.evaluations += walkers[c].evaluations;
+  for (int learnt = 0;; ++learnt) {
+    draw(target, populations, halves, walkers, options, result);
+    const std::string doubt = evidence_doubt(halves, options);
+    if (!result.converged || doubt.empty() || learnt == options.learn_again) {
+      if (result.converged && !(unknown.empty() && doubt.empty())) {
+        result.converged = false;
+        result.reason = unknown.empty() ? doubt : unknown;
+      }
+      break;
     }
-    half.evidence = evidence_of(weights);
+    learn_from_draws(result, halves, options);
+    adapt_halves(target, halves, options);
   }
-  set_evidence(result, halves);
-  for (const std::string& doubt : {unknown, evidence_doubt(halves, options)}) {
-    if (doubt.empty() || !result.converged) continue;
-    result.converged = false;
-    result.reason = doubt;
-  }
+  for (const Half& half : halves) result.evaluations += half.proposal.evaluations;
+  for (const Walker& walker : walkers) result.evaluations += walker.evaluations;
   return result;
 }
 

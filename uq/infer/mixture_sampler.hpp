@@ -19,7 +19,8 @@
 //    number of draws is reached, which is said. The evidence is the importance-sampling mean of p / q over all global
 //    proposals made in step 3, with its standard error.
 // 5. Second checks, which share no chain: a maximum that stays unknown, weights without a variance, or halves whose
-//    evidences differ, each end as "not converged" with their reason.
+//    evidences differ. Of the latter two the proposals are to blame: they are learnt anew, each half's from the draws of
+//    its own chains, and 3 and 4 are done again, twice at most. What is left ends as "not converged" with its reason.
 //
 // A result depends on (seed, chain) alone, never on the number of threads.
 #include <cstdint>
@@ -41,6 +42,7 @@ struct MixtureSamplerOptions {
   double unknown_mass = 1e-4;   ///< of the whole, from which an unknown maximum joins the proposal
   double missing_mass = 2e-3;   ///< of the whole, that may stay unknown after the last search
   int search_rounds = 3;        ///< in which unknown maxima are added
+  int learn_again = 2;          ///< times that the proposals may be learnt anew from the draws, see 5
   double apart_max = 4.5;       ///< standard errors by which the halves may differ
   int unconstrained_from = 7;   ///< dimensions, from which bounded coordinates are mapped to the whole line
   TemperingOptions tempering = {};
