@@ -71,7 +71,7 @@ struct Output {
 const std::vector<Output>& outputs();
 bool has_output(std::string_view name);
 const std::string& output_unit(std::string_view name);  ///< SI; of an output that there is
-std::string output_names();  ///< "torque, torque_fluctuation, ..."
+std::string output_names();                             ///< "torque, torque_fluctuation, ..."
 /// Why the case's rig lacks an output of that name; empty where it has it.
 std::string no_output_because(const Case& c, std::string_view name);
 
