@@ -10,7 +10,8 @@
 //   friction and on Latin hypercubes; 0.5 % noise.
 // The posterior over (friction, cohesion) is summed on a grid: the emulator's mean and full covariance across speeds on
 // 48 x 48 points, interpolated five times finer where the density counts. check: that this is the posterior of the
-// tool's own sampler. faults: how often the surrogate's validation notices misstated errors, a kink and a wave.
+// tool's own sampler. faults: how often the surrogate's validation notices misstated errors, a kink and a wave, and
+// how often the posterior still holds the truth.
 // Printed: the share of truths inside the central 50 % and 90 % intervals of both parameters, and per function.
 #include <fmt/core.h>
 
@@ -337,11 +338,15 @@ void faults(const Options& options) {
       {"wave of 4 %", 0.01, 0.01,
        [](double a, double b, double v) { return 1.0 + 0.04 * std::sin(12.0 * a + 9.0 * b + 6.0 * v); }},
       {"none, 1 %", 0.01, 0.01, plain}};
-  fmt::print("| fault | not good | scatter note | distance below 0.01 | nugget over stated error, median |\n");
-  fmt::print("|---|---|---|---|---|\n");
+  constexpr int truths = 6;
+  fmt::print(
+      "| fault | not good | scatter note | distance below 0.01 | nugget over stated error, median | 50 % intervals "
+      "hold | "
+      "90 % hold |\n|---|---|---|---|---|---|---|\n");
   for (const Fault& fault : kinds) {
     int n = 0, noticed = 0, scatter = 0, distance = 0;
     std::vector<double> ratio;
+    Count held;
     for (int set = 0; set < options.sets; ++set)
       for (std::size_t k = 0; k < cases.size(); ++k) {
         data::RandomStream random(3000 + set, data::Purpose::test, 77 + static_cast<std::uint32_t>(k));
@@ -359,10 +364,13 @@ void faults(const Options& options) {
                                [](const std::string& note) { return note.rfind("the runs' errors", 0) == 0; });
         distance += found.mahalanobis_probability < 0.01;
         ratio.push_back(process.hyper_parameters().nugget_sd / std::sqrt(training.noise_variance.mean()));
+        const GridPosterior posterior(process);
+        for (int t = 0; t < truths; ++t) held.add(posterior.at(draw_truth(torque, random)));
       }
     std::nth_element(ratio.begin(), ratio.begin() + n / 2, ratio.end());
-    fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n", fault.name, static_cast<double>(noticed) / n,
-               static_cast<double>(scatter) / n, static_cast<double>(distance) / n, ratio[n / 2]);
+    fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} |\n", fault.name,
+               static_cast<double>(noticed) / n, static_cast<double>(scatter) / n, static_cast<double>(distance) / n,
+               ratio[n / 2], held.share(held.half), held.share(held.nine));
     std::fflush(stdout);
   }
 }
