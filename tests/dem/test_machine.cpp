@@ -270,7 +270,7 @@ TEST_CASE("a machine that cannot be is refused with its key, and a level that st
   CHECK(place([](dem::Case& c) { c.rig.machine->opening = 2e-3; }) == "rig.opening");
   CHECK(place([](dem::Case& c) { c.rig.machine->sill = -10e-3; }) == "rig.sill");
   CHECK(place([](dem::Case& c) { c.rig.machine->sill = 13e-3; }) == "rig.partition_height");
-  CHECK(place([](dem::Case& c) { c.rig.blade_radius = 10e-3; }) == "rig");
+  CHECK(place([](dem::Case& c) { c.rig.blade_radius = 10e-3; }) == "rig.blade_radius");
   CHECK(place([](dem::Case& c) { c.rig.angular_velocity = 0.0; }) == "rig.rpm");
   CHECK(place([](dem::Case& c) {
           c.rig.level.reset();
