@@ -279,7 +279,10 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
                 "which has no logarithm (scale = \"log\"), the rows are left out");
       continue;
     }
-    if (missing.input || missing.outputs.size() == at.outputs.size()) {
+    // A row of our own without any mean was a run that could not know one. It stays, or a table that is read from its
+    // CSV, as its HDF5 is damaged, would lose it.
+    const bool ours = at.settings.has_value() && at.state.has_value();
+    if (missing.input || (missing.outputs.size() == at.outputs.size() && !ours)) {
       notes.add(line, missing.input ? *missing.input : missing.outputs.front(), "the row is left out",
                 "the rows are left out");
       continue;
