@@ -48,6 +48,14 @@ FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const Surro
         "{} of {} runs train, chosen at random: a fit takes the cube of their number; [surrogate] runs_most "
         "raises it",
         many.y.size(), all));
+  // Samplers ask the surrogate some hundred thousand times, at a cost of the square of its runs.
+  constexpr std::size_t many_inputs = 8;
+  constexpr Eigen::Index slow_runs = 300;
+  if (fitted.rows.inputs.size() >= many_inputs && many.y.size() > slow_runs)
+    fitted.report.notes.push_back(
+        fmt::format("{} runs of {} inputs: a calibration of all of them takes a minute or so. Half the runs "
+                    "([surrogate] runs_most = {}) take less than half of it, and calibrate --no-scan half again",
+                    many.y.size(), fitted.rows.inputs.size(), many.y.size() / 2));
   return fitted;
 }
 
