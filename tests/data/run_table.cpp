@@ -129,6 +129,22 @@ TEST_CASE("a row that lacks one of several outputs is kept for the others, throu
   }
 }
 
+TEST_CASE("a run of ours without any mean stays in the table, through either file") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder);
+  data::RunTable table = random_table(study, 3);
+  table.rows[1].outputs = table.rows[1].standard_errors = {std::nan("")};
+  data::write_table_csv(folder.path("t.csv"), table, study);
+  data::write_table_hdf5(folder.path("t.h5"), table, study);
+  for (const char* name : {"t.csv", "t.h5"}) {
+    const data::RunTable back = data::read_table(folder.path(name), study).table;
+    REQUIRE(back.rows.size() == 3);
+    CHECK(std::isnan(back.rows[1].outputs[0]));
+    CHECK(back.rows[1].seed == table.rows[1].seed);
+    CHECK(back.rows[2].outputs == table.rows[2].outputs);
+  }
+}
+
 TEST_CASE("rows of which the same is said share one line where they are many") {
   const TemporaryFolder folder;
   const data::Study study = study_of(folder);
