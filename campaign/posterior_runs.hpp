@@ -8,8 +8,8 @@
 #include "campaign/run_batch.hpp"
 #include "campaign/training_rows.hpp"
 #include "uq/calibrate/calibrate.hpp"
+#include "uq/posterior/surrogate_share.hpp"
 #include "uq/refine/next_runs.hpp"
-#include "uq/refine/surrogate_share.hpp"
 
 namespace campaign {
 

@@ -272,7 +272,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   if (!judged.unsupported.empty()) report.doubt = judged.unsupported.front();
   report.unusable = !doubt_of(model).empty();
   Identification found = identify(model, draws, judged);
-  report.surrogate_share = found.surrogate_share;
+  report.surrogate_to_measurement = found.surrogate_to_measurement;
   take_cut_verdicts(found, sampled, options);
   report.chi2 = found.check.chi2;
   report.dof = found.check.dof;

@@ -1,4 +1,4 @@
-#include "uq/refine/surrogate_share.hpp"
+#include "uq/posterior/surrogate_share.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,16 +8,14 @@
 
 namespace uq {
 
-SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws) {
-  constexpr Eigen::Index most = 1000;  // draws: enough for a share to a few per cent
+SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws,
+                               const Eigen::VectorXd& log_likelihood) {
   SurrogateShare found;
   for (const Slot& slot : model.slots)
     if (slot.own) found.shares.push_back(1.0);
   if (!found.shares.empty()) found.parameter = model.slots.front().label;
   if (draws.rows() < 2) return found;
-  const Eigen::MatrixXd some = thinned(draws, most);
-  const Eigen::VectorXd log_weight =
-      log_likelihoods(without_surrogate_error(model), some) - log_likelihoods(model, some);
+  const Eigen::VectorXd log_weight = log_likelihoods(without_surrogate_error(model), draws) - log_likelihood;
   if (!std::isfinite(log_weight.maxCoeff())) return found;
   Eigen::VectorXd weight = (log_weight.array() - log_weight.maxCoeff()).exp();
   weight = weight.unaryExpr([](double w) { return std::isfinite(w) ? w : 0.0; });
@@ -26,9 +24,9 @@ SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& dr
   if (found.effective_draws < least_effective) return found;
   found.share = -1.0;
   std::size_t own = 0;
-  for (Eigen::Index k = 0; k < some.cols(); ++k) {
+  for (Eigen::Index k = 0; k < draws.cols(); ++k) {
     if (!model.slots[static_cast<std::size_t>(k)].own) continue;
-    const Eigen::ArrayXd u = some.col(k).array();
+    const Eigen::ArrayXd u = draws.col(k).array();
     const double with = u.mean(), without = (weight.array() * u).sum();
     const double variance = std::max((u - with).square().mean(), 1e-300);
     const double left = (weight.array() * (u - without).square()).sum();
@@ -40,6 +38,12 @@ SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& dr
     }
   }
   return found;
+}
+
+SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws) {
+  constexpr Eigen::Index most = 1000;
+  const Eigen::MatrixXd some = thinned(draws, most);
+  return surrogate_share(model, some, log_likelihoods(model, some));
 }
 
 }  // namespace uq

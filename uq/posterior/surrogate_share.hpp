@@ -7,10 +7,11 @@
 //   share = max(1 - v / V, (a - b)^2 / V, 0), at most 1.
 // The second part sees a posterior that would move without becoming narrower. Where few draws carry the weight
 // (effective number 1 / sum w^2 below `least_effective`), the surrogate's error rules, and the share counts as 1.
+#include <Eigen/Dense>
 #include <string>
 #include <vector>
 
-#include "uq/refine/acquire.hpp"
+#include "uq/posterior/case_model.hpp"
 
 namespace uq {
 
@@ -23,7 +24,11 @@ struct SurrogateShare {
 
 inline constexpr double least_effective = 20.0;  ///< draws
 
-/// `draws`: rows in u, of the model's posterior.
+/// `draws`: rows in u, of the model's posterior, and the model's log likelihood at each.
+SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws,
+                               const Eigen::VectorXd& log_likelihood);
+
+/// The same of a thousand of the draws at most: enough for a share to a few per cent.
 SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws);
 
 }  // namespace uq

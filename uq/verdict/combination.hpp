@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-namespace uq {
+#include "uq/findings/kinds.hpp"
 
-enum class CombinationForm { none, product, sum, curved };
+namespace uq {
 
 struct CombinationTerm {
   double power = 1.0;        ///< e_i of a product, p_i of a sum

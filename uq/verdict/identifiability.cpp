@@ -7,6 +7,7 @@
 
 #include "uq/infer/diagnostics.hpp"
 #include "uq/posterior/posterior.hpp"
+#include "uq/posterior/surrogate_share.hpp"
 #include "uq/verdict/structure.hpp"
 #include "uq/verdict/traded.hpp"
 
@@ -113,7 +114,6 @@ void add_structure(const CaseModel& model, const Profiles& all, std::vector<Para
                    const std::vector<TradedPair>& traded, const VerdictThresholds& thresholds) {
   for (std::size_t k = 0; k < evidence.size(); ++k) {
     ParameterEvidence& one = evidence[k];
-    one.surrogate_share = surrogate_variance_share(model, all.profiles[k], all.best.x);
     const Verdict word = word_of(one.facts, thresholds);
     if (!one.facts.influences || word == Verdict::identified || word == Verdict::several_values) continue;
     const Structure structure = find_structure(model, all, all.profiles[k], thresholds);
@@ -147,7 +147,8 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
   found.best_fit = all.best;
   found.fisher = fisher_spectrum(model, all.best.x);
   found.check = check_fit(model, draws, all.best.x);
-  found.surrogate_share = median_surrogate_share(model, all.best.x);
+  found.surrogate_to_measurement = surrogate_to_measurement(model, all.best.x);
+  const SurrogateShare surrogate = surrogate_share(model, guiding, likelihood);
   const FitEvidence fit{.predictive_p = found.check.predictive_p, .best_fit_p = found.check.best_fit_p};
   found.fits = fit.fits(thresholds);
 
@@ -178,6 +179,7 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
                           .low_pinned_by = report.low_pinned_by,
                           .high_pinned_by = report.high_pinned_by};
     if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
+    one.surrogate_share = surrogate.shares[k];
     one.facts.influences = all.influence[k].some;
     one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);
     words.push_back(word_of(one.facts, thresholds));
@@ -222,7 +224,6 @@ Words summarise(const Identification& found, const std::string& parted_by) {
   return words_of({.parameters = found.parameters,
                    .traded = found.traded,
                    .parted_by = parted_by,
-                   .surrogate_share = found.surrogate_share,
                    .collinearity = found.fisher.collinearity});
 }
 

@@ -37,9 +37,9 @@ struct Identification {
   FitCheck check;
   bool fits = true;
   std::vector<TradedPair> traded;
-  std::vector<Mode> modes;             ///< one where the posterior is in one piece
-  std::vector<std::string> unvisited;  ///< values that should have draws and have none
-  double surrogate_share = 0.0;        ///< median over rows: surrogate's sd over the measurement's, at the best fit
+  std::vector<Mode> modes;                ///< one where the posterior is in one piece
+  std::vector<std::string> unvisited;     ///< values that should have draws and have none
+  double surrogate_to_measurement = 0.0;  ///< sd of the one over the other at the best fit, median over rows
 };
 
 /// `draws`: rows in u, from the posterior of `model`.

@@ -192,7 +192,7 @@ std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, c
 
   for (std::size_t k = 0; k < found.size(); ++k) {
     if (!found[k].facts.influences) {
-      all[k] = {{to_text(Verdict::not_identified), 1.0}};
+      all[k] = {{Verdict::not_identified, 1.0}};
       continue;
     }
     const PathWords words_of(path_points(model, model, *found[k].profile, best), rows, ones);
@@ -206,7 +206,7 @@ std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, c
       for (std::size_t w = 0; w < words.size(); ++w) counts[w] += words[w] == word ? 1 : 0;
     }
     for (std::size_t w = 0; w < words.size(); ++w)
-      if (counts[w] > 0) all[k].push_back({to_text(words[w]), counts[w] / static_cast<double>(repeats.rows())});
+      if (counts[w] > 0) all[k].push_back({words[w], counts[w] / static_cast<double>(repeats.rows())});
     std::stable_sort(all[k].begin(), all[k].end(),
                      [](const auto& a, const auto& b) { return a.probability > b.probability; });
   }

@@ -91,32 +91,11 @@ Structure find_structure(const CaseModel& model, const Profiles& all, const Prof
   return found;
 }
 
-double median_surrogate_share(const CaseModel& full, const Eigen::VectorXd& u) {
+double surrogate_to_measurement(const CaseModel& full, const Eigen::VectorXd& u) {
   const CaseModel& model = distinct_rows(full);
   const Eigen::ArrayXd own = predict(emulators_alone(model), u).covariance.diagonal().array().max(0.0);
   const Eigen::ArrayXd other = predict(model, u).total().diagonal().array() - own;
   return quantile((own / other).sqrt(), 0.5);
-}
-
-double surrogate_variance_share(const CaseModel& model, const Profile& profile, const Eigen::VectorXd& best) {
-  const auto typical = [&] {
-    const double share = median_surrogate_share(model, best);
-    return std::isfinite(share) ? share * share / (1.0 + share * share) : 1.0;
-  };
-  if (profile.parts.empty() || model.row_count() > many_rows) return typical();
-  const StackedPrediction at_best = predict(model, best);
-  const Eigen::MatrixXd emulators = predict(emulators_alone(model), best).covariance;
-  const Eigen::LLT<Eigen::MatrixXd> factor(at_best.total());
-  if (factor.info() != Eigen::Success) return typical();
-  double surrogate = 0.0, whole = 0.0;
-  for (Eigen::Index i = 0; i < profile.u.size(); ++i) {
-    if (profile.u[i] < profile.parts.front().low || profile.u[i] > profile.parts.back().high) continue;
-    const Eigen::VectorXd d = predict(model, profile.path.row(i).transpose()).mean - at_best.mean;
-    const Eigen::VectorXd weighed = factor.solve(d);
-    surrogate += weighed.dot(emulators * weighed);
-    whole += weighed.dot(d);
-  }
-  return whole > 1e-9 ? std::clamp(surrogate / whole, 0.0, 1.0) : typical();
 }
 
 }  // namespace uq

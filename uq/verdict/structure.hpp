@@ -7,9 +7,6 @@
 // The unknown is confounded by structure when, over most of its interval, what is kept cannot be told from nothing and,
 // the surrogate's doubt counted in, is a small share of what it does alone. Then no better measurement of the same kind
 // would close the interval, as far as the surrogate can see. Where the doubt is too large for that, it is undecided.
-//
-// Errors. What two points of the profile differ by, d, is weighed by the covariance S of the data; of the variance of
-// that comparison, d' S^-1 C S^-1 d / d' S^-1 d is the surrogate's, C its part of S.
 #include "uq/verdict/profile.hpp"
 
 namespace uq {
@@ -22,10 +19,7 @@ struct Structure {
 Structure find_structure(const CaseModel& model, const Profiles& all, const Profile& profile,
                          const VerdictThresholds& thresholds);
 
-/// The surrogate's share of the variance along one profile; that of the typical row where nothing differs.
-double surrogate_variance_share(const CaseModel& model, const Profile& profile, const Eigen::VectorXd& best);
-
 /// Sd of the emulators over that of all else that is uncertain of the data: median over rows.
-double median_surrogate_share(const CaseModel& model, const Eigen::VectorXd& u);
+double surrogate_to_measurement(const CaseModel& model, const Eigen::VectorXd& u);
 
 }  // namespace uq

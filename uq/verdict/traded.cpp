@@ -168,8 +168,8 @@ TradedPair describe(const CaseModel& model, const Found& found, const Eigen::Mat
     }
   pair.first = pair.parameters[most.first];
   pair.second = pair.parameters[most.second];
-  if (found.combination.form == CombinationForm::curved) {
-    pair.form = "curved";
+  pair.form = found.combination.form;
+  if (pair.form == CombinationForm::curved) {
     pair.combination = pair.statement = "a curved relation of " + listed(pair.parameters);
   } else {
     const CombinationText written = write_combination(found.combination, columns);
@@ -177,7 +177,6 @@ TradedPair describe(const CaseModel& model, const Found& found, const Eigen::Mat
     const Eigen::MatrixXd members = columns_of(values, found.subset);
     for (Eigen::Index i = 0; i < values.rows(); ++i)
       value[i] = written.scale * evaluate(written.written, members.row(i).transpose());
-    pair.form = found.combination.form == CombinationForm::product ? "product" : "sum";
     pair.combination = written.text;
     pair.unit = written.unit;
     pair.value = value.mean();

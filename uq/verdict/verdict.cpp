@@ -38,9 +38,9 @@ const char* count_word(std::size_t count) {
 /// The other word over repeats of the data, as a clause.
 std::string other_word(Verdict verdict, const std::vector<WordProbability>& repeats) {
   for (const WordProbability& word : repeats)
-    if (word.verdict != to_text(verdict))
+    if (word.verdict != verdict)
       return fmt::format(" Another measurement of the same kind would say \"{}\" with a probability of {:.0f} %.",
-                         word.verdict, 100.0 * word.probability);
+                         to_text(word.verdict), 100.0 * word.probability);
   return {};
 }
 
@@ -155,7 +155,7 @@ ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fi
     return found;
   }
   if (!parameter.unsupported.empty()) {
-    found.reason = "unsupported";
+    found.reason = Reason::unsupported;
     found.sentence = fmt::format("{} is not identified: {}.", parameter.name, parameter.unsupported);
     return found;
   }
@@ -163,11 +163,11 @@ ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fi
   found.verdict = word_of(facts, thresholds);
   double other = 0.0;
   for (const WordProbability& word : repeats)
-    if (word.verdict != to_text(found.verdict)) other = std::max(other, word.probability);
+    if (word.verdict != found.verdict) other = std::max(other, word.probability);
   found.borderline = other >= thresholds.borderline_probability;
 
   const std::optional<Reason> reason = find_reason(parameter, found.verdict);
-  if (reason) found.reason = to_text(*reason);
+  found.reason = reason;
   found.shares = find_shares(parameter, reason);
   if (reason == Reason::no_influence) {
     found.sentence = fmt::format("{} is not identified{}.", parameter.name, because(*reason, parameter));

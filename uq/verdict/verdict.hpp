@@ -68,7 +68,7 @@ struct FitEvidence {
 
 struct ParameterVerdict {
   Verdict verdict = Verdict::not_identified;
-  std::optional<std::string> reason;
+  std::optional<Reason> reason;
   bool borderline = false;
   std::string sentence;
   WidthShares shares;

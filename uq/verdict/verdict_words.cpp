@@ -9,14 +9,15 @@
 namespace uq {
 namespace {
 
-constexpr std::array reasons = {Reason::structural, Reason::practical, Reason::surrogate,
-                                Reason::one_sided,  Reason::bound,     Reason::no_influence};
 /// Of the variance: from here on the surrogate, not the measurement, is what to improve first.
 constexpr double mostly = 0.5;
 /// Of the variance: below, a share is not worth a remedy.
 constexpr double notable = 0.1;
 /// Of the data's errors: the surrogate may hide an effect that the data could see.
 constexpr double hides = 2.0;
+
+/// Share of the posterior variance from which on its number says nothing more.
+constexpr double all_of_it = 0.995;
 
 using Names = std::vector<std::string>;
 
@@ -50,12 +51,13 @@ struct Sorted {
   Names known, several, weak, unknown;                               ///< by word
   Names silent, structural, practical, surrogate, one_sided, bound;  ///< by reason
   double of_structure = 0.0, of_measurement = 0.0, of_surrogate = 0.0, of_range = 0.0;
+  double largest_surrogate = 0.0;  ///< share of one parameter
 };
 
 Sorted sort_parameters(const std::vector<ParameterReport>& parameters) {
   Sorted sorted;
   for (const ParameterReport& parameter : parameters) {
-    const std::optional<Reason> reason = parameter.reason ? reason_of(*parameter.reason) : std::nullopt;
+    const std::optional<Reason>& reason = parameter.reason;
     const std::string& name = parameter.name;
     if (parameter.verdict == Verdict::identified) sorted.known.push_back(name);
     if (parameter.verdict == Verdict::several_values) sorted.several.push_back(name);
@@ -75,6 +77,7 @@ Sorted sort_parameters(const std::vector<ParameterReport>& parameters) {
     sorted.of_structure += parameter.share_structure;
     sorted.of_measurement += parameter.share_measurement;
     sorted.of_surrogate += parameter.share_surrogate;
+    sorted.largest_surrogate = std::max(sorted.largest_surrogate, parameter.share_surrogate);
     sorted.of_range += parameter.share_range;
   }
   return sorted;
@@ -93,7 +96,7 @@ std::string find_finding(const CaseFacts& facts, const Sorted& sorted) {
     say(fmt::format("{} say nothing of {}.", sorted.silent.size() == facts.parameters.size() ? "The data" : "They",
                     list(sorted.silent)));
   for (const TradedPair& traded : facts.traded)
-    say(traded.form == "curved"
+    say(traded.form == CombinationForm::curved
             ? fmt::format("{} are traded against each other along a curve.", list(traded.parameters))
             : fmt::format("{} are traded against each other: known together is {}.", list(traded.parameters),
                           traded.statement));
@@ -134,9 +137,8 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
                     one_or(sorted.bound, "its bound", "their bound")));
   Names poor, wide;
   for (const ParameterReport& parameter : facts.parameters) {
-    const bool hidden = parameter.reason == to_text(Reason::practical) ||
-                        parameter.reason == to_text(Reason::surrogate) ||
-                        parameter.reason == to_text(Reason::structural);
+    const bool hidden = parameter.reason == Reason::practical || parameter.reason == Reason::surrogate ||
+                        parameter.reason == Reason::structural;
     if (hidden && facts.traded.empty())
       (parameter.verdict == Verdict::not_identified && parameter.contraction < 0.5 ? poor : wide)
           .push_back(parameter.name);
@@ -150,15 +152,12 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
   return text;
 }
 
-std::string surrogate_remedy(const CaseFacts& facts) {
-  return std::isfinite(facts.surrogate_share)
-             ? fmt::format(
-                   "Make more training runs where the posterior lies (demcal train STUDY --until posterior): the "
-                   "surrogate's error is {:.0f} % of the "
-                   "measurement's.",
-                   100.0 * facts.surrogate_share)
-             : "Make more training runs where the posterior lies (demcal train STUDY --until posterior): the "
-               "surrogate's error decides the widths.";
+/// `share`: of the posterior variance, the surrogate's; of the parameter that has most of it.
+std::string surrogate_remedy(double share) {
+  const std::string runs = "Make more training runs where the posterior lies (demcal train STUDY --until posterior): ";
+  return runs + (share < all_of_it
+                     ? fmt::format("up to {:.0f} % of the posterior variance is the surrogate's.", 100.0 * share)
+                     : "the surrogate's error decides the widths.");
 }
 
 /// Sets of traded parameters with one in `names`, as "friction and hamaker"; of those names alone where there are none.
@@ -200,11 +199,10 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
                         surrogate < notable ? "Make more training runs where the posterior lies (demcal train STUDY "
                                               "--until posterior): only a sharper "
                                               "surrogate shows whether a better measurement would help."
-                        : first
-                            ? surrogate_remedy(facts)
-                            : fmt::format("More training runs would help, too: the surrogate's error is {:.0f} % of "
-                                          "the measurement's.",
-                                          100.0 * facts.surrogate_share)});
+                        : first             ? surrogate_remedy(sorted.largest_surrogate)
+                                : fmt::format("More training runs would help, too: up to {:.0f} % of the posterior "
+                                              "variance is the surrogate's.",
+                                              100.0 * sorted.largest_surrogate)});
   }
   if (!sorted.practical.empty()) {
     const std::string together = partners(facts, sorted.practical);
@@ -229,7 +227,7 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
   if (!sorted.silent.empty()) {
     Names hidden_ones, silent;
     for (const ParameterReport& parameter : facts.parameters)
-      if (parameter.reason == to_text(Reason::no_influence))
+      if (parameter.reason == Reason::no_influence)
         (parameter.share_surrogate > mostly ? hidden_ones : silent).push_back(parameter.name);
     if (!silent.empty())
       remedies.push_back({0.0, fmt::format("Measure another quantity, or at other settings, that {} {}; or fix {}: "
@@ -247,30 +245,6 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
 }
 
 }  // namespace
-
-const char* to_text(Reason reason) {
-  switch (reason) {
-    case Reason::structural:
-      return "structural";
-    case Reason::practical:
-      return "practical";
-    case Reason::surrogate:
-      return "surrogate";
-    case Reason::one_sided:
-      return "one-sided";
-    case Reason::bound:
-      return "bound";
-    case Reason::no_influence:
-      break;
-  }
-  return "no influence";
-}
-
-std::optional<Reason> reason_of(const std::string& text) {
-  for (const Reason reason : reasons)
-    if (text == to_text(reason)) return reason;
-  return {};
-}
 
 std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict verdict) {
   if (verdict != Verdict::not_identified && verdict != Verdict::weakly_identified) return {};

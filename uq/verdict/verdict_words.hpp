@@ -8,6 +8,7 @@
 //   one-sided     the data no longer change towards the range's end            wider range, other settings
 //   bound         it cannot be told from its physical bound                    a smaller error lowers the limit
 //   no influence  nothing that was measured depends on it                      a quantity that does, or fix it
+//   unsupported   no run speaks where the posterior lies (uq/posterior/support.hpp)   training runs there
 //   (none) several values                                                      the measurement that parts them
 //
 // A case's remedy starts with that of the largest share of the widths. No remedy says what another denies: where one
@@ -20,10 +21,6 @@
 #include "uq/verdict/verdict.hpp"
 
 namespace uq {
-
-enum class Reason { structural, practical, surrogate, one_sided, bound, no_influence };
-const char* to_text(Reason reason);
-std::optional<Reason> reason_of(const std::string& text);
 
 /// Why a word other than "identified" or "several values"; nothing for these two.
 std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict verdict);
@@ -43,8 +40,7 @@ struct Words {
 struct CaseFacts {
   std::vector<ParameterReport> parameters;
   std::vector<TradedPair> traded;
-  std::string parted_by;         ///< uq/verdict/modes.hpp; may be empty
-  double surrogate_share = 0.0;  ///< sd of the surrogate over that of all else, typical row
+  std::string parted_by;  ///< uq/verdict/modes.hpp; may be empty
   double collinearity = 1.0;
 };
 Words words_of(const CaseFacts& facts);

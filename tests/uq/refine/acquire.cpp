@@ -9,7 +9,6 @@
 #include "data/random.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/refine/next_runs.hpp"
-#include "uq/refine/surrogate_share.hpp"
 
 namespace {
 
@@ -243,28 +242,4 @@ TEST_CASE("a batch goes where the posterior is open, and is the same again", "[a
     after += total(make_model(told))[0] / scale / worlds;
   }
   CHECK(after == Approx(expected.variance()).epsilon(0.08));
-}
-
-TEST_CASE("the surrogate's share of a width is what a surrogate without error would take away", "[acquire]") {
-  // y = theta seen with variance e, the surrogate's error adds s: the share is s / (s + e).
-  uq::CaseModel model = make_model(make_process());
-  uq::RowGroup& group = model.groups.front();
-  group.base = MatrixXd::Zero(1, 1);
-  group.slot = Eigen::MatrixXi::Zero(1, 1);
-  group.observed = VectorXd::Constant(1, 0.5);
-  group.variance = VectorXd::Constant(1, 0.0016);
-  const double s = 0.0009;
-  group.emulator.inputs = {{uq::InputKind::parameter, 0}};
-  group.emulator.predict_with_gradient = {};
-  group.emulator.predict_batch = {};
-  group.emulator.predict = [s](const MatrixXd& points) -> surrogate::Prediction {
-    return {.mean = points.col(0), .covariance = s * MatrixXd::Identity(points.rows(), points.rows())};
-  };
-  uq::find_coordinates(group, 1);
-  MatrixXd draws(1000, 1);
-  data::RandomStream random(21, data::Purpose::test);
-  for (Index i = 0; i < draws.rows(); ++i) draws(i, 0) = 0.5 + 0.05 * random.normal();
-  const uq::SurrogateShare found = uq::surrogate_share(model, draws);
-  CHECK(found.share == Approx(s / (s + 0.0016)).margin(0.05));
-  CHECK(found.parameter == "theta");
 }

@@ -1,0 +1,42 @@
+#pragma once
+// A spring and a dashpot side by side, behind a slider. Tangential, rolling and twisting laws are made of it.
+//
+// Below the cap the force is T = -k s - c u, with the spring s. At the cap the contact slides: T has the cap's size,
+// and the spring follows as fast as the dashpot lets it, ds/dt = (|T| - k s) / c. Without a dashpot s = cap / k at once.
+// What is remembered is k s.
+//
+// Steps are of second order. The spring is kept half a step ahead, and its mean over the step is what pulls. As u is
+// extrapolated, that alone would feed an oscillation. So the spring leads the mean by a further share a of a step's
+// slip, a = dt^2 times stiffness per inertia, the square of the phase of a step. It is enough for eight contacts a
+// sphere.
+#include <limits>
+
+#include "dem/contact/lanes.hpp"
+#include "dem/walls/vec3.hpp"
+
+namespace dem {
+
+/// Spring and dashpot side by side, behind a slider: in the contact plane, in rolling (V a vector [N]) and in twisting
+/// (V a number [N m]).
+template <class V>
+struct SlipForce {
+  V force;  ///< on the sphere
+  V kept;   ///< elastic part, of opposite sign
+};
+
+/// `stiffness_per_inertia` [1/s2] is that of the fastest oscillation of a free pair on this spring. C is double where
+/// all contacts share the spring's coefficients.
+template <class V, class T, class C>
+SlipForce<V> slide(const V& before, const V& velocity, C stiffness, C damping, T cap, C stiffness_per_inertia,
+                   double time_step) {
+  const C lead = smaller(C(time_step * time_step * stiffness_per_inertia), C(0.5));
+  const C reach = stiffness * time_step, drag = (0.5 + lead) * reach + damping;
+  const V wanted = before + drag * velocity;
+  const T size = norm(wanted);
+  const V force = select(size > cap, T(cap / size), T(1.0)) * wanted;
+  // What is beyond the cap the spring does not follow, but for what the dashpot holds.
+  const C share = reach / larger(C(reach + damping), C(std::numeric_limits<double>::min()));
+  return {-force, before + reach * velocity - share * (wanted - force)};
+}
+
+}  // namespace dem
