@@ -111,9 +111,9 @@ void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>
     answer(common,
            fmt::format("surrogate of {}{}{}: {} (Q2 {:.4f} left out, {:.4f} held out; 95 % intervals cover {:.0f} "
                        "%; {} runs{}).{}",
-                       r.material, r.material.empty() ? "" : " ", r.output, r.verdict, r.q2, r.q2_held_out,
+                       r.material, r.material.empty() ? "" : " ", r.output, uq::to_text(r.verdict), r.q2, r.q2_held_out,
                        100.0 * r.coverage95, r.runs, r.low_runs > 0 ? fmt::format(" over {}", r.low_runs) : "",
-                       r.verdict == "good" ? "" : " " + r.remedy));
+                       r.verdict == uq::SurrogateWord::good ? "" : " " + r.remedy));
     for (const std::string& note : r.notes) answer(common, "  " + note);
   }
 }

@@ -25,7 +25,7 @@ Action add_fit(CLI::App& program) {
                       {"q2_held_out", r.q2_held_out},
                       {"coverage95", r.coverage95},
                       {"runs", r.runs},
-                      {"verdict", r.verdict},
+                      {"verdict", uq::to_text(r.verdict)},
                       {"low_runs", r.low_runs},
                       {"rho", r.rho},
                       {"notes", r.notes}});

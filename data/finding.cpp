@@ -8,18 +8,6 @@
 
 namespace data {
 
-const char* to_text(Severity severity) {
-  switch (severity) {
-    case Severity::note:
-      return "note";
-    case Severity::warning:
-      return "warning";
-    case Severity::refusal:
-      break;
-  }
-  return "refusal";
-}
-
 std::string describe(const Finding& finding) {
   return describe({Problem{finding.place, finding.what, finding.remedy}});
 }

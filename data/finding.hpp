@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "data/texts.hpp"
+
 namespace data {
 
 enum class Severity {
@@ -12,7 +14,8 @@ enum class Severity {
   warning,  ///< said in the first lines; status 2
   refusal,  ///< no result could be right; nothing is computed
 };
-const char* to_text(Severity severity);  ///< "note", "warning", "refusal"
+template <>
+inline constexpr std::array texts_of<Severity> = {"note", "warning", "refusal"};
 
 struct Finding {
   std::string kind;   ///< "copied rows", "failed runs", "unit"; the same word for the same oddity

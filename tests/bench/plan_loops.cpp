@@ -76,11 +76,12 @@ void run(const char* name, const formula::Pair& formulas, int loops, std::uint64
     const uq::PlanCandidate& first = plan.candidates.front();
     const uq::PlanCandidate& other =
         plan.candidates[static_cast<std::size_t>(random.uniform() * static_cast<double>(plan.candidates.size()))];
-    const auto repeat = std::find_if(plan.candidates.begin(), plan.candidates.end(),
-                                     [](const uq::PlanCandidate& one) { return one.kind == "repeat"; });
+    const auto repeat = std::find_if(plan.candidates.begin(), plan.candidates.end(), [](const uq::PlanCandidate& one) {
+      return one.kind == uq::CandidateKind::repeat;
+    });
     double p = 0.0;
     for (const uq::WordProbability& word : first.parameters[0].words)
-      if (word.verdict == "identified") p = word.probability;
+      if (word.verdict == uq::Verdict::identified) p = word.probability;
     const After best = calibrated(with_reading(study, formulas, first, a, b, random), formulas, 0);
     before += first.parameters[0].sd_now;
     forecast += first.parameters[0].sd_after;

@@ -22,7 +22,7 @@ constexpr int scan_scouts = 8000;  // of each measurement error that is tried, a
 void add_findings(CalibrationReport& report, const std::vector<data::Finding>& findings) {
   for (const data::Finding& finding : findings) {
     report.findings.push_back(
-        {finding.kind, finding.place, data::to_text(finding.severity), finding.what, finding.remedy, finding.places});
+        {finding.kind, finding.place, finding.severity, finding.what, finding.remedy, finding.places});
     (finding.severity == data::Severity::note ? report.cautions : report.warnings).push_back(data::describe(finding));
   }
 }
@@ -80,20 +80,30 @@ std::optional<WithoutRuns> without_runs(const data::Study& study, const std::vec
   if (!options.identify.unsupported.empty() || sampled.draws.chains.empty()) return without;
   const Eigen::MatrixXd draws = sampled.draws.pooled();
   bool matters = false;
-  for (std::size_t k = 0; k < without.mean.size(); ++k) {
+  for (std::size_t k = 0; k < without.parameters.size(); ++k) {
+    const ParameterAgain& other = without.parameters[k];
     const auto column = static_cast<Eigen::Index>(k);
     const Slot& slot = sampled.model->slots[k];
     Eigen::VectorXd values = draws.col(column);
     for (double& value : values) value = slot.prior.parameter().unit.from_si(slot.value(value));
     const double sd = std::sqrt((values.array() - values.mean()).square().mean());
-    matters = matters || std::abs(values.mean() - without.mean[k]) > 0.5 * without.sd[k] || sd > 1.5 * without.sd[k] ||
-              sd < without.sd[k] / 1.5;
+    matters =
+        matters || std::abs(values.mean() - other.mean) > 0.5 * other.sd || sd > 1.5 * other.sd || sd < other.sd / 1.5;
   }
   if (matters)
     options.identify.unsupported.assign(
         static_cast<std::size_t>(sampled.model->own_count()),
         fmt::format("the result depends on {}, which all other runs contradict", which));
   return without;
+}
+
+ParameterAgain again(const ParameterReport& parameter) {
+  return {.name = parameter.name,
+          .verdict = parameter.verdict,
+          .reason = parameter.reason,
+          .borderline = parameter.borderline,
+          .mean = parameter.mean,
+          .sd = parameter.sd};
 }
 
 }  // namespace
@@ -111,10 +121,7 @@ WithoutRuns calibrate_without(const data::Study& study, const std::vector<Fitted
   const Identification identified = identify(*sampled.model, sampled.draws.pooled(), judged);
   found.fits = identified.fits;
   for (const ParameterReport& parameter : identified.parameters) {
-    found.parameters.push_back(parameter.name);
-    found.verdicts.push_back(to_text(parameter.verdict));
-    found.mean.push_back(parameter.mean);
-    found.sd.push_back(parameter.sd);
+    found.parameters.push_back(again(parameter));
     const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
     found.sentence += fmt::format("{}{} {} +- {}{} ({})", found.sentence.empty() ? "" : ", ", parameter.name,
                                   with_error(parameter.mean, parameter.sd), with_error(parameter.sd, parameter.sd),
@@ -151,15 +158,7 @@ std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& 
     if (!draws.chains.empty()) {
       const Identification found = identify(*model, draws.pooled(), options.identify);
       scan.ppp = found.check.predictive_p;
-      for (const auto& parameter : found.parameters) {
-        scan.parameters.push_back(parameter.name);
-        std::string verdict = to_text(parameter.verdict);
-        if (parameter.reason) verdict += " (" + *parameter.reason + ")";
-        if (parameter.borderline) verdict += ", borderline";
-        scan.verdicts.push_back(verdict);
-        scan.mean.push_back(parameter.mean);
-        scan.sd.push_back(parameter.sd);
-      }
+      for (const ParameterReport& parameter : found.parameters) scan.parameters.push_back(again(parameter));
     }
     scans.push_back(std::move(scan));
   }

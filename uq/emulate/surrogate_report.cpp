@@ -102,6 +102,18 @@ std::string point_text(const data::Study& study, const TrainingRows& rows, const
   return text;
 }
 
+SurrogateWord word_of(surrogate::SurrogateVerdict verdict) {
+  switch (verdict) {
+    case surrogate::SurrogateVerdict::good:
+      return SurrogateWord::good;
+    case surrogate::SurrogateVerdict::caution:
+      return SurrogateWord::caution;
+    case surrogate::SurrogateVerdict::unusable:
+      break;
+  }
+  return SurrogateWord::unusable;
+}
+
 }  // namespace
 
 surrogate::FitOptions options_for(const data::Study& study, const TrainingRows& rows, const SurrogateOptions& options) {
@@ -153,7 +165,7 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   report.standardised.assign(found.leave_one_out.standardised.begin(), found.leave_one_out.standardised.end());
   for (const double variance : rows.set.noise_variance)
     report.observed_se.push_back(std::sqrt(variance) / output.unit.factor);
-  report.verdict = surrogate::to_text(found.verdict);
+  report.verdict = word_of(found.verdict);
   report.finding = found.finding;
   report.consequence = found.consequence;
   report.remedy = found.remedy;

@@ -115,7 +115,7 @@ std::vector<std::string> surrogate_warnings(const std::vector<FittedSurrogate>& 
     if (!one.report.outlying.empty()) warnings.push_back(outlying_warning(one.report));
   for (const FittedSurrogate& one : fitted) {
     const SurrogateReport& report = one.report;
-    if (report.verdict == "unusable")
+    if (report.verdict == SurrogateWord::unusable)
       warnings.push_back(
           fmt::format("the surrogate of {} is unusable and cannot stand for the model ({} runs): ignore "
                       "what rests on it. {}",
@@ -131,7 +131,7 @@ std::vector<std::string> surrogate_warnings(const std::vector<FittedSurrogate>& 
 std::vector<std::string> surrogate_cautions(const std::vector<FittedSurrogate>& fitted) {
   std::vector<std::string> cautions;
   for (const FittedSurrogate& one : fitted)
-    if (one.report.verdict == "caution")
+    if (one.report.verdict == SurrogateWord::caution)
       cautions.push_back(fmt::format("the surrogate of {} is to be used with caution: {}", described(one.report),
                                      one.report.consequence));
   return cautions;
@@ -162,7 +162,7 @@ Emulator emulator_of(const FittedSurrogate& fitted) {
   emulator.constants = rows.constants;
   emulator.control_range = rows.control_range;
   emulator.runs = cloud_of(fitted);
-  if (fitted.report.verdict == "unusable")
+  if (fitted.report.verdict == SurrogateWord::unusable)
     emulator.doubt = fmt::format("the surrogate of {} is unusable", described(fitted.report));
   return emulator;
 }

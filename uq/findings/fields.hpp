@@ -62,13 +62,20 @@ void visit_fields(Visit&& visit, T& s) {
   visit("next_runs", s.next_runs);
 }
 
+template <class Visit, SameAs<ParameterAgain> T>
+void visit_fields(Visit&& visit, T& p) {
+  visit("name", p.name);
+  visit("verdict", p.verdict);
+  visit("reason", p.reason);
+  visit("borderline", p.borderline);
+  visit("mean", p.mean);
+  visit("sd", p.sd);
+}
+
 template <class Visit, SameAs<WithoutRuns> T>
 void visit_fields(Visit&& visit, T& w) {
   visit("places", w.places);
   visit("parameters", w.parameters);
-  visit("verdicts", w.verdicts);
-  visit("mean", w.mean);
-  visit("sd", w.sd);
   visit("fits", w.fits);
   visit("sentence", w.sentence);
 }
@@ -346,7 +353,7 @@ void visit_fields(Visit&& visit, T& c) {
   visit("without", c.without);
   visit("doubt", c.doubt);
   visit("unusable", c.unusable);
-  visit("surrogate_share", c.surrogate_share);
+  visit("surrogate_to_measurement", c.surrogate_to_measurement);
   visit("modes", c.modes);
   visit("modes_parted_by", c.modes_parted_by);
   visit("verification", c.verification);
@@ -430,9 +437,6 @@ void visit_fields(Visit&& visit, T& e) {
   visit("case_name", e.case_name);
   visit("relative_error", e.relative_error);
   visit("parameters", e.parameters);
-  visit("verdicts", e.verdicts);
-  visit("mean", e.mean);
-  visit("sd", e.sd);
   visit("ppp", e.ppp);
 }
 

@@ -41,7 +41,7 @@ Standing standing(const CaseReport& result, Typography typography) {
       found.fixed.push_back(value + " (weakly)");
     else if (verdict == Verdict::several_values)
       found.fixed.push_back(value + " (separate values)");
-    else if (parameter.reason == "no influence")
+    else if (parameter.reason == Reason::no_influence)
       found.silent.push_back(parameter.name);
     else
       found.open.push_back(parameter.name);

@@ -8,16 +8,15 @@
 #include <string>
 #include <vector>
 
-namespace uq {
+#include "data/finding.hpp"
+#include "uq/findings/kinds.hpp"
 
-enum class Verdict { identified, weakly_identified, several_values, not_identified, does_not_fit };
-/// "identified", "weakly identified", "several values", "not identified", "model does not fit"
-const char* to_text(Verdict verdict);
+namespace uq {
 
 /// What is odd in the data (data/finding.hpp), as told.
 struct DataFinding {
   std::string kind, place;
-  std::string severity;  ///< "note", "warning"
+  data::Severity severity = data::Severity::warning;
   std::string what, remedy;
   std::vector<std::string> places;
 };
@@ -38,7 +37,7 @@ struct SurrogateReport {
   double coverage95 = 0.0;   ///< of leave-one-out intervals
   double nugget_sd = 0.0;    ///< unit of the output
   std::string unit;
-  std::string verdict;  ///< "good", "caution", "unusable"
+  SurrogateWord verdict = SurrogateWord::unusable;
   std::string finding, consequence, remedy;
   std::vector<std::string> inputs;                        ///< names of the active inputs
   std::vector<double> length_scales;                      ///< in units of the input's range
@@ -73,7 +72,7 @@ struct ProfileHole {
 
 /// What a word has for a chance when the measurement is repeated (uq/verdict/repeats.hpp).
 struct WordProbability {
-  std::string verdict;  ///< as to_text
+  Verdict verdict = Verdict::not_identified;
   double probability = 0.0;
 };
 
@@ -90,7 +89,7 @@ struct PlannedParameter {
 /// A measurement that could be made next.
 struct PlanCandidate {
   std::string name;  ///< as the terminal shows it: "torque at 300 rpm"
-  std::string kind;  ///< "setting", "repeat", "output"
+  CandidateKind kind = CandidateKind::setting;
   std::string material;
   std::vector<std::string> outputs;
   std::vector<std::map<std::string, double>> settings;  ///< controls of each of its points, their units
@@ -152,8 +151,7 @@ struct ParameterReport {
   bool low_is_bound = false, high_is_bound = false;  ///< the range ended before the likelihood fell
   std::vector<double> profile_x, profile_deviance;   ///< the profile itself: 2 (log L_max - log L)
   Verdict verdict = Verdict::not_identified;
-  /// "structural", "practical", "surrogate", "one-sided", "bound", "no influence" (uq/verdict/verdict_words.hpp)
-  std::optional<std::string> reason;
+  std::optional<Reason> reason;  ///< why it is not known
   bool borderline = false;
   std::string sentence;                       ///< the verdict in words with its numbers
   std::vector<ValueRange> intervals;          ///< the parts of the profile interval, rising; holes in doubt are filled
@@ -198,7 +196,7 @@ struct TradedPair {
   std::string first, second;            ///< of `parameters`, those that are traded most
   std::vector<std::string> parameters;  ///< all of the combination
   std::string combination;              ///< "friction * hamaker^0.9", "a + b + c", or that the relation is curved
-  std::string form;                     ///< "product", "sum", "curved"
+  CombinationForm form = CombinationForm::none;
   double value = std::numeric_limits<double>::quiet_NaN();  ///< of the combination, posterior mean; NaN of a curved one
   double error = std::numeric_limits<double>::quiet_NaN();  ///< posterior sd
   std::string unit;                                         ///< of both
@@ -254,11 +252,19 @@ struct SupportReport {
   std::vector<NextRun> next_runs;  ///< points of the posterior far from the runs, the first the most useful
 };
 
+/// A parameter where the case was calibrated again.
+struct ParameterAgain {
+  std::string name;
+  Verdict verdict = Verdict::not_identified;
+  std::optional<Reason> reason;
+  bool borderline = false;
+  double mean = 0.0, sd = 0.0;
+};
+
 /// The case again without the runs that the others contradict.
 struct WithoutRuns {
   std::vector<std::string> places;
-  std::vector<std::string> parameters, verdicts;
-  std::vector<double> mean, sd;
+  std::vector<ParameterAgain> parameters;
   bool fits = true;
   std::string sentence;
 };
@@ -327,11 +333,11 @@ struct CaseReport {
   std::vector<std::string> cuts;  ///< "friction from zirconia-800": taken without feedback
   std::string sampler;            ///< "mixture", "nuts", "cut"
   SupportReport support;
-  std::optional<WithoutRuns> without;  ///< where runs are contradicted by the others
-  std::string doubt;                   ///< why no verdict can rest on the surrogate; empty: it can
-  bool unusable = false;               ///< the doubt is of the surrogate itself: the values are not shown
-  double surrogate_share = 0.0;        ///< surrogate's sd over the measurement's, median of the rows
-  std::string search;                  ///< what was looked for beside the chains, and what would have escaped
+  std::optional<WithoutRuns> without;     ///< where runs are contradicted by the others
+  std::string doubt;                      ///< why no verdict can rest on the surrogate; empty: it can
+  bool unusable = false;                  ///< the doubt is of the surrogate itself: the values are not shown
+  double surrogate_to_measurement = 0.0;  ///< sd of the surrogate over that of the measurement, median of the rows
+  std::string search;                     ///< what was looked for beside the chains, and what would have escaped
   double energy_fraction = std::numeric_limits<double>::quiet_NaN();  ///< smallest of the chains (E-BFMI); NaN where
                                                                       ///< the sampler has no energy
   std::vector<ModeReport> modes;  ///< separate regions of the posterior, by falling weight; none where there is one
@@ -344,9 +350,8 @@ struct CaseReport {
 /// How the verdict changes when the measurement error is another one.
 struct ErrorScan {
   std::string case_name;
-  double relative_error = 0.0;  ///< of the measured values
-  std::vector<std::string> parameters, verdicts;
-  std::vector<double> mean, sd;
+  double relative_error = 0.0;             ///< of the measured values
+  std::vector<ParameterAgain> parameters;  ///< none where the posterior could not be sampled
   double ppp = 0.0;
 };
 

@@ -17,16 +17,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int results_format = 1;
-constexpr std::array verdicts = {Verdict::identified, Verdict::weakly_identified, Verdict::several_values,
-                                 Verdict::not_identified, Verdict::does_not_fit};
+constexpr int results_format = 2;
 
 // What a value becomes. The overloads call each other, so all are declared first.
 Json save(double value);
 Json save(int value) { return value; }
 Json save(bool value) { return value; }
 Json save(const std::string& value) { return value; }
-Json save(Verdict value) { return to_text(value); }
+template <data::HasTexts Kind>
+Json save(Kind value) {
+  return to_text(value);
+}
 template <class T>
 Json save(const std::optional<T>& value);
 template <class T>
@@ -76,7 +77,8 @@ void load(const Json& json, const std::string& where, double& value);
 void load(const Json& json, const std::string& where, int& value);
 void load(const Json& json, const std::string& where, bool& value);
 void load(const Json& json, const std::string& where, std::string& value);
-void load(const Json& json, const std::string& where, Verdict& value);
+template <data::HasTexts Kind>
+void load(const Json& json, const std::string& where, Kind& value);
 template <class T>
 void load(const Json& json, const std::string& where, std::optional<T>& value);
 template <class T>
@@ -114,14 +116,14 @@ void load(const Json& json, const std::string& where, std::string& value) {
   value = json.get<std::string>();
 }
 
-void load(const Json& json, const std::string& where, Verdict& value) {
-  for (const Verdict verdict : verdicts) {
-    if (json == to_text(verdict)) {
-      value = verdict;
+template <data::HasTexts Kind>
+void load(const Json& json, const std::string& where, Kind& value) {
+  if (json.is_string())
+    if (const std::optional<Kind> known = data::from_text<Kind>(json.get_ref<const std::string&>())) {
+      value = *known;
       return;
     }
-  }
-  throw Misfit{where, "is not a verdict"};
+  throw Misfit{where, fmt::format("is none of {}", fmt::join(data::texts_of<Kind>, ", "))};
 }
 
 template <class T>

@@ -110,11 +110,18 @@ std::string format_estimate(const ParameterReport& parameter, Typography typogra
   return text;
 }
 
+std::string format_verdict(Verdict verdict, const std::optional<Reason>& reason, bool borderline) {
+  std::string text = to_text(verdict);
+  if (reason) text += fmt::format(" ({})", to_text(*reason));
+  if (borderline) text += ", borderline";
+  return text;
+}
+
 std::string format_words(const ParameterReport& parameter) {
   std::string text;
   for (const WordProbability& word : parameter.word_probabilities)
     if (word.probability >= 0.005)
-      text += fmt::format("{}{:.0f} % {}", text.empty() ? "" : ", ", 100.0 * word.probability, word.verdict);
+      text += fmt::format("{}{:.0f} % {}", text.empty() ? "" : ", ", 100.0 * word.probability, to_text(word.verdict));
   return text;
 }
 
@@ -278,7 +285,7 @@ std::vector<std::string> first_lines(const CalibrationReport& report) {
     }
   }
   for (const SurrogateReport& surrogate : report.surrogates) {
-    if (surrogate.verdict != "unusable") continue;
+    if (surrogate.verdict != SurrogateWord::unusable) continue;
     const bool said = std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
       return line.find("unusable") != std::string::npos && line.find(surrogate.output) != std::string::npos &&
              line.find(surrogate.material) != std::string::npos;

@@ -37,6 +37,9 @@ std::string format_estimate(const ParameterReport& parameter, Typography typogra
 /// "62 % identified, 38 % weakly identified": what the word would be over repeats of the measurement.
 std::string format_words(const ParameterReport& parameter);
 
+/// "not identified (practical), borderline".
+std::string format_verdict(Verdict verdict, const std::optional<Reason>& reason, bool borderline);
+
 /// The 95 % profile-likelihood interval in words: "0.35 to 0.45", "0.28 to 0.31 and 0.57 to 0.62", "up to 0.5; open
 /// below", "open on both sides". Where another parameter's range ends it, its numbers stand, and that is said.
 std::string format_profile_interval(const ParameterReport& parameter, Typography typography);

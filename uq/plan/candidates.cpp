@@ -309,18 +309,6 @@ std::optional<std::size_t> host_of(const Study& study, const std::vector<std::si
 
 }  // namespace
 
-const char* to_text(CandidateKind kind) {
-  switch (kind) {
-    case CandidateKind::repeat:
-      return "repeat";
-    case CandidateKind::setting:
-      return "setting";
-    case CandidateKind::output:
-      return "output";
-  }
-  return "";
-}
-
 Eigen::VectorXd ExtendedCase::noise_at(const Eigen::VectorXd& mean, const Eigen::VectorXd& noise) const {
   Eigen::VectorXd scaled = noise;
   for (Index i = 0; i < noise.size(); ++i) {

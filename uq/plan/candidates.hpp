@@ -7,13 +7,10 @@
 
 #include "data/plan.hpp"
 #include "data/study.hpp"
+#include "uq/findings/kinds.hpp"
 #include "uq/posterior/case_model.hpp"
 
 namespace uq::plan {
-
-enum class CandidateKind { repeat, setting, output };
-/// "repeat", "setting", "output"
-const char* to_text(CandidateKind kind);
 
 struct Candidate {
   std::string name;  ///< "torque at 300 rpm"

@@ -113,7 +113,7 @@ std::vector<std::vector<WordProbability>> Forecast::words(const std::vector<Inde
     std::vector<WordProbability> words;
     for (const Verdict word : all_words)
       if (const auto count = std::count(drawn.begin(), drawn.end(), word); count > 0)
-        words.push_back({uq::to_text(word), static_cast<double>(count) / static_cast<double>(drawn.size())});
+        words.push_back({word, static_cast<double>(count) / static_cast<double>(drawn.size())});
     std::stable_sort(words.begin(), words.end(),
                      [](const auto& a, const auto& b) { return a.probability > b.probability; });
     found.push_back(std::move(words));

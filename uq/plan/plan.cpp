@@ -13,7 +13,7 @@
 #include "uq/plan/information.hpp"
 #include "uq/plan/outlook.hpp"
 #include "uq/posterior/posterior.hpp"
-#include "uq/refine/surrogate_share.hpp"
+#include "uq/posterior/surrogate_share.hpp"
 
 namespace uq::plan {
 namespace {
@@ -195,7 +195,7 @@ class Planner {
     const Candidate& candidate = candidates_[i];
     const std::vector<Index>& rows = extended_.planned[i];
     PlanCandidate one{.name = candidate.name,
-                      .kind = to_text(candidate.kind),
+                      .kind = candidate.kind,
                       .material = candidate.material,
                       .outputs = {},
                       .settings = {},
@@ -410,7 +410,7 @@ class Planner {
     if (gain.words.empty()) return {};
     double chance = 0.0;
     for (const WordProbability& word : gain.words)
-      if (word.verdict == uq::to_text(Verdict::identified)) chance = word.probability;
+      if (word.verdict == Verdict::identified) chance = word.probability;
     if (chance < 0.01)
       return fmt::format(" {} is not identified by that: {}.", name, gain.floor.empty() ? "it needs more" : gain.floor);
     return fmt::format(" {} is then identified with a probability of {:.0f} %.", name, 100.0 * chance);
@@ -426,14 +426,14 @@ class Planner {
     if (identified) text = fmt::format("{} is identified already (+- {}). ", report.about, width(gain, gain.sd_now));
     if (best.teaches)
       text += fmt::format("Measure {}{} next: it is expected to narrow {} from +- {} to +- {} ({:.2f} nats).",
-                          best.name, best.kind == "repeat" ? " again" : "", report.about, width(gain, gain.sd_now),
-                          width(gain, gain.sd_after), gain.information);
+                          best.name, best.kind == CandidateKind::repeat ? " again" : "", report.about,
+                          width(gain, gain.sd_now), width(gain, gain.sd_after), gain.information);
     else
       text += fmt::format("No candidate teaches {} anything: the best, {}, gives {:.2f} nats.", report.about, best.name,
                           gain.information);
     if (best.teaches && !identified) text += chance_of_identified(report.about, gain);
     const auto repeat = std::find_if(report.candidates.begin(), report.candidates.end(),
-                                     [](const PlanCandidate& one) { return one.kind == "repeat"; });
+                                     [](const PlanCandidate& one) { return one.kind == CandidateKind::repeat; });
     if (best.teaches && repeat != report.candidates.end() && repeat != report.candidates.begin())
       text += fmt::format(" The best of what is measured already, once more ({}), gives {:.2f} nats.", repeat->name,
                           repeat->parameters[k].information);

@@ -114,16 +114,14 @@ std::string error_scan_section(const CalibrationReport& report) {
   std::vector<std::pair<std::string, std::string>> rows;
   std::map<std::pair<std::string, std::string>, std::map<double, std::string>> cells;
   for (const ErrorScan& scan : report.error_scan) {
-    for (std::size_t i = 0; i < scan.parameters.size(); ++i) {
-      const std::pair key{scan.case_name, scan.parameters[i]};
+    for (const ParameterAgain& parameter : scan.parameters) {
+      const std::pair key{scan.case_name, parameter.name};
       if (std::find(rows.begin(), rows.end(), key) == rows.end()) rows.push_back(key);
-      std::string cell = i < scan.verdicts.size() ? text(scan.verdicts[i]) : "";
-      if (i < scan.mean.size() && i < scan.sd.size()) {
-        cell += "<br><span class=\"soft\">" +
-                text(format_with_error(scan.mean[i], scan.sd[i], unit_of(scan.case_name, scan.parameters[i]), pretty)) +
-                "</span>";
-      }
-      cells[key][scan.relative_error] = cell;
+      cells[key][scan.relative_error] =
+          text(format_verdict(parameter.verdict, parameter.reason, parameter.borderline)) +
+          "<br><span class=\"soft\">" +
+          text(format_with_error(parameter.mean, parameter.sd, unit_of(scan.case_name, parameter.name), pretty)) +
+          "</span>";
     }
   }
   std::string previous;

@@ -52,7 +52,7 @@ std::string parameter_table(const CaseReport& result) {
   for (const ParameterReport& parameter : result.parameters) {
     const Verdict verdict = shown_verdict(result, parameter);
     std::string said = badge(verdict);
-    if (verdict == parameter.verdict && parameter.reason) said += " " + text(*parameter.reason);
+    if (verdict == parameter.verdict && parameter.reason) said += fmt::format(" {}", to_text(*parameter.reason));
     if (parameter.borderline && result.fits) {
       const std::string words = format_words(parameter);
       said += fmt::format(" <span class=\"soft\">(borderline{})</span>", words.empty() ? "" : ": " + text(words));

@@ -60,7 +60,7 @@ Figure information_figure(const PlanReport& plan, const std::vector<const PlanCa
       bool measured = false;
       for (const PlanCandidate* one : candidates)
         if (one->outputs.front() == output) {
-          measured = measured || one->kind != "output";
+          measured = measured || one->kind != CandidateKind::output;
           series.points.push_back({one->settings.front().at(control), one->parameters[k].information,
                                    one->parameters[k].information_error});
         }
@@ -146,7 +146,7 @@ std::string candidate_table(const PlanReport& plan) {
   for (const PlanCandidate& one : plan.candidates) {
     const PlannedParameter& about = asked(plan, one.parameters);
     std::string name = text(one.name);
-    if (one.kind == "repeat") name += " <span class=\"soft\">(measured already)</span>";
+    if (one.kind == CandidateKind::repeat) name += " <span class=\"soft\">(measured already)</span>";
     if (one.model_only) name += " <span class=\"soft\">(model only)</span>";
     if (!one.teaches) name += " <span class=\"soft\">(teaches nothing)</span>";
     table.rows.push_back({{name, "long"},

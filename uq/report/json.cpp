@@ -50,7 +50,7 @@ Json surrogate_json(const SurrogateReport& surrogate) {
           {"q2", number(surrogate.q2)},
           {"coverage95", number(surrogate.coverage95)},
           {"runs", surrogate.runs},
-          {"verdict", surrogate.verdict},
+          {"verdict", to_text(surrogate.verdict)},
           {"q2_held_out", number(surrogate.q2_held_out)},
           {"nugget_sd", number(surrogate.nugget_sd)},
           {"unit", surrogate.unit},
@@ -101,15 +101,29 @@ Json support_json(const SupportReport& support) {
           {"next_runs", std::move(next)}};
 }
 
+/// Parameters of a case that was calibrated again, as lists of equal length; `word` makes the text of each verdict.
+template <class Word>
+Json again_json(const std::vector<ParameterAgain>& parameters, Word word) {
+  Json json{{"parameters", Json::array()}, {"verdicts", Json::array()}, {"mean", Json::array()}, {"sd", Json::array()}};
+  for (const ParameterAgain& parameter : parameters) {
+    json["parameters"].push_back(parameter.name);
+    json["verdicts"].push_back(word(parameter));
+    json["mean"].push_back(number(parameter.mean));
+    json["sd"].push_back(number(parameter.sd));
+  }
+  return json;
+}
+
 Json without_json(const std::optional<WithoutRuns>& without) {
   if (!without) return nullptr;
-  return {{"places", without->places},      {"parameters", without->parameters}, {"verdicts", without->verdicts},
-          {"mean", numbers(without->mean)}, {"sd", numbers(without->sd)},        {"fits", without->fits},
-          {"sentence", without->sentence}};
+  Json json{{"places", without->places}};
+  json.update(again_json(without->parameters, [](const ParameterAgain& one) { return to_text(one.verdict); }));
+  json.update({{"fits", without->fits}, {"sentence", without->sentence}});
+  return json;
 }
 
 Json finding_json(const DataFinding& finding) {
-  return {{"kind", finding.kind}, {"place", finding.place},   {"severity", finding.severity},
+  return {{"kind", finding.kind}, {"place", finding.place},   {"severity", to_text(finding.severity)},
           {"what", finding.what}, {"remedy", finding.remedy}, {"places", finding.places}};
 }
 
@@ -138,7 +152,8 @@ Json holes_json(const ParameterReport& parameter) {
 
 Json words_json(const ParameterReport& parameter) {
   Json object = Json::object();
-  for (const WordProbability& word : parameter.word_probabilities) object[word.verdict] = number(word.probability);
+  for (const WordProbability& word : parameter.word_probabilities)
+    object[to_text(word.verdict)] = number(word.probability);
   return object;
 }
 
@@ -151,41 +166,42 @@ Json modes_json(const CaseReport& result) {
 
 Json parameter_json(const CaseReport& result, const ParameterReport& parameter) {
   const Verdict verdict = shown_verdict(result, parameter);
-  return {{"name", parameter.name},
-          {"unit", parameter.unit},
-          {"mean", number(parameter.mean)},
-          {"sd", number(parameter.sd)},
-          {"q05", number(parameter.q05)},
-          {"q50", number(parameter.q50)},
-          {"q95", number(parameter.q95)},
-          {"rhat", number(parameter.rhat)},
-          {"ess_bulk", number(parameter.ess_bulk)},
-          {"ess_tail", number(parameter.ess_tail)},
-          {"contraction", number(parameter.contraction)},
-          {"profile95", Json::array({number(parameter.profile_low), number(parameter.profile_high)})},
-          {"verdict", to_text(verdict)},
-          {"reason", parameter.reason && verdict == parameter.verdict ? Json(*parameter.reason) : Json(nullptr)},
-          {"borderline", parameter.borderline},
-          {"mcse", number(parameter.mcse)},
-          {"map", number(parameter.map)},
-          {"prior",
-           {{"low", number(parameter.prior_low)},
-            {"high", number(parameter.prior_high)},
-            {"mean", number(parameter.prior_mean)},
-            {"sd", number(parameter.prior_sd)}}},
-          {"sentence", shown_sentence(result, parameter)},
-          {"usable", result.doubt.empty() && result.fits},
-          {"intervals", intervals_json(parameter)},
-          {"holes", holes_json(parameter)},
-          {"open_for_range_of",
-           {{"low", parameter.low_pinned_by.empty() ? Json(nullptr) : Json(parameter.low_pinned_by)},
-            {"high", parameter.high_pinned_by.empty() ? Json(nullptr) : Json(parameter.high_pinned_by)}}},
-          {"word_probabilities", words_json(parameter)},
-          {"width_shares",
-           {{"measurement", number(parameter.share_measurement)},
-            {"surrogate", number(parameter.share_surrogate)},
-            {"structure", number(parameter.share_structure)},
-            {"range", number(parameter.share_range)}}}};
+  return {
+      {"name", parameter.name},
+      {"unit", parameter.unit},
+      {"mean", number(parameter.mean)},
+      {"sd", number(parameter.sd)},
+      {"q05", number(parameter.q05)},
+      {"q50", number(parameter.q50)},
+      {"q95", number(parameter.q95)},
+      {"rhat", number(parameter.rhat)},
+      {"ess_bulk", number(parameter.ess_bulk)},
+      {"ess_tail", number(parameter.ess_tail)},
+      {"contraction", number(parameter.contraction)},
+      {"profile95", Json::array({number(parameter.profile_low), number(parameter.profile_high)})},
+      {"verdict", to_text(verdict)},
+      {"reason", parameter.reason && verdict == parameter.verdict ? Json(to_text(*parameter.reason)) : Json(nullptr)},
+      {"borderline", parameter.borderline},
+      {"mcse", number(parameter.mcse)},
+      {"map", number(parameter.map)},
+      {"prior",
+       {{"low", number(parameter.prior_low)},
+        {"high", number(parameter.prior_high)},
+        {"mean", number(parameter.prior_mean)},
+        {"sd", number(parameter.prior_sd)}}},
+      {"sentence", shown_sentence(result, parameter)},
+      {"usable", result.doubt.empty() && result.fits},
+      {"intervals", intervals_json(parameter)},
+      {"holes", holes_json(parameter)},
+      {"open_for_range_of",
+       {{"low", parameter.low_pinned_by.empty() ? Json(nullptr) : Json(parameter.low_pinned_by)},
+        {"high", parameter.high_pinned_by.empty() ? Json(nullptr) : Json(parameter.high_pinned_by)}}},
+      {"word_probabilities", words_json(parameter)},
+      {"width_shares",
+       {{"measurement", number(parameter.share_measurement)},
+        {"surrogate", number(parameter.share_surrogate)},
+        {"structure", number(parameter.share_structure)},
+        {"range", number(parameter.share_range)}}}};
 }
 
 Json nuisance_json(const NuisanceReport& nuisance) {
@@ -230,7 +246,7 @@ Json traded_json(const TradedPair& traded) {
   return {{"pair", Json::array({traded.first, traded.second})},
           {"parameters", traded.parameters},
           {"combination", traded.combination},
-          {"form", traded.form},
+          {"form", to_text(traded.form)},
           {"value", number(traded.value)},
           {"error", number(traded.error)},
           {"unit", traded.unit},
@@ -325,7 +341,7 @@ Json case_json(const CaseReport& result) {
       {"support", support_json(result.support)},
       {"without", without_json(result.without)},
       {"doubt", result.doubt.empty() ? Json(nullptr) : Json(result.doubt)},
-      {"surrogate_share", number(result.surrogate_share)},
+      {"surrogate_to_measurement", number(result.surrogate_to_measurement)},
       {"modes", modes_json(result)},
       {"modes_parted_by", result.modes_parted_by},
       {"predictions", Json::array()},
@@ -343,10 +359,12 @@ Json case_json(const CaseReport& result) {
 }
 
 Json scan_json(const ErrorScan& scan) {
-  return {{"case", scan.case_name},        {"relative_error", number(scan.relative_error)},
-          {"parameters", scan.parameters}, {"verdicts", scan.verdicts},
-          {"mean", numbers(scan.mean)},    {"sd", numbers(scan.sd)},
-          {"ppp", number(scan.ppp)}};
+  Json json{{"case", scan.case_name}, {"relative_error", number(scan.relative_error)}};
+  json.update(again_json(scan.parameters, [](const ParameterAgain& one) {
+    return format_verdict(one.verdict, one.reason, one.borderline);
+  }));
+  json["ppp"] = number(scan.ppp);
+  return json;
 }
 
 }  // namespace

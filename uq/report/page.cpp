@@ -79,10 +79,10 @@ std::string badge(Verdict verdict) {
   return "<span class=\"badge fail\">! model does not fit</span>";
 }
 
-std::string badge(const std::string& surrogate_verdict) {
-  const bool good = surrogate_verdict == "good", caution = surrogate_verdict == "caution";
+std::string badge(SurrogateWord word) {
+  const bool good = word == SurrogateWord::good, caution = word == SurrogateWord::caution;
   return fmt::format("<span class=\"badge {}\">{} {}</span>", good ? "good" : (caution ? "fair" : "fail"),
-                     good ? "\u2713" : (caution ? "\u223c" : "!"), text(surrogate_verdict));
+                     good ? "\u2713" : (caution ? "\u223c" : "!"), to_text(word));
 }
 
 std::string case_id(std::size_t index, const CaseReport& result) {

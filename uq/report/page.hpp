@@ -37,7 +37,7 @@ std::string html(const Table& table);
 std::string figure(const Figure& figure, const std::string& caption, const Context& context);
 
 std::string badge(Verdict verdict);
-std::string badge(const std::string& surrogate_verdict);
+std::string badge(SurrogateWord word);
 
 /// A case's place in the page: "case-2-carrier". The index keeps two names with one slug apart.
 std::string case_id(std::size_t index, const CaseReport& result);

@@ -18,7 +18,7 @@ std::string with_unit(double sd, const std::string& unit) {
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }
 
-double chance(const PlannedParameter& parameter, const std::string& word) {
+double chance(const PlannedParameter& parameter, Verdict word) {
   for (const WordProbability& one : parameter.words)
     if (one.verdict == word) return one.probability;
   return 0.0;
@@ -47,7 +47,7 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
 std::string marks(const PlanCandidate& one) {
   std::vector<std::string> found;
   if (!one.teaches) found.emplace_back("teaches nothing");
-  if (one.kind == "repeat") found.emplace_back("measured already");
+  if (one.kind == CandidateKind::repeat) found.emplace_back("measured already");
   if (one.model_only) found.emplace_back("model only");
   if (one.assumed_error) found.push_back("error of " + one.error + " assumed");
   return fmt::format("{}", fmt::join(found, ", "));
@@ -64,7 +64,7 @@ const PlannedParameter& asked(const PlanReport& plan, const std::vector<PlannedP
 std::string words_text(const PlannedParameter& parameter) {
   std::vector<std::string> words;
   for (const WordProbability& one : parameter.words)
-    words.push_back(fmt::format("{} {:.0f} %", one.verdict, 100.0 * one.probability));
+    words.push_back(fmt::format("{} {:.0f} %", to_text(one.verdict), 100.0 * one.probability));
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
@@ -90,7 +90,7 @@ std::string plan_text(const std::string& case_name, const PlanReport& plan) {
     const PlannedParameter& about = asked(plan, one.parameters);
     rows.push_back({one.name, fmt::format("{:.2f} +- {:.2f}", about.information, about.information_error),
                     fmt::format("{:.2f}", one.information), significant(about.sd_after, 2, Typography::ascii)});
-    if (words) rows.back().push_back(percent(chance(about, to_text(Verdict::identified))));
+    if (words) rows.back().push_back(percent(chance(about, Verdict::identified)));
     if (costs) rows.back().push_back(fmt::format("{:g}", one.cost));
     rows.back().push_back(marks(one));
   }

@@ -61,9 +61,8 @@ std::string parameter_lines(const CaseReport& result, int columns) {
   std::vector<Row> rows;
   for (const ParameterReport& parameter : result.parameters) {
     const Verdict verdict = shown_verdict(result, parameter);
-    std::string said = to_text(verdict);
-    if (parameter.reason && verdict == parameter.verdict) said += " (" + *parameter.reason + ")";
-    if (parameter.borderline && result.fits) said += ", borderline";
+    const std::string said = format_verdict(verdict, verdict == parameter.verdict ? parameter.reason : std::nullopt,
+                                            parameter.borderline && result.fits);
     rows.push_back(
         {harmless(parameter.name), harmless(shown_value(result, parameter, Typography::ascii)), said,
          result.doubt.empty() ? "95 % profile: " + format_profile_interval(parameter, Typography::ascii) : ""});

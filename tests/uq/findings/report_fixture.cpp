@@ -114,7 +114,7 @@ CaseReport linked_case() {
                        parameter("hamaker", "J", {0.0, 2e-17}, 2.07e-18, 4.1e-19)};
   result.parameters[1].verdict = Verdict::weakly_identified;
   result.parameters[1].borderline = true;
-  result.parameters[1].reason = "practical";
+  result.parameters[1].reason = Reason::practical;
   result.correlation = {{1.0, -0.61}, {-0.61, 1.0}};
   add_torque(result, 88.0, 0.0, 2);
   result.grid_difference = 0.021;
@@ -148,7 +148,7 @@ CaseReport ridge() {
   ParameterReport& hamaker = result.parameters[1];
   for (ParameterReport* p : {&friction, &hamaker}) {
     p->verdict = Verdict::not_identified;
-    p->reason = "practical";
+    p->reason = Reason::practical;
     p->contraction = 0.28;
     p->sentence = p->name + " is not identified: its profile stays below 3.84 over most of its range.";
   }
@@ -202,7 +202,7 @@ SurrogateReport surrogate(const std::string& material, double level, std::uint32
   s.q2_held_out = 0.981;
   s.coverage95 = 0.953;
   s.nugget_sd = 0.74;
-  s.verdict = "good";
+  s.verdict = SurrogateWord::good;
   s.finding = "It predicts unseen runs to 2 % and its intervals are honest.";
   s.consequence = "It may stand in for the simulation.";
   s.remedy = "None needed.";
@@ -232,18 +232,14 @@ CalibrationReport three_cases() {
   report.cases = {one_parameter(), linked_case(), ridge()};
   for (const CaseReport& result : report.cases) {
     for (const double error : {0.01, 0.03, 0.05}) {
-      ErrorScan scan{.case_name = result.name,
-                     .relative_error = error,
-                     .parameters = {},
-                     .verdicts = {},
-                     .mean = {},
-                     .sd = {},
-                     .ppp = 0.5};
+      ErrorScan scan{.case_name = result.name, .relative_error = error, .parameters = {}, .ppp = 0.5};
       for (const ParameterReport& p : result.parameters) {
-        scan.parameters.push_back(p.name);
-        scan.verdicts.push_back(to_text(p.verdict));
-        scan.mean.push_back(p.mean);
-        scan.sd.push_back(p.sd * error / 0.03);
+        scan.parameters.push_back({.name = p.name,
+                                   .verdict = p.verdict,
+                                   .reason = {},
+                                   .borderline = false,
+                                   .mean = p.mean,
+                                   .sd = p.sd * error / 0.03});
       }
       report.error_scan.push_back(scan);
     }

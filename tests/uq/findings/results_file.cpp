@@ -129,7 +129,7 @@ TEST_CASE("any double comes back to the last bit, NaN and the infinities too") {
 TEST_CASE("a field that an older file lacks keeps its default") {
   const TemporaryFolder folder;
   std::ofstream(folder.path("results.json"))
-      << R"({"format": 1, "results": {"study_name": "old", "cases": [{"name": "c"}]}})";
+      << R"({"format": 2, "results": {"study_name": "old", "cases": [{"name": "c"}]}})";
   const CalibrationReport report = load_results(folder.path("results.json"));
   CHECK(report.study_name == "old");
   CHECK(report.cases.at(0).fits);
@@ -139,7 +139,7 @@ TEST_CASE("missing, damaged and foreign results files are told apart with their 
   const TemporaryFolder folder;
   std::string message;
   CHECK(status_of_loading(folder.path("none.json"), message) == data::ExitStatus::missing_input);
-  std::ofstream(folder.path("cut.json")) << R"({"format": 1, "results": {"study_na)";
+  std::ofstream(folder.path("cut.json")) << R"({"format": 2, "results": {"study_na)";
   CHECK(status_of_loading(folder.path("cut.json"), message) == data::ExitStatus::bad_data);
   CHECK(message.find("cut.json") != std::string::npos);
   std::ofstream(folder.path("later.json")) << R"({"format": 9, "results": {}})";
@@ -147,7 +147,7 @@ TEST_CASE("missing, damaged and foreign results files are told apart with their 
   std::ofstream(folder.path("list.json")) << "[]";
   CHECK(status_of_loading(folder.path("list.json"), message) == data::ExitStatus::bad_data);
   std::ofstream(folder.path("kind.json"))
-      << R"({"format": 1, "results": {"cases": [{"parameters": [{"mean": "much"}]}]}})";
+      << R"({"format": 2, "results": {"cases": [{"parameters": [{"mean": "much"}]}]}})";
   CHECK(status_of_loading(folder.path("kind.json"), message) == data::ExitStatus::bad_data);
   CHECK(message.find("results.cases[0].parameters[0].mean") != std::string::npos);
 }

@@ -38,7 +38,7 @@ const PlanCandidate& named(const PlanReport& plan, const std::string& name) {
   return *found;
 }
 
-double chance(const PlanCandidate& one, std::size_t parameter, const std::string& word) {
+double chance(const PlanCandidate& one, std::size_t parameter, uq::Verdict word) {
   for (const uq::WordProbability& each : one.parameters[parameter].words)
     if (each.verdict == word) return each.probability;
   return 0.0;
@@ -52,7 +52,7 @@ TEST_CASE("what parts two traded parameters is ranked above more of the same", "
   CHECK(plan.candidates.front().outputs == std::vector<std::string>{"angle"});
   CHECK(plan.candidates.front().assumed_error);
   const PlanCandidate &best = plan.candidates.front(), &again = named(plan, "torque at 0");
-  CHECK(again.kind == "repeat");
+  CHECK(again.kind == uq::CandidateKind::repeat);
   CHECK(best.parameters[0].information > 5.0 * again.parameters[0].information);
   CHECK(best.parameters[0].sd_after < best.parameters[0].sd_now);
   CHECK_THAT(plan.sentence, Catch::Contains("Measure angle"));
@@ -215,7 +215,7 @@ TEST_CASE("widths and words that a plan forecasts come true", "[plan][slow]") {
     const uq::Identification told = uq::identify(*after.model, after.draws.pooled());
     expected += first.parameters[0].sd_after;
     found += told.parameters[0].sd;
-    chances.push_back(chance(first, 0, "identified") + chance(first, 0, "weakly identified"));
+    chances.push_back(chance(first, 0, uq::Verdict::identified) + chance(first, 0, uq::Verdict::weakly_identified));
     outcomes.push_back(told.parameters[0].verdict == uq::Verdict::identified ||
                                told.parameters[0].verdict == uq::Verdict::weakly_identified
                            ? 1.0

@@ -96,7 +96,7 @@ TEST_CASE("markup and commands in names appear as text and do nothing") {
   report.warnings = report.notes = {evil};
   report.thresholds = report.provenance = {{evil, evil}};
   for (SurrogateReport& surrogate : report.surrogates) {
-    for (auto* field : {&surrogate.output, &surrogate.material, &surrogate.unit, &surrogate.verdict, &surrogate.finding,
+    for (auto* field : {&surrogate.output, &surrogate.material, &surrogate.unit, &surrogate.finding,
                         &surrogate.consequence, &surrogate.remedy}) {
       *field = evil;
     }
@@ -105,15 +105,13 @@ TEST_CASE("markup and commands in names appear as text and do nothing") {
   }
   for (ErrorScan& scan : report.error_scan) {
     scan.case_name = evil;
-    for (auto& text : scan.parameters) text = evil;
-    for (auto& text : scan.verdicts) text = evil;
+    for (ParameterAgain& parameter : scan.parameters) parameter.name = evil;
   }
   for (CaseReport& result : report.cases) {
     result.name = result.finding = result.consequence = result.remedy = evil;
     result.observed_sets = result.observed_notes = result.linked = result.warnings = {evil};
     for (ParameterReport& parameter : result.parameters) {
       parameter.name = parameter.unit = parameter.sentence = evil;
-      parameter.reason = evil;
     }
     for (TradedPair& traded : result.traded) traded.first = traded.second = traded.combination = evil;
     for (PredictivePoint& point : result.predictive) {

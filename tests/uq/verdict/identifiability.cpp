@@ -65,7 +65,7 @@ TEST_CASE("a sum is known where its terms are not: structural, and the direction
     CHECK(parameter.sd == Approx(fact["post_sd_each"].get<double>()).epsilon(0.06));
     CHECK(parameter.contraction == Approx(fact["shrink_each"].get<double>()).margin(0.06));
     CHECK(parameter.verdict == Verdict::not_identified);
-    CHECK(parameter.reason == std::optional<std::string>("structural"));
+    CHECK(parameter.reason == uq::Reason::structural);
     CHECK_FALSE(parameter.profile_low);
     CHECK_FALSE(parameter.profile_high);
   }
@@ -88,8 +88,7 @@ TEST_CASE("a product known only as x y^3 is found without being told", "[uq][slo
   for (const auto& parameter : found.parameters) {
     INFO(parameter.sentence);
     CHECK(parameter.verdict != Verdict::identified);
-    if (parameter.verdict == Verdict::not_identified)
-      CHECK(parameter.reason == std::optional<std::string>("structural"));
+    if (parameter.verdict == Verdict::not_identified) CHECK(parameter.reason == uq::Reason::structural);
   }
   REQUIRE(found.traded.size() == 1);
   INFO(found.traded[0].combination);
@@ -113,7 +112,7 @@ TEST_CASE("noise that hides what a better measurement would show is a practical 
   for (const auto& parameter : found.parameters) {
     INFO(parameter.sentence);
     CHECK(parameter.verdict == Verdict::not_identified);
-    CHECK(parameter.reason != std::optional<std::string>("structural"));
+    CHECK(parameter.reason != uq::Reason::structural);
   }
 }
 
@@ -124,14 +123,14 @@ TEST_CASE("a parameter against its physical bound has an upper limit, against a 
       identified(make_synthetic({{"h", 0.0, 2.0}}, line, six, Eigen::VectorXd::Zero(1), 0.02, 6));
   INFO(zero.parameters[0].sentence);
   CHECK(zero.parameters[0].verdict == Verdict::weakly_identified);
-  CHECK(zero.parameters[0].reason == std::optional<std::string>("bound"));
+  CHECK(zero.parameters[0].reason == uq::Reason::bound);
   CHECK_FALSE(zero.parameters[0].profile_low);
   CHECK(zero.parameters[0].profile_high);
   const uq::Identification shifted =
       identified(make_synthetic({{"h", 0.1, 2.0}}, line, six, Eigen::VectorXd::Constant(1, 0.1), 0.02, 6));
   INFO(shifted.parameters[0].sentence);
   CHECK(shifted.parameters[0].verdict == Verdict::not_identified);
-  CHECK(shifted.parameters[0].reason == std::optional<std::string>("one-sided"));
+  CHECK(shifted.parameters[0].reason == uq::Reason::one_sided);
 }
 
 TEST_CASE("a model that fits nowhere is said not to fit, and nothing is identified", "[uq]") {

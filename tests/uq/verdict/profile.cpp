@@ -168,7 +168,7 @@ TEST_CASE("PUQ's unidentifiable case: its contractions, one parameter known and 
   CHECK(found.parameters[0].contraction == Approx(0.083).margin(0.04));
   CHECK(found.parameters[1].contraction == Approx(0.953).margin(0.01));
   CHECK(found.parameters[0].verdict == uq::Verdict::not_identified);
-  CHECK(found.parameters[0].reason == std::optional<std::string>("practical"));
+  CHECK(found.parameters[0].reason == uq::Reason::practical);
   CHECK(found.parameters[1].verdict == uq::Verdict::identified);
   CHECK(found.traded.empty());
 }

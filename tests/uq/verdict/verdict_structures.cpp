@@ -6,17 +6,19 @@
 namespace verdict_suite {
 namespace {
 
+using uq::Reason;
 using uq::Verdict;
 using Vector = Eigen::VectorXd;
 
 const Expected known{.words = {Verdict::identified}, .reasons = {}};
-const Expected structural{.words = {Verdict::not_identified}, .reasons = {"structural"}};
+const Expected structural{.words = {Verdict::not_identified}, .reasons = {Reason::structural}};
 const Expected wide{.words = {Verdict::not_identified, Verdict::weakly_identified}, .reasons = {}};
-const Expected silent{.words = {Verdict::not_identified}, .reasons = {"no influence"}};
+const Expected silent{.words = {Verdict::not_identified}, .reasons = {Reason::no_influence}};
 /// Not structural: another data set may end such an interval on one side by chance.
-const Expected hidden{.words = {Verdict::not_identified}, .reasons = {"practical", "surrogate", "one-sided", "bound"}};
-const Expected limited{.words = {Verdict::not_identified}, .reasons = {"one-sided"}};
-const Expected upper{.words = {Verdict::weakly_identified}, .reasons = {"bound"}};
+const Expected hidden{.words = {Verdict::not_identified},
+                      .reasons = {Reason::practical, Reason::surrogate, Reason::one_sided, Reason::bound}};
+const Expected limited{.words = {Verdict::not_identified}, .reasons = {Reason::one_sided}};
+const Expected upper{.words = {Verdict::weakly_identified}, .reasons = {Reason::bound}};
 const Expected misfit{.words = {Verdict::does_not_fit}, .reasons = {}};
 
 Expected separate(int values) { return {.words = {Verdict::several_values}, .reasons = {}, .values = values}; }

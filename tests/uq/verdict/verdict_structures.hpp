@@ -19,9 +19,9 @@ struct Range {
 
 /// What is right of one parameter.
 struct Expected {
-  std::vector<uq::Verdict> words;    ///< any of these
-  std::vector<std::string> reasons;  ///< any of these where the word has one; empty: not asked
-  int values = 1;                    ///< separate ones
+  std::vector<uq::Verdict> words;   ///< any of these
+  std::vector<uq::Reason> reasons;  ///< any of these where the word has one; empty: not asked
+  int values = 1;                   ///< separate ones
 };
 
 /// A combination that must be named, by its members, and of which form; empty text: any form.

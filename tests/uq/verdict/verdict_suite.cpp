@@ -94,10 +94,10 @@ Outcome run(const Structure& structure, std::uint32_t seed) {
     const Expected& expected = structure.expected[k];
     if (!holds(expected.words, parameter.verdict)) {
       miss(fmt::format("{} {}{}", parameter.name, uq::to_text(parameter.verdict),
-                       parameter.reason ? " (" + *parameter.reason + ")" : ""));
+                       parameter.reason ? fmt::format(" ({})", uq::to_text(*parameter.reason)) : ""));
       if (parameter.verdict == uq::Verdict::identified) outcome.falsely_identified = true;
     } else if (!expected.reasons.empty() && parameter.reason && !holds(expected.reasons, *parameter.reason)) {
-      miss(parameter.name + " " + *parameter.reason);
+      miss(fmt::format("{} {}", parameter.name, uq::to_text(*parameter.reason)));
     } else if (expected.values > 1 && static_cast<int>(parameter.intervals.size()) != expected.values) {
       miss(fmt::format("{} {} values", parameter.name, parameter.intervals.size()));
     }
@@ -121,7 +121,7 @@ Outcome run(const Structure& structure, std::uint32_t seed) {
     for (const auto& parameter : found.parameters) {
       fmt::print("    {}\n", parameter.sentence);
       for (const auto& word : parameter.word_probabilities)
-        fmt::print("      {} {:.2f}", word.verdict, word.probability);
+        fmt::print("      {} {:.2f}", uq::to_text(word.verdict), word.probability);
       fmt::print("\n");
     }
     fmt::print("    {}\n    {}\n    {}\n", words.finding, words.consequence, words.remedy);

@@ -78,14 +78,14 @@ void check_words(const std::vector<ParameterReport>& parameters, const Words& wo
   CHECK_FALSE(words.consequence.empty());
   bool practical = false, structural = false;
   for (const ParameterReport& p : parameters) {
-    practical = practical || p.reason == "practical" || p.reason == "bound";
-    structural = structural || p.reason == "structural";
+    practical = practical || p.reason == Reason::practical || p.reason == Reason::bound;
+    structural = structural || p.reason == Reason::structural;
     // A sentence names one reason.
     CHECK(has(p.sentence, "noise hides it") + has(p.sentence, "surrogate's error") + has(p.sentence, "would not help") +
               has(p.sentence, "say nothing") <=
           1);
     if (has(p.sentence, "is identified")) CHECK(p.verdict == Verdict::identified);
-    if (p.reason == "no influence") CHECK_FALSE(has(p.sentence, "would not help"));
+    if (p.reason == Reason::no_influence) CHECK_FALSE(has(p.sentence, "would not help"));
   }
   // A smaller error is asked for only where it can help.
   if (!practical) CHECK_FALSE(has(words.remedy, "educe the measurement error"));
@@ -127,16 +127,17 @@ TEST_CASE("the first remedy is that of the largest share: training runs where th
   ParameterEvidence more;
   more.surrogate_share = 0.8;
   const ParameterReport parameter = judged("a", {.contraction = 0.3, .contraction_within = 0.3}, more);
-  CHECK(parameter.reason == std::optional<std::string>("surrogate"));
-  const Words words = words_of({.parameters = {parameter}, .traded = {}, .parted_by = {}, .surrogate_share = 2.0});
+  CHECK(parameter.reason == uq::Reason::surrogate);
+  const Words words = words_of({.parameters = {parameter}, .traded = {}, .parted_by = {}});
   CHECK(words.remedy.rfind("Make more training runs", 0) == 0);
+  CHECK(has(words.remedy, "up to 80 % of the posterior variance is the surrogate's"));
   CHECK_FALSE(has(words.remedy, "Reduce the measurement error"));
 }
 
 TEST_CASE("a parameter without influence is told neither structural nor hidden by noise, and gets one remedy", "[uq]") {
   const ParameterReport known = judged("a", {.contraction = 0.95, .contraction_within = 0.95}, {});
   const ParameterReport silent = judged("b", {.influences = false, .open_low = true, .open_high = true}, {});
-  CHECK(silent.reason == std::optional<std::string>("no influence"));
+  CHECK(silent.reason == uq::Reason::no_influence);
   const Words words = words_of({.parameters = {known, silent}, .traded = {}, .parted_by = {}});
   CHECK(words.finding == "The data determine a. They say nothing of b.");
   CHECK(has(words.remedy, "that b moves"));

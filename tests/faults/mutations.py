@@ -1,0 +1,197 @@
+#!/usr/bin/env python3
+"""Whether a wrong sign or a lost term is noticed: python3 tests/faults/mutations.py BUILD_FOLDER [--only TEXT]
+
+Each mutation changes one expression of the contact laws, the likelihood, the profile or the planner. The sources stay
+as they are: the changed file is compiled aside by the build's own command and linked before the libraries, into a copy
+of a test program. Of this program one named test is run, and must fail. A mutation that passes is a hole in the tests.
+BUILD_FOLDER is configured for Ninja and has the test programs built (cmake --build --preset dev).
+"""
+import argparse
+import json
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+from typing import NamedTuple
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+
+
+class Mutation(NamedTuple):
+    what: str
+    file: str       # that is changed
+    before: str     # an expression that is in it once
+    after: str
+    units: tuple    # sources to compile again
+    program: str
+    test: str       # of Catch: a name, with * at its end
+
+
+CONTACT = "dem/contact/contact_law.hpp"
+PARTS = "dem/contact/parts/"
+LINEAR, HERTZ, JKR = (f"dem/contact/forces/{name}.cpp" for name in ("linear", "hertz", "jkr"))
+POSTERIOR, PROFILE = "uq/posterior/posterior.cpp", "uq/verdict/profile.cpp"
+INFORMATION = "uq/plan/information.cpp"
+
+MUTATIONS = [
+    Mutation("the dashpot drives instead of damps", PARTS + "normal.hpp", "elastic - damping * normal_velocity",
+             "elastic + damping * normal_velocity", (LINEAR,), "test_dem", "spheres rebound from each other*"),
+    Mutation("Hertz's force has 1/3 for 4/3", PARTS + "normal.hpp", "4.0 / 3.0 * modulus", "1.0 / 3.0 * modulus",
+             (HERTZ,), "test_dem", "Chung & Ooi 1*"),
+    Mutation("JKR pulls off at twice its force", PARTS + "normal.hpp", "C(1.5 * std::numbers::pi * w * radius)",
+             "C(3.0 * std::numbers::pi * w * radius)", (JKR,), "test_dem", "JKR: a sphere comes off a plane*"),
+    Mutation("what a torn JKR contact gives up is lost", PARTS + "normal.hpp",
+             "held * (1.0 - touch) * energy_at(break_root)", "0.0 * held", (JKR,), "test_dem",
+             "energy lost in a collision*"),
+    Mutation("the spring does not lead", PARTS + "slider.hpp", "(0.5 + lead) * reach", "0.5 * reach", (LINEAR,),
+             "test_dem", "an elastic oblique collision*"),
+    Mutation("friction does not follow the load", CONTACT, "push.total + cap_weight * pull", "push.elastic", (LINEAR,),
+             "test_dem", "the adhesive load enters the Coulomb limit*"),
+    Mutation("tangential force along the slip", PARTS + "slider.hpp", "return {-force,", "return {force,", (LINEAR,),
+             "test_dem", "a sliding sphere rolls*"),
+    Mutation("Mindlin's spring is not scaled when it unloads", PARTS + "tangential.hpp",
+             "select(normal.radius < radius_before, T(normal.radius / radius_before), T(1.0))", "T(1.0)", (HERTZ,),
+             "test_dem", "no grazing or oblique hit gains energy*"),
+    Mutation("the rolling couple has the other sign", PARTS + "resistance.hpp", "T(radius) * cross(n, roll.force)",
+             "T(radius) * cross(roll.force, n)", (LINEAR,), "test_dem", "energy lost in a collision*"),
+    Mutation("constant resistance twists the wrong way", PARTS + "resistance.hpp", "- T(twist * along) * n",
+             "+ T(twist * along) * n", (LINEAR,), "test_dem", "a sphere spinning about the normal*"),
+    Mutation("attraction falls with 1/h instead of 1/h^2", PARTS + "attraction.hpp",
+             "T(pull_off * nearness * nearness)", "T(pull_off * nearness)", (LINEAR,), "test_dem",
+             "the energy ledger of a slice run*"),
+    Mutation("attraction does not pull", CONTACT, "push.total - pull", "push.total", (LINEAR,), "test_dem",
+             "a constant attraction holds spheres*"),
+    Mutation("the likelihood lacks its determinant", POSTERIOR, "-0.5 * residual.squaredNorm() - log_root -",
+             "-0.5 * residual.squaredNorm() -", (POSTERIOR,), "test_uq_posterior", "the linear-Gaussian posterior*"),
+    Mutation("the likelihood lacks the measurement's variance", POSTERIOR,
+             "    covariance.diagonal() += group.variance;\n", "", (POSTERIOR,), "test_uq_posterior",
+             "the linear-Gaussian posterior*"),
+    Mutation("the gradient lacks the covariance's slope", POSTERIOR,
+             "a.dot(slope * a) - inverse.cwiseProduct(slope).sum()", "0.0 * a.dot(slope * a)", (POSTERIOR,),
+             "test_uq_posterior", "the gradient of the posterior*"),
+    Mutation("the gradient of the mean has the other sign", POSTERIOR, "a.dot(slopes.mean[k]) +",
+             "-a.dot(slopes.mean[k]) +", (POSTERIOR,), "test_uq_posterior", "the gradient of the posterior*"),
+    Mutation("the scatter of repeats counts twice", POSTERIOR, "repeats.log_constant - 0.5 * chi",
+             "repeats.log_constant - chi", (POSTERIOR,), "test_uq_posterior", "*repeats*"),
+    Mutation("the profile maximises over nothing", PROFILE, "profile.path.row(i) = found.x.transpose();\n  };",
+             "profile.path.row(i) = found.x.transpose();\n    level[i] -= 0.5;\n  };", (PROFILE,), "test_uq_verdict",
+             "profile intervals of LikelihoodProfiler.jl's separable*"),
+    Mutation("the profile sees one maximum only", PROFILE,
+             "const int from_box = model.row_count() > many_rows ? 0 : 12;", "const int from_box = 0;", (PROFILE,),
+             "test_uq_verdict", "a narrow second maximum*"),
+    Mutation("a bound at 0 is a bound like any other", PROFILE, "parameter.low == 0.0 &&", "parameter.low == 1.0 &&",
+             (PROFILE,), "test_uq_verdict", "*upper*"),
+    Mutation("information has the wrong sign", INFORMATION, "return -extrapolated(density, b);",
+             "return extrapolated(density, b);", (INFORMATION,), "test_uq_plan", "the information of all unknowns*"),
+    Mutation("the halves are not taken off", INFORMATION,
+             "return 2.0 * mean_log(densities.all, {.left_out = left_out}) -",
+             "return 2.0 * mean_log(densities.all, {.left_out = left_out}) - 0.0 *", (INFORMATION,), "test_uq_plan",
+             "the information of all unknowns*"),
+    Mutation("a reading has no noise of its own", INFORMATION, "ensemble.mean.row(i) + whiten",
+             "ensemble.mean.row(i) + 0.0 * whiten", (INFORMATION,), "test_uq_plan", "the information of all unknowns*"),
+    Mutation("a window takes in everything", INFORMATION,
+             "std::max<Index>(static_cast<Index>(windows[w] * static_cast<double>(n)), window_least)", "n",
+             (INFORMATION,), "test_uq_plan", "the information of all unknowns*"),
+]
+
+
+def best_isa():
+    """The widest contact forces that this processor runs, which the tests take."""
+    flags = set(re.search(r"^flags\s*:(.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.M).group(1).split())
+    if {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"} <= flags:
+        return "x86_64_v4"
+    return "x86_64_v3" if {"avx2", "fma", "bmi2"} <= flags else "x86_64"
+
+
+class Build:
+    def __init__(self, folder):
+        self.folder = folder
+        self.commands = json.loads(subprocess.run(["ninja", "-C", folder, "-t", "compdb"], check=True,
+                                                  capture_output=True, text=True).stdout)
+
+    def compiling(self, unit):
+        """Compilation of a source: of contact forces that of the instruction set in use."""
+        source = str(ROOT / unit)
+        found = [c for c in self.commands if c["file"] == source and c["output"].endswith(".o")]
+        if "/forces/" in unit:
+            found = [c for c in found if f"forces_{best_isa()}.dir" in c["output"]]
+        if len(found) != 1:
+            sys.exit(f"{unit}: {len(found)} compilations in {self.folder}; is it built?")
+        return found[0]
+
+    def command(self, output):
+        """The build's last step towards a file."""
+        lines = subprocess.run(["ninja", "-C", self.folder, "-t", "commands", "-s", output], check=True,
+                               capture_output=True, text=True).stdout.splitlines()
+        return re.sub(r"^: && | && :$", "", lines[-1])
+
+    def joining(self, source, changed, target):
+        """Makes the one object of all contact forces (dem/dem.cmake), `changed` in the place of that of `source`."""
+        entry = f"dem/demcal_forces_{best_isa()}.o"
+        command = self.command(entry)
+        original = next(word for word in shlex.split(command) if word.endswith(f"/{pathlib.Path(source).name}.o"))
+        return command.replace(original, changed).replace(f"{self.folder}/{entry}", target)
+
+
+def outcome(build, mutation, scratch):
+    """None where the test notices; else what came."""
+    text = (ROOT / mutation.file).read_text()
+    if text.count(mutation.before) != 1:
+        return f"'{mutation.before}' is {text.count(mutation.before)} times in {mutation.file}: mend this list"
+    changed = scratch / "overlay" / mutation.file
+    changed.parent.mkdir(parents=True)
+    changed.write_text(text.replace(mutation.before, mutation.after))
+    objects = []
+    for number, unit in enumerate(mutation.units):
+        compile_it = build.compiling(unit)
+        target = scratch / f"{number}.o"
+        words = shlex.split(compile_it["command"])
+        source = str(changed) if unit == mutation.file else compile_it["file"]
+        words = [source if w == compile_it["file"] else str(target) if w == compile_it["output"] else w for w in words]
+        first = next(i for i, w in enumerate(words) if w.startswith("-I"))
+        words[first:first] = [f"-I{scratch / 'overlay'}"]
+        done = subprocess.run(words, cwd=compile_it["directory"], capture_output=True, text=True)
+        if done.returncode:
+            errors = [line for line in done.stderr.splitlines() if "error" in line]
+            return "does not compile: " + (errors or [done.stderr[-300:]])[0]
+        if "/forces/" in unit:
+            joined = str(scratch / "forces.o")
+            subprocess.run(["sh", "-c", build.joining(unit, str(target), joined)], check=True)
+            target = joined
+        objects.append(str(target))
+    program = scratch / "mutant"
+    words = shlex.split(build.command(f"tests/{mutation.program}"))
+    output = words.index("-o") + 1
+    words[output] = str(program)
+    words[output + 1:output + 1] = objects
+    done = subprocess.run(words, cwd=build.folder, capture_output=True, text=True)
+    if done.returncode:
+        return "does not link: " + done.stderr[-300:]
+    run = [str(program), mutation.test, "--warn", "NoTests"]
+    done = subprocess.run(run, cwd=build.folder, capture_output=True, text=True, errors="replace", timeout=1800)
+    if "No test cases matched" in done.stdout + done.stderr:
+        return f"{mutation.program} has no test '{mutation.test}'"
+    return None if done.returncode else f"passes '{mutation.test}'"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build")
+    parser.add_argument("--only", default="", help="mutations whose words have this text")
+    options = parser.parse_args()
+    build = Build(str(pathlib.Path(options.build).resolve()))
+    holes = 0
+    for mutation in MUTATIONS:
+        if options.only not in mutation.what:
+            continue
+        with tempfile.TemporaryDirectory() as scratch:
+            missed = outcome(build, mutation, pathlib.Path(scratch))
+        holes += missed is not None
+        words = "noticed " if missed is None else "MISSED  "
+        print(words, mutation.what + (f": {missed}" if missed else ""), flush=True)
+    sys.exit(1 if holes else 0)
+
+
+main()

@@ -1,0 +1,37 @@
+#pragma once
+// What kinds of findings there are, each with its texts (data/texts.hpp).
+#include "data/texts.hpp"
+
+namespace uq {
+
+/// What the data say of a parameter (uq/verdict/verdict.hpp).
+enum class Verdict { identified, weakly_identified, several_values, not_identified, does_not_fit };
+
+/// Why a parameter is not known (uq/verdict/verdict_words.hpp).
+enum class Reason { structural, practical, surrogate, one_sided, bound, no_influence, unsupported };
+
+/// How far a surrogate can be trusted (surrogate/validation.hpp).
+enum class SurrogateWord { good, caution, unusable };
+
+/// How traded parameters hang together (uq/verdict/combination.hpp).
+enum class CombinationForm { none, product, sum, curved };
+
+/// What a measurement that could be made next is (uq/plan).
+enum class CandidateKind { repeat, setting, output };
+
+using data::to_text;
+
+}  // namespace uq
+
+template <>
+inline constexpr std::array data::texts_of<uq::Verdict> = {"identified", "weakly identified", "several values",
+                                                           "not identified", "model does not fit"};
+template <>
+inline constexpr std::array data::texts_of<uq::Reason> = {"structural", "practical",    "surrogate",  "one-sided",
+                                                          "bound",      "no influence", "unsupported"};
+template <>
+inline constexpr std::array data::texts_of<uq::SurrogateWord> = {"good", "caution", "unusable"};
+template <>
+inline constexpr std::array data::texts_of<uq::CombinationForm> = {"none", "product", "sum", "curved"};
+template <>
+inline constexpr std::array data::texts_of<uq::CandidateKind> = {"repeat", "setting", "output"};
