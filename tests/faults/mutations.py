@@ -43,24 +43,24 @@ MUTATIONS = [
     Mutation("JKR pulls off at twice its force", PARTS + "normal.hpp", "C(1.5 * std::numbers::pi * w * radius)",
              "C(3.0 * std::numbers::pi * w * radius)", (JKR,), "test_dem", "JKR: a sphere comes off a plane*"),
     Mutation("what a torn JKR contact gives up is lost", PARTS + "normal.hpp",
-             "held * (1.0 - touch) * energy_at(break_root)", "0.0 * held", (JKR,), "test_dem",
-             "energy lost in a collision*"),
+             "held * (1.0 - touch) * energy_at(break_root)", "0.0 * held", ("tests/dem/contact_parts.cpp",), "test_dem",
+             "a JKR contact that tears*"),
     Mutation("the spring does not lead", PARTS + "slider.hpp", "(0.5 + lead) * reach", "0.5 * reach", (LINEAR,),
              "test_dem", "an elastic oblique collision*"),
-    Mutation("friction does not follow the load", CONTACT, "push.total + cap_weight * pull", "push.elastic", (LINEAR,),
-             "test_dem", "the adhesive load enters the Coulomb limit*"),
+    Mutation("friction does not follow the load", CONTACT, "push.total + cap_weight * pull", "push.elastic",
+             ("tests/dem/test_cohesion.cpp",), "test_dem", "the adhesive load enters the Coulomb limit*"),
     Mutation("tangential force along the slip", PARTS + "slider.hpp", "return {-force,", "return {force,", (LINEAR,),
              "test_dem", "a sliding sphere rolls*"),
     Mutation("Mindlin's spring is not scaled when it unloads", PARTS + "tangential.hpp",
-             "select(normal.radius < radius_before, T(normal.radius / radius_before), T(1.0))", "T(1.0)", (HERTZ,),
-             "test_dem", "no grazing or oblique hit gains energy*"),
+             "select(normal.radius < radius_before, T(normal.radius / radius_before), T(1.0))", "T(1.0)",
+             ("tests/dem/contact_parts.cpp",), "test_dem", "Mindlin's spring*"),
     Mutation("the rolling couple has the other sign", PARTS + "resistance.hpp", "T(radius) * cross(n, roll.force)",
-             "T(radius) * cross(roll.force, n)", (LINEAR,), "test_dem", "energy lost in a collision*"),
+             "T(radius) * cross(roll.force, n)", (LINEAR,), "test_dem", "a sphere spinning in place*"),
     Mutation("constant resistance twists the wrong way", PARTS + "resistance.hpp", "- T(twist * along) * n",
              "+ T(twist * along) * n", (LINEAR,), "test_dem", "a sphere spinning about the normal*"),
     Mutation("attraction falls with 1/h instead of 1/h^2", PARTS + "attraction.hpp",
              "T(pull_off * nearness * nearness)", "T(pull_off * nearness)", (LINEAR,), "test_dem",
-             "the energy ledger of a slice run*"),
+             "spheres a gap h apart*"),
     Mutation("attraction does not pull", CONTACT, "push.total - pull", "push.total", (LINEAR,), "test_dem",
              "a constant attraction holds spheres*"),
     Mutation("the likelihood lacks its determinant", POSTERIOR, "-0.5 * residual.squaredNorm() - log_root -",
@@ -74,15 +74,21 @@ MUTATIONS = [
     Mutation("the gradient of the mean has the other sign", POSTERIOR, "a.dot(slopes.mean[k]) +",
              "-a.dot(slopes.mean[k]) +", (POSTERIOR,), "test_uq_posterior", "the gradient of the posterior*"),
     Mutation("the scatter of repeats counts twice", POSTERIOR, "repeats.log_constant - 0.5 * chi",
-             "repeats.log_constant - chi", (POSTERIOR,), "test_uq_posterior", "*repeats*"),
-    Mutation("the profile maximises over nothing", PROFILE, "profile.path.row(i) = found.x.transpose();\n  };",
-             "profile.path.row(i) = found.x.transpose();\n    level[i] -= 0.5;\n  };", (PROFILE,), "test_uq_verdict",
-             "profile intervals of LikelihoodProfiler.jl's separable*"),
-    Mutation("the profile sees one maximum only", PROFILE,
+             "repeats.log_constant - chi", (POSTERIOR,), "test_uq_posterior", "so they do where the noise*"),
+    Mutation("the profile holds another unknown", PROFILE, "box, starts, Held{k, values",
+             "box, starts, Held{0, values", (PROFILE,), "test_uq_verdict",
+             "profile intervals of LikelihoodProfiler.jl's curved*"),
+    Mutation("the profile climbs from the draws alone", PROFILE,
              "const int from_box = model.row_count() > many_rows ? 0 : 12;", "const int from_box = 0;", (PROFILE,),
              "test_uq_verdict", "a narrow second maximum*"),
+    Mutation("the profile forgets other maxima", PROFILE, "found.maxima.push_back(one);", "", (PROFILE,),
+             "test_uq_verdict", "a narrow second maximum*"),
+    Mutation("the deviance lacks its two", "uq/verdict/profile_interval.cpp",
+             "(2.0 * (all.best.value - profile.deviance.array())", "((all.best.value - profile.deviance.array())",
+             ("uq/verdict/profile_interval.cpp",), "test_uq_verdict",
+             "profile intervals of LikelihoodProfiler.jl's sep*"),
     Mutation("a bound at 0 is a bound like any other", PROFILE, "parameter.low == 0.0 &&", "parameter.low == 1.0 &&",
-             (PROFILE,), "test_uq_verdict", "*upper*"),
+             (PROFILE,), "test_uq_verdict", "a parameter against its physical bound*"),
     Mutation("information has the wrong sign", INFORMATION, "return -extrapolated(density, b);",
              "return extrapolated(density, b);", (INFORMATION,), "test_uq_plan", "the information of all unknowns*"),
     Mutation("the halves are not taken off", INFORMATION,
@@ -93,7 +99,7 @@ MUTATIONS = [
              "ensemble.mean.row(i) + 0.0 * whiten", (INFORMATION,), "test_uq_plan", "the information of all unknowns*"),
     Mutation("a window takes in everything", INFORMATION,
              "std::max<Index>(static_cast<Index>(windows[w] * static_cast<double>(n)), window_least)", "n",
-             (INFORMATION,), "test_uq_plan", "the information of all unknowns*"),
+             (INFORMATION,), "test_uq_plan", "information about one of two*"),
 ]
 
 
@@ -121,18 +127,22 @@ class Build:
             sys.exit(f"{unit}: {len(found)} compilations in {self.folder}; is it built?")
         return found[0]
 
-    def command(self, output):
-        """The build's last step towards a file."""
+    def commands_for(self, output):
+        """The build's last step towards a file; several commands joined by &&."""
         lines = subprocess.run(["ninja", "-C", self.folder, "-t", "commands", "-s", output], check=True,
                                capture_output=True, text=True).stdout.splitlines()
-        return re.sub(r"^: && | && :$", "", lines[-1])
+        return lines[-1]
+
+    def linking(self, program):
+        output = f"tests/{program}"
+        return next(part for part in self.commands_for(output).split(" && ") if f"-o {output} " in part)
 
     def joining(self, source, changed, target):
         """Makes the one object of all contact forces (dem/dem.cmake), `changed` in the place of that of `source`."""
         entry = f"dem/demcal_forces_{best_isa()}.o"
-        command = self.command(entry)
-        original = next(word for word in shlex.split(command) if word.endswith(f"/{pathlib.Path(source).name}.o"))
-        return command.replace(original, changed).replace(f"{self.folder}/{entry}", target)
+        commands = self.commands_for(entry)
+        original = next(word for word in shlex.split(commands) if word.endswith(f"/{pathlib.Path(source).name}.o"))
+        return commands.replace(original, changed).replace(f"{self.folder}/{entry}", target)
 
 
 def outcome(build, mutation, scratch):
@@ -143,7 +153,7 @@ def outcome(build, mutation, scratch):
     changed = scratch / "overlay" / mutation.file
     changed.parent.mkdir(parents=True)
     changed.write_text(text.replace(mutation.before, mutation.after))
-    objects = []
+    objects, replaced = [], {}
     for number, unit in enumerate(mutation.units):
         compile_it = build.compiling(unit)
         target = scratch / f"{number}.o"
@@ -160,9 +170,12 @@ def outcome(build, mutation, scratch):
             joined = str(scratch / "forces.o")
             subprocess.run(["sh", "-c", build.joining(unit, str(target), joined)], check=True)
             target = joined
-        objects.append(str(target))
+        if unit.startswith("tests/"):
+            replaced[compile_it["output"]] = str(target)
+        else:
+            objects.append(str(target))
     program = scratch / "mutant"
-    words = shlex.split(build.command(f"tests/{mutation.program}"))
+    words = [replaced.get(word, word) for word in shlex.split(build.linking(mutation.program))]
     output = words.index("-o") + 1
     words[output] = str(program)
     words[output + 1:output + 1] = objects

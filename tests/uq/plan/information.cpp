@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "data/random.hpp"
 #include "tests/uq/plan/known_information.hpp"
@@ -101,6 +102,38 @@ TEST_CASE("readings that say nothing of an unknown give no information about it"
   CHECK(found.about[0].information.value == Approx(2.307560).margin(0.01));
   CHECK(found.about[1].information.value < 0.005);
   CHECK(found.about[1].sd_after.value == Approx(1.0).epsilon(0.03));
+}
+
+TEST_CASE("information about one of two is that of quadrature where only the shape of the reading's law hangs on it",
+          "[plan]") {
+  // y is b where a < 1/2 and the sign of b elsewhere, b normal: both laws have mean 0 and variance 1. So a regression
+  // of mean and spread on a sees nothing, and neighbours in a must be asked.
+  constexpr double noise = 0.2;
+  const auto normal = [](double y, double mean, double variance) {
+    return std::exp(-0.5 * (y - mean) * (y - mean) / variance) / std::sqrt(2.0 * std::numbers::pi * variance);
+  };
+  double truth = 0.0;
+  constexpr double step = 1e-3;
+  for (double y = -8.0; y < 8.0; y += step) {
+    const double smooth = normal(y, 0.0, 1.0 + noise * noise);
+    const double split = 0.5 * (normal(y, 1.0, noise * noise) + normal(y, -1.0, noise * noise));
+    const double both = 0.5 * (smooth + split);
+    truth += 0.5 * step * (smooth * std::log(smooth / both) + (split > 0.0 ? split * std::log(split / both) : 0.0));
+  }
+  constexpr Eigen::Index draws = 3000;
+  uq::plan::Ensemble ensemble{.values = Eigen::MatrixXd(draws, 2),
+                              .mean = Eigen::MatrixXd(draws, 1),
+                              .covariance = {draws, Eigen::MatrixXd::Constant(1, 1, noise * noise)}};
+  data::RandomStream random(20261127, data::Purpose::test);
+  for (Eigen::Index i = 0; i < draws; ++i) {
+    const double a = random.uniform(), b = random.normal();
+    ensemble.values.row(i) << a, b;
+    ensemble.mean(i, 0) = a < 0.5 ? b : std::copysign(1.0, b);
+  }
+  const Estimate about = uq::plan::information(ensemble).about[0].information;
+  INFO("truth " << truth << ", found " << about.value << " +- " << about.error);
+  CHECK(truth > 0.1);
+  CHECK(about.value == Approx(truth).epsilon(0.15));
 }
 
 TEST_CASE("the expected width after a reading is that of the normal law", "[plan]") {

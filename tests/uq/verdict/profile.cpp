@@ -142,19 +142,20 @@ TEST_CASE("an interval in two parts has the ends of each, by its closed form", "
 }
 
 TEST_CASE("a narrow second maximum that no draw has seen is found, and its absence from the draws is told", "[uq]") {
-  // Wells of equal width at 0.2 and 0.8; the draws are all in the first.
-  const uq::CaseModel model =
-      sum_of_squares({{"x1", 0.0, 1.0}}, {[](const Eigen::VectorXd& p) { return 200.0 * (p[0] - 0.2) * (p[0] - 0.8); }},
-                     Eigen::VectorXd::Zero(1));
+  // Wells of equal width at 0.2 and 0.78, narrower than the profile's even steps, of which none falls into the second;
+  // the draws are all in the first.
+  const uq::CaseModel model = sum_of_squares(
+      {{"x1", 0.0, 1.0}}, {[](const Eigen::VectorXd& p) { return 1000.0 * (p[0] - 0.2) * (p[0] - 0.78); }},
+      Eigen::VectorXd::Zero(1));
   data::RandomStream random(6, data::Purpose::test, 4);
   Eigen::MatrixXd draws(500, 1);
-  for (double& u : draws.reshaped()) u = 0.2 + random.normal() / 120.0;
+  for (double& u : draws.reshaped()) u = 0.2 + random.normal() / 580.0;
   const uq::Profiles found =
       uq::profile_likelihood(model, {.draws = draws, .log_likelihood = uq::log_likelihoods(model, draws)});
   CHECK(found.profiles[0].parts.size() == 2);
   const std::vector<std::string> missed = uq::unvisited(model, found, draws);
   REQUIRE(missed.size() == 1);
-  CHECK(missed[0].rfind("x1 near 0.8", 0) == 0);
+  CHECK(missed[0].rfind("x1 near 0.78", 0) == 0);
 }
 
 TEST_CASE("PUQ's unidentifiable case: its contractions, one parameter known and one not", "[uq]") {
