@@ -267,7 +267,7 @@ const std::vector<StudyKey>& study_keys() {
        "\"0.08 s\""},
       {"run.start_up", "quantity", "s", "from 0", "0.2",
        "time of turning that is dropped at least, before means are taken", "\"0.2 s\""},
-      {"run.start_up_turns", "number", "", "from 0", "1.5", "turns that are dropped at least", "1.5"},
+      {"run.start_up_turns", "number", "", "from 0", "2", "turns that are dropped at least", "2"},
       {"run.sample_interval", "quantity", "s", "above 0", "0.0002", "time between samples of the torque", "\"0.2 ms\""},
       {"run.window", "quantity", "s", "above 0", "0.02",
        "time over which torque is averaged for torque_fluctuation, and pictures for silhouette_x and the like",

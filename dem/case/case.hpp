@@ -150,7 +150,7 @@ struct RunControl {
   double skin = 0.12;               ///< of the neighbour list, in diameters
   double settle = 0.08;             ///< s, filling comes to rest before the tool turns
   double start_up = 0.2;            ///< s of turning dropped at least, before means are taken, and
-  double start_up_turns = 1.5;      ///< turns at least (dem/STEADY.md)
+  double start_up_turns = 2.0;      ///< turns at least (dem/STEADY.md)
   double sample_interval = 0.2e-3;  ///< s between samples; each is the mean over the steps since the last
   double window = 20e-3;            ///< s, torque_fluctuation is the deviation of torque averaged over it
   double standard_error = 0.02;     ///< wanted relative standard error of the mean torque

@@ -280,6 +280,7 @@ std::vector<Finding> check_data(const data::Study& study, data::RunTable& table,
   if (data::used_rows(table) > 0) {
     add(check_ranges(study, table, thresholds));
     add(check_outputs(study, table, log_outputs));
+    add(check_mixed_units(study, table));
     if (!data::has(all, Severity::refusal)) add(check_design(study, table, thresholds));
   }
   add(check_observations(study, table, thresholds));

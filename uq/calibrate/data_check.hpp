@@ -9,7 +9,7 @@
 //             that move together, ranges that the runs do not cover, magnitudes that suggest another unit, standard
 //             errors that suggest a percentage
 // A factor between units is suspected where values times the factor fill their range, or meet the runs, and the values
-// themselves do not.
+// themselves do not; and where some rows or readings of one output are such a factor from the others.
 #include <optional>
 #include <vector>
 
@@ -40,6 +40,7 @@ std::vector<data::Finding> check_ranges(const data::Study& study, data::RunTable
                                         const DataCheckThresholds& thresholds);
 std::vector<data::Finding> check_outputs(const data::Study& study, const data::RunTable& table,
                                          const std::vector<std::string>& log_outputs);
+std::vector<data::Finding> check_mixed_units(const data::Study& study, const data::RunTable& table);
 std::vector<data::Finding> check_design(const data::Study& study, const data::RunTable& table,
                                         const DataCheckThresholds& thresholds);
 std::vector<data::Finding> check_observations(const data::Study& study, const data::RunTable& table,

@@ -25,10 +25,6 @@ using data::Severity;
 
 std::string file_of(const data::ObservationSet& set) { return set.file.substr(set.file.rfind('/') + 1); }
 
-std::string place_of(const data::ObservationSet& set, const data::Observation& point) {
-  return fmt::format("{}:{}", file_of(set), point.line);
-}
-
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
@@ -250,6 +246,10 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
 }
 
 }  // namespace
+
+std::string place_of(const data::ObservationSet& set, const data::Observation& point) {
+  return fmt::format("{}:{}", file_of(set), point.line);
+}
 
 std::vector<Finding> check_observations(const data::Study& study, const data::RunTable& table,
                                         const DataCheckThresholds& thresholds) {

@@ -31,6 +31,9 @@ std::vector<Column> input_columns(const data::Study& study, const data::RunTable
 /// Place of a name in RunRow::inputs. The table has all of the study's names, or reading it failed.
 std::size_t input_column(const data::RunTable& table, const std::string& name);
 
+/// "bench.csv:7"
+std::string place_of(const data::ObservationSet& set, const data::Observation& point);
+
 const std::vector<UnitFactor>& unit_factors();
 
 }  // namespace uq

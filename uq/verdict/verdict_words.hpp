@@ -8,7 +8,7 @@
 //   one-sided     the data no longer change towards the range's end            wider range, other settings
 //   bound         it cannot be told from its physical bound                    a smaller error lowers the limit
 //   no influence  nothing that was measured depends on it                      a quantity that does, or fix it
-//   unsupported   no run speaks where the posterior lies (uq/posterior/support.hpp)   training runs there
+//   unsupported   no run speaks where the posterior lies                       training runs there
 //   (none) several values                                                      the measurement that parts them
 //
 // A case's remedy starts with that of the largest share of the widths. No remedy says what another denies: where one

@@ -204,6 +204,43 @@ TEST_CASE("observed magnitudes outside all runs are named, with the factor betwe
   CHECK_THAT(data::describe(found), Contains("check the unit of torque"));
 }
 
+TEST_CASE("rows of one output in another unit than the others are named, and a model that steps is not", "[uq]") {
+  SECTION("the last third of the runs") {
+    for (const double factor : {1000.0, 1e-3, 9.80665}) {
+      Files files;
+      int i = 0;
+      files.each_run([&](Row& row) {
+        if (++i > 40) row.torque *= factor, row.error *= factor;
+      });
+      const std::vector<data::Finding> found = look(files).findings;
+      INFO(factor);
+      // By 9.8 the two groups are nearer to each other than they are wide.
+      REQUIRE(found.size() == (factor == 9.80665 ? 0U : 1U));
+      if (found.empty()) continue;
+      CHECK(found[0].kind == "unit");
+      CHECK(found[0].severity == Severity::warning);
+      CHECK(found[0].places.size() == 20);
+      CHECK_THAT(found[0].what, Contains("20 of 60 rows") && Contains("one prefix"));
+    }
+  }
+  SECTION("two readings of six") {
+    Files files;
+    files.bench[1].torque *= 1000.0;
+    files.bench[4].torque *= 1000.0;
+    const std::vector<data::Finding> found = look(files).findings;
+    REQUIRE(std::any_of(found.begin(), found.end(), [](const data::Finding& one) {
+      return one.places == std::vector<std::string>{"bench.csv:3", "bench.csv:6"};
+    }));
+  }
+  SECTION("a torque a thousand times larger above a friction of 0.4") {
+    Files files;
+    files.each_run([](Row& row) {
+      if (row.friction > 0.4) row.torque *= 1000.0, row.error *= 1000.0;
+    });
+    for (const data::Finding& one : look(files).findings) CHECK(one.kind != "unit");
+  }
+}
+
 TEST_CASE("exchanged columns are refused with both names", "[uq]") {
   Files files;
   files.header = "cohesion,friction,speed,torque,torque_se";

@@ -33,6 +33,7 @@ TEST_CASE("report.json holds every key of format 1") {
   CHECK(json["demcal"] == "0.1.0");
   CHECK(json["status"] == "ok");
   has_keys(json["surrogates"][0], {"output", "material", "q2", "coverage95", "runs", "verdict"});
+  CHECK(json["surrogates"][0]["verdict"] == "good");
   const auto& result = json["cases"][2];
   has_keys(result, {"name", "fit", "parameters", "correlation", "log_evidence", "log_evidence_error", "divergences",
                     "traded", "predictive", "finding", "consequence", "remedy"});
