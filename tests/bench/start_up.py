@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Torque and kinetic energy by parts of the first turns: start_up.py RUNS > tests/dem/series/start_up.csv
+"""Torque and kinetic energy by parts of the first turns: start_up.py RUNS OLD.csv > NEW.csv
 
 RUNS is the folder that steady.py leaves its runs in (--out), references among them. Each part is a mean over seeds,
 with its error from their scatter; the last part of a point is its level, all that its references measured from there
-on. From here come the table of dem/STEADY.md and the numbers that test_steady_flow holds run.start_up_turns to.
+on. A point that has fewer than two references keeps the level of OLD.csv. From here come the table of dem/STEADY.md and
+tests/dem/series/start_up.csv, to which test_steady_flow holds run.start_up_turns.
 """
 import pathlib
 import re
@@ -17,7 +18,7 @@ PARTS = [0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0]
 HEAD = """\
 # Runs of tests/bench/steady.py (data/developer, friction 0.4, Hamaker constants 0, 2.0e-18 and 9.0e-18 J), averaged by
 # tests/bench/start_up.py: means over seeds of the torque [uN m] and kinetic energy [nJ] between these turns of the
-# tool, errors from the seeds' scatter. The last part of each point is its level.
+# tool, errors from the seeds' scatter. The last part of each point is its level: of runs of at least 15 turns.
 material,rpm,from_turns,to_turns,runs,torque,torque_se,kinetic_energy,kinetic_energy_se"""
 
 
@@ -25,19 +26,33 @@ def mean_and_error(values):
     return statistics.fmean(values), statistics.stdev(values) / len(values) ** 0.5
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    points = {}
-    for path in sorted(pathlib.Path(sys.argv[1]).glob("*/run.h5")):
-        found = re.match(r"(.*)-friction0\.4-hamaker[^-]*(?:-\d+)?-rpm(\d+)-\d+-(run|reference)$", path.parent.name)
-        if not found:
-            continue
-        material, rpm = found.group(1), int(found.group(2))
+def longest(folder, rpm):
+    """Turns, and torque and kinetic energy, of the longest run kept in a folder: all of one seed are one course."""
+    best = (numpy.zeros(1), numpy.zeros((2, 1)))
+    for path in folder.glob("run*.h5"):
         with h5py.File(path) as run:
             series = run["series"]
             turns = series["time"][:] * rpm / 60.0
-            both = numpy.stack([series["torque"][:] * 1e6, series["kinetic_energy"][:] * 1e9])
+            if turns[-1] > best[0][-1]:
+                best = turns, numpy.stack([series["torque"][:] * 1e6, series["kinetic_energy"][:] * 1e9])
+    return best
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    levels = {}
+    for line in pathlib.Path(sys.argv[2]).read_text().splitlines():
+        material, rpm, _, to, *_ = [*line.split(","), "", "", ""]
+        if rpm.isdigit() and not to:
+            levels[material, int(rpm)] = line
+    points = {}
+    for folder in sorted(pathlib.Path(sys.argv[1]).iterdir()):
+        found = re.match(r"(.*)-friction0\.4-hamaker[^-]*(?:-\d+)?-rpm(\d+)-\d+-(run|reference)$", folder.name)
+        if not found:
+            continue
+        material, rpm = found.group(1), int(found.group(2))
+        turns, both = longest(folder, rpm)
         parts = points.setdefault((material, rpm), {})
         for low, high in zip(PARTS, [*PARTS[1:], numpy.inf]):
             inside = (turns >= low) & (turns < high)
@@ -54,6 +69,8 @@ def main():
             to = f"{high:g}" if high < numpy.inf else ""
             numbers = f"{torque:.3f},{torque_se:.3f},{energy:.2f},{energy_se:.2f}"
             print(f"{material},{rpm},{low:g},{to},{len(means)},{numbers}")
+        if len(parts.get((PARTS[-1], numpy.inf), [])) < 2:
+            print(levels[material, rpm])
 
 
 main()

@@ -157,6 +157,6 @@ TEST_CASE("after the start-up that is dropped torque is at its level at any spee
     }
     CHECK(highest > 0.05);  // what a quarter of a turn would let in
   }
-  CHECK(parts_after == 6);
-  CHECK(chi_squared < 16.8);  // 99 % of chi-squared with 6
+  CHECK(parts_after == 12);
+  CHECK(chi_squared < 26.2);  // 99 % of chi-squared with 12
 }
