@@ -18,7 +18,8 @@ PARTS = [0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0]
 HEAD = """\
 # Runs of tests/bench/steady.py (data/developer, friction 0.4, Hamaker constants 0, 2.0e-18 and 9.0e-18 J), averaged by
 # tests/bench/start_up.py: means over seeds of the torque [uN m] and kinetic energy [nJ] between these turns of the
-# tool, errors from the seeds' scatter. The last part of each point is its level: of runs of at least 15 turns.
+# tool, errors from the seeds' scatter. The last part of each point is its level: from 3 turns on, of runs of at least
+# 15 turns; where it begins at 2, of all that earlier runs, long and short, measured from there on.
 material,rpm,from_turns,to_turns,runs,torque,torque_se,kinetic_energy,kinetic_energy_se"""
 
 
