@@ -7,6 +7,7 @@
 #include <set>
 
 #include "data/error.hpp"
+#include "uq/posterior/control_reach.hpp"
 #include "uq/posterior/more_data.hpp"
 #include "uq/posterior/posterior.hpp"
 
@@ -266,14 +267,14 @@ class Entry {
       }
       if (emulator != nullptr) {
         const auto [low, high] = range_of(study_, *emulator, c);
-        const double slack = 0.1 * (study_.controls[c].high - study_.controls[c].low);
+        const double slack = control_reach * (study_.controls[c].high - study_.controls[c].low);
         const data::Unit& unit = study_.controls[c].unit;
         for (const double value : values)
           if (value < low - slack || value > high + slack)
             problem(fmt::format("{} {:g} {} is outside the runs of this material, which reach from {:g} to {:g} {}",
                                 study_.controls[c].name, unit.from_si(value), unit.symbol, unit.from_si(low),
                                 unit.from_si(high), unit.symbol),
-                    "choose a setting inside, or train in a wider range");
+                    "choose a setting inside, or make runs there");
       }
       std::vector<std::vector<double>> next;
       for (const auto& point : points)
