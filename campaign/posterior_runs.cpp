@@ -110,7 +110,6 @@ void reach_observations(const Workspace& workspace, const std::string& material,
   const std::size_t parameters = study.parameters.size();
   for (std::size_t c = 0; c < study.controls.size(); ++c) {
     const data::Control& control = study.controls[c];
-    const double slack = uq::control_reach * (control.high - control.low);
     double low = HUGE_VAL, high = -HUGE_VAL, least = HUGE_VAL, most = -HUGE_VAL;
     for (const data::ObservationSet& set : study.observations)
       for (const data::Observation& point : set.points) {
@@ -127,7 +126,8 @@ void reach_observations(const Workspace& workspace, const std::string& material,
     for (const PlannedRun& run : planned) reach(run.point.inputs[parameters + c]);
     if (low > high) continue;
     for (const Point& point : training_design(workspace, material, first, 256)) {
-      const bool below = low > least + slack, above = high < most - slack;
+      const bool below = least < low && !uq::within_reach(control, least, {low, high});
+      const bool above = most > high && !uq::within_reach(control, most, {low, high});
       if (!below && !above) break;
       const double value = point.inputs[parameters + c];
       if ((below && value < low) || (above && value > high)) {

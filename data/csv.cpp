@@ -80,7 +80,7 @@ bool is_units_row(const CsvRecord& record) {
   bool any = false;
   for (const std::string& field : record.fields) {
     const std::string bare =
-        field.size() > 2 && (field.front() == '[' || field.front() == '(') ? field.substr(1, field.size() - 2) : field;
+        field.size() >= 2 && (field.front() == '[' || field.front() == '(') ? field.substr(1, field.size() - 2) : field;
     if (!bare.empty() && !is_unit(bare)) return false;
     any = any || (!bare.empty() && bare != "-" && bare != "1");
   }

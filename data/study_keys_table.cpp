@@ -45,6 +45,10 @@ const std::vector<StudyKey>& study_keys() {
        "\"rpm\""},
       {"controls.NAME.low", "quantity", "rad s-1", "", "", "lower end of the range in which runs are made", "50"},
       {"controls.NAME.high", "quantity", "rad s-1", "", "", "upper end of the range", "300"},
+      {"controls.NAME.scale", "choice", "", "linear, log", "linear",
+       "how designs and surrogates space the control; log where the response changes by the same factor as it, low "
+       "above 0",
+       "\"log\""},
       {"controls.NAME.uncertainty", "table", "", "", "",
        "how well the experiment knows the setting: a standard deviation, a share, or a table", "\"1 %\""},
       {"controls.NAME.uncertainty.sd", "quantity", "rad s-1", "above 0", "",

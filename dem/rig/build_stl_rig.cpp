@@ -68,6 +68,11 @@ Vec3 offset_between(const Motion& first, const Motion& second) {
 
 bool parallel(Vec3 a, Vec3 b) { return length(cross(a, b)) < 1e-6; }
 
+/// None of a rig without meshes.
+std::vector<std::size_t> measured_meshes(const StlRig& rig) {
+  return rig.meshes.empty() ? std::vector<std::size_t>{} : rig.measured;
+}
+
 /// How the k-th measured mesh moves.
 Motion measured_motion(const Case& c, std::size_t k) {
   const StlRig& rig = *c.rig.stl;
@@ -195,16 +200,16 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
     built.frozen = rig.frozen;
   }
   Sensor& sensor = built.sensor;
-  for (const std::size_t k : rig.measured) {
+  for (const std::size_t k : measured_meshes(rig)) {
     const Motion& motion = built.bodies[k].motion;
     sensor.driven.push_back({k, drive_sign(motion, c.run) * motion.axis});
   }
-  const Motion first = rig.measured.empty() ? Motion{} : built.bodies[rig.measured.front()].motion;
+  const Motion first = sensor.driven.empty() ? Motion{} : built.bodies[sensor.driven.front().body].motion;
   sensor.flow_axis = first.axis;
   sensor.flow_length = extent_along(first.axis, rig.high - rig.low);
   sensor.period = period(first);
   sensor.picture = {{}, {}, -rig.down};  // bodies about several axes have no side on which they rise
-  if (!rig.measured.empty() && one_axis(c))
+  if (!sensor.driven.empty() && one_axis(c))
     sensor.picture = picture_along(-sensor.driven.front().torque_axis, first.point, rig.down);
   built.channels = channels(c);
   return built;
@@ -266,7 +271,7 @@ std::string settings(const Case& c) {
     lines += "\n";
   }
   std::vector<std::string> measured;
-  for (const std::size_t k : rig.measured) measured.push_back(rig.meshes[k].name);
+  for (const std::size_t k : measured_meshes(rig)) measured.push_back(rig.meshes[k].name);
   lines += fmt::format("rig.torque_of = {}\n", fmt::join(measured, ", "));
   const FillRegion& r = rig.region;
   if (!rig.packing.empty()) return lines;
@@ -305,7 +310,7 @@ const RigKind stl_rig{.name = "stl",
                       .problems = problems_of,
                       .settings = settings,
                       .labels = labels,
-                      .measured_bodies = [](const Case& c) { return c.rig.stl->measured.size(); },
+                      .measured_bodies = [](const Case& c) { return measured_meshes(*c.rig.stl).size(); },
                       .channels = channels,
                       .tool_speed = [](const Case& c) { return mesh_speed(*c.rig.stl, c.rig.angular_velocity); },
                       .fill_depth = fill_depth};

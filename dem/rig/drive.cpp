@@ -25,7 +25,7 @@ bool drive_sign_corrected(const Case& c) {
 }
 
 double turn_of(const Case& c) {
-  if (c.rig.stl && !c.rig.stl->measured.empty())
+  if (c.rig.stl && !c.rig.stl->meshes.empty())
     return period(motion_of(c.rig.stl->meshes[c.rig.stl->measured.front()], c.rig.angular_velocity));
   const double speed = std::abs(c.rig.angular_velocity);
   return speed > 0.0 ? 2.0 * std::numbers::pi / speed : 0.0;

@@ -108,7 +108,6 @@ namespace {
 bool has_picture(const Rig& rig) {
   if (!rig.stl || rig.stl->meshes.empty()) return true;  // the axes of slice and drum are horizontal
   const StlRig& stl = *rig.stl;
-  if (stl.measured.empty()) return false;
   const Motion motion = motion_of(stl.meshes[stl.measured.front()], rig.angular_velocity);
   constexpr double any_radius = 1.0;
   return picture_plane(picture_along(motion.axis, motion.point, stl.down), {stl.low, stl.high, stl.periodic},

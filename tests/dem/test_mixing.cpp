@@ -28,6 +28,7 @@ struct Bed {
       start.push_back({random.uniform(0.0, 1.2), random.uniform(-1.0, 1.0), 0.0});
     state.position.resize(spheres);
     state.motion.resize(spheres);
+    state.half.resize(spheres);
     for (std::size_t i = 0; i < spheres; ++i) {
       state.id.push_back(static_cast<std::uint32_t>(i));
       state.position[i].at = start[i];

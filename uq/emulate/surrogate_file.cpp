@@ -18,7 +18,7 @@ surrogate::SurrogateKey key_of(const data::Study& study, const data::RunTable& t
   for (const data::Parameter& p : study.parameters)
     text += fmt::format("{} {} {} {} {}\n", p.name, p.unit.symbol, p.low, p.high, p.scale == data::Scale::log);
   for (const data::Control& c : study.controls)
-    text += fmt::format("{} {} {} {}\n", c.name, c.unit.symbol, c.low, c.high);
+    text += fmt::format("{} {} {} {} {}\n", c.name, c.unit.symbol, c.low, c.high, c.scale == data::Scale::log);
   for (const data::Output& output : study.outputs) text += fmt::format("{} {}\n", output.name, output.unit.symbol);
   const surrogate::FitOptions& fit = options.fit;
   text +=

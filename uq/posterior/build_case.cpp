@@ -145,6 +145,7 @@ class Builder {
                               .unit = control.unit,
                               .low = control.low,
                               .high = control.high,
+                              .scale = control.scale,
                               .place = error.place};
     parameter.prior = {.kind = data::PriorKind::normal,
                        .low = control.low,
@@ -255,10 +256,9 @@ class Builder {
     const auto range = emulator.control_range.find(index);
     const auto [low, high] =
         range == emulator.control_range.end() ? std::pair{control.low, control.high} : range->second;
-    const double slack = control_reach * (control.high - control.low);
     for (std::size_t i = 0; i < set.points.size(); ++i) {
       const double value = set.points[i].controls[index];
-      if (value < low - slack || value > high + slack)
+      if (!within_reach(control, value, {low, high}))
         problem(fmt::format("{}:{}", set.file, set.points[i].line),
                 fmt::format("{} is {:g} {}, but the runs of this material reach from {:g} to {:g} {}", control.name,
                             control.unit.from_si(value), control.unit.symbol, control.unit.from_si(low),
