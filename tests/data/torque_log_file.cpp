@@ -1,6 +1,7 @@
 // Logs as loggers write them, those of shared cases among them (tests/data/files).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
