@@ -317,7 +317,10 @@ std::optional<std::size_t> Csv::find(std::string_view column) const {
 std::size_t Csv::column(std::string_view name) const {
   if (const auto found = find(name)) return *found;
   std::string remedy = fmt::format("the columns are {}", fmt::join(headings, ", "));
-  if (const auto near = nearest(name, columns); near && edit_distance(name, *near) <= 2) {
+  // torque_sd is not torque_se: an sd of the samples is no error of their mean.
+  const bool of_error = name.ends_with("_se");
+  if (const auto near = nearest(name, columns);
+      near && edit_distance(name, *near) <= 2 && !(of_error && near->ends_with("_sd"))) {
     remedy += fmt::format("; is '{}' meant?", *near);
   }
   fail(fmt::format("{}:{}", file, header_line), fmt::format("the column '{}' is missing", name), remedy);
