@@ -176,6 +176,8 @@ void visit_fields(Visit&& visit, T& p) {
   visit("ess_tail", p.ess_tail);
   visit("contraction", p.contraction);
   visit.pair("profile95", p.profile_low, p.profile_high);
+  visit("verdict", p.verdict);
+  visit("reason", p.reason);
   visit("borderline", p.borderline);
   visit("mcse", p.mcse);
   visit("map", p.map);
@@ -185,6 +187,7 @@ void visit_fields(Visit&& visit, T& p) {
     prior("mean", p.prior_mean);
     prior("sd", p.prior_sd);
   });
+  visit("sentence", p.sentence);
   visit("intervals", p.intervals);
   visit("holes", p.holes);
   visit.table("open_for_range_of", [&](auto& pinned) {
@@ -197,11 +200,6 @@ void visit_fields(Visit&& visit, T& p) {
     share("surrogate", p.share_surrogate);
     share("structure", p.share_structure);
     share("range", p.share_range);
-  });
-  visit.table("by_itself", [&](auto& found) {  // whatever the case as a whole says
-    found("verdict", p.verdict);
-    found("reason", p.reason);
-    found("sentence", p.sentence);
   });
   visit.table("profile", [&](auto& profile) {
     profile("x", p.profile_x);
@@ -417,7 +415,7 @@ void visit_fields(Visit&& visit, T& p) {
   visit("notes", p.notes);
 }
 
-/// A parameter as its case shows it.
+/// A parameter as its case shows it: one that does not fit overrules the parameter's own word.
 template <class Visit, SameAs<ParameterReport> T>
 void visit_shown(Visit&& visit, const CaseReport& of, T& p) {
   visit_fields(visit, p);

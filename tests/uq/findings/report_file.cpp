@@ -154,7 +154,15 @@ TEST_CASE("a report comes back from its file to the last bit") {
   for (const CalibrationReport& report : {report_fixture::three_cases(), report_fixture::four_parameters(),
                                           report_fixture::misfit(), CalibrationReport{}}) {
     save_report(report, folder.path("report.json"));
-    CHECK(same(load_report(folder.path("report.json")), report));
+    CalibrationReport shown = report;
+    for (CaseReport& one : shown.cases)
+      for (ParameterReport& parameter : one.parameters)
+        if (shown_verdict(one, parameter) != parameter.verdict) {
+          parameter.verdict = shown_verdict(one, parameter);
+          parameter.reason.reset();
+          parameter.sentence.clear();
+        }
+    CHECK(same(load_report(folder.path("report.json")), shown));
   }
 }
 
