@@ -15,8 +15,8 @@ struct SteadinessOptions {
 };
 
 struct Steadiness {
-  SeriesMean mean;  ///< `reliable`: there are `error_modes`
-  double drift_p = 1.0;   ///< how often a stationary series has as much power in its slowest two modes
+  SeriesMean mean;       ///< `reliable`: there are `error_modes`
+  double drift_p = 1.0;  ///< how often a stationary series has as much power in its slowest two modes
 };
 
 /// Of a series from which the start-up is gone already. Throws nothing; a series that is too short is not reliable.
