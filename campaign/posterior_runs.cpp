@@ -11,6 +11,7 @@
 #include "campaign/design.hpp"
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
+#include "uq/posterior/control_reach.hpp"
 
 namespace campaign {
 namespace {
@@ -101,6 +102,43 @@ uq::RunPoint to_run(const Workspace& workspace, const std::vector<uq::FittedSurr
   return run;
 }
 
+/// Adds points of the design from `first` on to a material's `planned` runs, until they and its rows reach each measured
+/// control as far as a case asks for.
+void reach_observations(const Workspace& workspace, const std::string& material, int first, const data::RunTable& table,
+                        std::vector<PlannedRun>& planned) {
+  const data::Study& study = workspace.study;
+  const std::size_t parameters = study.parameters.size();
+  for (std::size_t c = 0; c < study.controls.size(); ++c) {
+    const data::Control& control = study.controls[c];
+    double low = HUGE_VAL, high = -HUGE_VAL, least = HUGE_VAL, most = -HUGE_VAL;
+    for (const data::ObservationSet& set : study.observations)
+      for (const data::Observation& point : set.points) {
+        if (set.material != material || point.controls[c] < control.low || point.controls[c] > control.high) continue;
+        least = std::min(least, point.controls[c]);
+        most = std::max(most, point.controls[c]);
+      }
+    const auto reach = [&](double value) {
+      low = std::min(low, value);
+      high = std::max(high, value);
+    };
+    for (const data::RunRow& row : table.rows)
+      if (row.material == material) reach(row.inputs[parameters + c]);
+    for (const PlannedRun& run : planned) reach(run.point.inputs[parameters + c]);
+    if (low > high) continue;
+    for (const Point& point : training_design(workspace, material, first, 256)) {
+      const bool below = least < low && !uq::within_reach(control, least, {low, high});
+      const bool above = most > high && !uq::within_reach(control, most, {low, high});
+      if (!below && !above) break;
+      const double value = point.inputs[parameters + c];
+      if ((below && value < low) || (above && value > high)) {
+        planned.push_back({point, study.seed});
+        reach(value);
+      }
+    }
+  }
+  planned = without_rows(workspace, planned, table);
+}
+
 }  // namespace
 
 double five_digits(double si, const data::Unit& unit) { return unit.to_si(fmt::format("{:.5g}", unit.from_si(si))); }
@@ -186,8 +224,9 @@ std::vector<PlannedRun> starting_runs(const Workspace& workspace, const data::Ru
     for (const Point& point : design) planned.push_back({point, study.seed});
     planned = without_rows(workspace, planned, table);
     const int missing = wanted - static_cast<int>(rows);
-    for (int i = 0; i < missing && i < static_cast<int>(planned.size()); ++i)
-      all.push_back(planned[static_cast<std::size_t>(i)]);
+    planned.resize(static_cast<std::size_t>(std::clamp(missing, 0, static_cast<int>(planned.size()))));
+    reach_observations(workspace, material.name, wanted, table, planned);
+    all.insert(all.end(), planned.begin(), planned.end());
   }
   return all;
 }

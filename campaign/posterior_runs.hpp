@@ -43,7 +43,8 @@ Point point_at(const Workspace& workspace, const std::vector<uq::FittedSurrogate
                const uq::RowGroup& group, Eigen::Index row, const Eigen::VectorXd& u);
 
 /// The first points of each material's training design that have no row, so that a surrogate can be fitted at all:
-/// five an input, ten at least, and no more than the study's own design.
+/// five an input, ten at least, and no more than the study's own design. After them, points of the design until the runs
+/// reach every measured control as far as a case asks for (uq::control_reach).
 std::vector<PlannedRun> starting_runs(const Workspace& workspace, const data::RunTable& table);
 
 /// A seed that no row at this point has: the study's, then those after it.

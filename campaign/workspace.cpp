@@ -14,7 +14,7 @@
 #include "dem/reading/target.hpp"
 #include "dem/run/run.hpp"
 #include "uq/emulate/surrogate_settings.hpp"
-#include "uq/findings/results_file.hpp"
+#include "uq/findings/report_file.hpp"
 
 namespace campaign {
 namespace fs = std::filesystem;
@@ -137,12 +137,12 @@ namespace {
 /// Two studies of one name have one results folder by default, and the second must not replace the first's results.
 /// A study that was moved or renamed still owns its own.
 void require_own_results(const Workspace& workspace) {
-  const fs::path results = fs::path(workspace.out) / "results.json";
+  const fs::path results = fs::path(workspace.out) / "report.json";
   std::error_code failure;
   if (!fs::exists(results, failure)) return;
   std::string of;
   try {
-    of = uq::load_results(results.string()).study_file;
+    of = uq::load_report(results.string()).study_file;
   } catch (const data::InputError&) {  // damaged or of another version: it says of nobody whose it is
     return;
   }
@@ -163,7 +163,7 @@ std::unique_ptr<data::FolderLock> hold_out(const Workspace& workspace, Writes fi
   if (files == Writes::training) written = {"training.h5", "training.csv", "design.csv"};
   if (files == Writes::results) {
     require_own_results(workspace);
-    written = {"surrogate.h5", "results.json", "report.json", "report.html", "plan.json"};
+    written = {"surrogate.h5", "report.json", "report.html", "plan.json"};
     for (const data::CalibrationCase& one : workspace.study.cases) written.push_back("posterior-" + one.name + ".nc");
   }
   for (const std::string& file : written) data::require_replaceable((fs::path(workspace.out) / file).string());

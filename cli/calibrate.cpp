@@ -13,7 +13,6 @@
 #include "cli/train_posterior.hpp"
 #include "data/interrupt.hpp"
 #include "uq/calibrate/posterior_nc.hpp"
-#include "uq/findings/results_file.hpp"
 
 namespace cli {
 namespace {
@@ -55,9 +54,9 @@ data::ExitStatus report_on(const Common& common, const Workspace& workspace, con
   for (const uq::CaseReport& one : result.report.cases) supports.push_back(one.support);
   write_next_runs(workspace, supports);
   add_provenance(result.report, workspace, rows);
-  uq::save_results(result.report, (std::filesystem::path(workspace.out) / "results.json").string());
+  write_report(workspace, result.report);
   say_surrogates(common, result.surrogates);  // after everything is saved: saying may fail
-  return write_report(common, workspace, result.report);
+  return say_report(common, workspace, result.report);
 }
 
 /// Rounds of verification so far, per case.

@@ -13,10 +13,9 @@
 #include "dem/bed/derived.hpp"
 #include "uq/calibrate/data_check.hpp"
 #include "uq/emulate/surrogate_file.hpp"
-#include "uq/findings/results_file.hpp"
+#include "uq/findings/report_file.hpp"
 #include "uq/findings/wording.hpp"
 #include "uq/report/html.hpp"
-#include "uq/report/json.hpp"
 #include "uq/report/terminal.hpp"
 
 namespace cli {
@@ -152,13 +151,15 @@ void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, c
   for (const std::string& note : rows.notes) report.notes.push_back(note);
 }
 
-data::ExitStatus write_report(const Common& common, const Workspace& workspace, const uq::CalibrationReport& report) {
-  const fs::path out = workspace.out;
-  uq::write_report_json(report, (out / "report.json").string());
+void write_report(const Workspace& workspace, const uq::CalibrationReport& report) {
+  uq::save_report(report, (fs::path(workspace.out) / "report.json").string());
   uq::write_report_html(report, workspace.out);
+}
+
+data::ExitStatus say_report(const Common& common, const Workspace& workspace, const uq::CalibrationReport& report) {
   if (!common.json && data::answers_go_elsewhere())  // or whoever redirects the answer would not see them
     for (const std::string& warning : uq::first_lines(report)) say(common, "warning: " + warning);
-  answer(common, uq::terminal_summary(report, {.report_file = (out / "report.html").string()}));
+  answer(common, uq::terminal_summary(report, {.report_file = (fs::path(workspace.out) / "report.html").string()}));
   print_json(common, uq::report_json(report));
   return uq::has_warning(report) ? data::ExitStatus::warning : data::ExitStatus::done;
 }

@@ -38,8 +38,10 @@ void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>
 /// The report's provenance and the choices behind it, as the study, the table and the DEM's settings tell them.
 void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const TrainingRows& rows);
 
-/// report.json, report.html with figures, results.json in OUT, and what the terminal says.
-data::ExitStatus write_report(const Common& common, const Workspace& workspace, const uq::CalibrationReport& report);
+/// report.json, and report.html with its figures, in OUT.
+void write_report(const Workspace& workspace, const uq::CalibrationReport& report);
+/// The report on the terminal.
+data::ExitStatus say_report(const Common& common, const Workspace& workspace, const uq::CalibrationReport& report);
 
 /// --sampler mixture|nuts, instead of what each case says.
 std::shared_ptr<std::optional<data::Sampler>> add_sampler_option(CLI::App& command);

@@ -181,6 +181,24 @@ double take_ramps(const data::TorqueLog& log, std::vector<data::Plateau>& platea
   return seconds;
 }
 
+/// Where less than half of the turning belongs to a plateau: by how much, and the remedy.
+std::string left_over(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
+                      const data::PlateauOptions& options, double ramps) {
+  double fastest = 0.0, turning = 0.0, held = 0.0;
+  for (const double speed : log.speed) fastest = std::max(fastest, std::abs(speed));
+  for (std::size_t i = 1; i < log.time.size(); ++i)
+    if (std::abs(log.speed[i]) > 0.01 * fastest && log.time[i] >= options.from && log.time[i] <= options.to)
+      turning += log.time[i] - log.time[i - 1];
+  for (const data::Plateau& plateau : plateaus)
+    held += log.time[plateau.first + plateau.count - 1] - log.time[plateau.first];
+  if (turning - ramps < 2.0 * held) return {};
+  return fmt::format(
+      "{:.3g} s of {:.3g} s of turning belong to no speed that stays within {:g} %: where the tachometer scatters by "
+      "more, "
+      "widen that (--tolerance {:g})",
+      turning - held, turning, 100.0 * options.tolerance, 500.0 * options.tolerance);
+}
+
 data::ExitStatus observe(Options options) {
   const fs::path out = options.out.empty() ? fs::path(options.log).stem().string() + "-observed.csv" : options.out;
   check_observe_targets(out, {options.log, options.idle_log});
@@ -209,12 +227,13 @@ data::ExitStatus observe(Options options) {
            "hold each speed for a while, or cut out with --window what is constant");
   const std::size_t before = plateaus.size();
   std::erase_if(plateaus, [&](const data::Plateau& plateau) {
-    if (!data::is_saturated(log, plateau)) return false;
+    const std::optional<double> limit = data::saturated_at(log, plateau);
+    if (!limit) return false;
     warnings.push_back(
         fmt::format("{:.4g} {} at {:.4g} s: the torque stays at {:.5g} {}: the sensor is saturated or stuck there, "
                     "and no observation is made of it",
                     log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, log.time[plateau.first],
-                    log.torque_unit.from_si(plateau.torque.mean), log.torque_unit.symbol));
+                    log.torque_unit.from_si(*limit), log.torque_unit.symbol));
     return true;
   });
   if (plateaus.empty() && before > 0)
@@ -251,6 +270,8 @@ data::ExitStatus observe(Options options) {
                             {"unit", unit.symbol}});
   }
   for (std::string& warning : warnings_of(log, plateaus)) warnings.push_back(std::move(warning));
+  if (const std::string note = left_over(log, plateaus, options.plateaus, ramps); !note.empty())
+    say(options.common, "note: " + note);
   for (const std::string& warning : warnings) say(options.common, "warning: " + warning);
   answer(options.common,
          fmt::format("{} observation{}: {} (picture: {})", plateaus.size(), plateaus.size() == 1 ? "" : "s",

@@ -9,10 +9,9 @@
 #include "cli/calibration.hpp"
 #include "data/atomic_file.hpp"
 #include "data/provenance.hpp"
-#include "uq/findings/results_file.hpp"
+#include "uq/findings/report_file.hpp"
 #include "uq/plan/plan.hpp"
 #include "uq/report/html.hpp"
-#include "uq/report/json.hpp"
 #include "uq/report/plan.hpp"
 
 namespace cli {
@@ -79,9 +78,9 @@ void add_runs(const Workspace& workspace, const TrainingRows& rows, const Assess
 
 /// Puts the plans into the report of the last calibration, where there is one of this study.
 void add_to_report(const Workspace& workspace, const std::vector<uq::CaseReport>& planned) {
-  const fs::path out = workspace.out;
-  if (!fs::exists(out / "results.json")) return;
-  uq::CalibrationReport report = uq::load_results((out / "results.json").string());
+  const std::string path = (fs::path(workspace.out) / "report.json").string();
+  if (!fs::exists(path)) return;
+  uq::CalibrationReport report = uq::load_report(path);
   bool any = false;
   for (const uq::CaseReport& plan : planned)
     for (uq::CaseReport& one : report.cases)
@@ -90,8 +89,7 @@ void add_to_report(const Workspace& workspace, const std::vector<uq::CaseReport>
         any = true;
       }
   if (!any) return;
-  uq::save_results(report, (out / "results.json").string());
-  uq::write_report_json(report, (out / "report.json").string());
+  uq::save_report(report, path);
   uq::write_report_html(report, workspace.out);
 }
 
@@ -143,7 +141,7 @@ data::ExitStatus plan(const Options& options) {
   const nlohmann::ordered_json json = {
       {"format", 1}, {"demcal", data::program_version()}, {"study", study.name}, {"plans", uq::plans_json(planned)}};
   const std::string path = (fs::path(workspace.out) / "plan.json").string();
-  data::write_atomically(path, json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  data::write_atomically(path, uq::text_of(json));
   add_to_report(workspace, planned);
   const std::vector<std::string> warnings = say_warnings(common, rows, assessment.surrogates, refused);
   for (const uq::CaseReport& one : planned) answer(common, uq::plan_text(one.name, *one.plan));

@@ -1,8 +1,8 @@
-// demcal report: writes the page and report.json again from the saved results.
+// demcal report: writes the page again from report.json.
 #include <filesystem>
 
 #include "cli/calibration.hpp"
-#include "uq/findings/results_file.hpp"
+#include "uq/findings/report_file.hpp"
 
 namespace cli {
 
@@ -12,12 +12,14 @@ Action add_report(CLI::App& program) {
                     "demcal report data/developer", *common);
   return [common] {
     const Workspace workspace = open_workspace(*common);
-    const std::string results = (std::filesystem::path(workspace.out) / "results.json").string();
-    if (!std::filesystem::exists(results))
-      throw data::InputError(data::ExitStatus::missing_input, {results, "is not there: this study has no results yet",
+    const std::string report = (std::filesystem::path(workspace.out) / "report.json").string();
+    if (!std::filesystem::exists(report))
+      throw data::InputError(data::ExitStatus::missing_input, {report, "is not there: this study has no results yet",
                                                                "run: demcal calibrate " + common->study});
     const auto held = hold_out(workspace, Writes::results, "report");
-    return write_report(*common, workspace, uq::load_results(results));
+    const uq::CalibrationReport found = uq::load_report(report);
+    write_report(workspace, found);
+    return say_report(*common, workspace, found);
   };
 }
 

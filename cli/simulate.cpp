@@ -16,6 +16,7 @@
 #include "data/terminal.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/rig.hpp"
+#include "dem/run/mixing.hpp"
 #include "dem/run/run_file.hpp"
 #include "dem/walls/stl.hpp"
 #include "uq/findings/wording.hpp"
@@ -30,6 +31,18 @@ struct Options {
   int frames = 0;
   bool stl = false;
 };
+
+/// Time in which the powder of two channels goes round once: its mass over the mean of both flows.
+struct Lap {
+  double time = 0.0, error = 0.0;  ///< s
+};
+Lap lap_of(const dem::Derived& derived, const dem::RunResult& result) {
+  const data::SeriesMean& first = dem::output(result, "first_flow");
+  const data::SeriesMean& second = dem::output(result, "second_flow");
+  const double flow = 0.5 * (first.mean + second.mean);
+  const double time = static_cast<double>(derived.spheres) * derived.mass / flow;
+  return {time, time * 0.5 * std::hypot(first.standard_error, second.standard_error) / std::abs(flow)};
+}
 
 nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
   const dem::Derived derived = dem::derive(case_at(workspace, point));
@@ -62,7 +75,33 @@ nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem
                                     {"standard_error", row.standard_errors[i] / output.unit.factor},
                                     {"reliable", dem::output(result, output.name).reliable}};
   }
+  if (const auto round = dem::circulation(result.series, result.summary.measured_from)) {
+    const auto channel = [&](std::size_t k) {
+      const auto* const first = round->fill.data() + k * dem::places_along;
+      return std::vector<double>(first, first + dem::places_along);
+    };
+    const Lap lap = lap_of(derived, result);
+    json["circulation"] = {{"lap_s", lap.time},
+                           {"lap_standard_error_s", lap.error},
+                           {"mixing_index", round->mixing_index},
+                           {"fill_along_first", channel(0)},
+                           {"fill_along_second", channel(1)}};
+  }
   return json;
+}
+
+/// How the powder of two channels goes round, two lines.
+std::string circulation_text(const dem::Derived& derived, const dem::RunResult& result) {
+  const auto round = dem::circulation(result.series, result.summary.measured_from);
+  if (!round) return {};
+  std::string fill;
+  for (std::size_t k = 0; k < round->fill.size(); ++k)
+    fill += fmt::format("{}{:.2f}", k == 0 ? "" : k == dem::places_along ? " | " : " ", round->fill[k]);
+  const Lap lap = lap_of(derived, result);
+  return fmt::format(
+      "  a lap takes {}; mixing index of the two channels {:.2f} at the end\n"
+      "  powder along the first channel | the second, of the mean: {}\n",
+      uq::format_with_error(lap.time, lap.error, "s", uq::Typography::ascii), round->mixing_index, fill);
 }
 
 std::string summary(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
@@ -83,7 +122,7 @@ std::string summary(const Workspace& workspace, const Point& point, const dem::R
         : dem::output(result, output.name).reliable ? ""
                                                     : " (too short to know this error)");
   }
-  return text;
+  return text + circulation_text(dem::derive(c), result);
 }
 
 /// run.h5, or, where that holds another run or is no run of ours, run-HASH.h5: what is there is never replaced.

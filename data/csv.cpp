@@ -80,7 +80,7 @@ bool is_units_row(const CsvRecord& record) {
   bool any = false;
   for (const std::string& field : record.fields) {
     const std::string bare =
-        field.size() > 2 && (field.front() == '[' || field.front() == '(') ? field.substr(1, field.size() - 2) : field;
+        field.size() >= 2 && (field.front() == '[' || field.front() == '(') ? field.substr(1, field.size() - 2) : field;
     if (!bare.empty() && !is_unit(bare)) return false;
     any = any || (!bare.empty() && bare != "-" && bare != "1");
   }
@@ -317,7 +317,10 @@ std::optional<std::size_t> Csv::find(std::string_view column) const {
 std::size_t Csv::column(std::string_view name) const {
   if (const auto found = find(name)) return *found;
   std::string remedy = fmt::format("the columns are {}", fmt::join(headings, ", "));
-  if (const auto near = nearest(name, columns); near && edit_distance(name, *near) <= 2) {
+  // torque_sd is not torque_se: an sd of the samples is no error of their mean.
+  const bool of_error = name.ends_with("_se");
+  if (const auto near = nearest(name, columns);
+      near && edit_distance(name, *near) <= 2 && !(of_error && near->ends_with("_sd"))) {
     remedy += fmt::format("; is '{}' meant?", *near);
   }
   fail(fmt::format("{}:{}", file, header_line), fmt::format("the column '{}' is missing", name), remedy);

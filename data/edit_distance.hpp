@@ -7,7 +7,8 @@
 
 namespace data {
 
-/// Smallest number of insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`.
+/// Smallest number of insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`,
+/// upper and lower case alike.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The candidate nearest to `name`, if any is near enough to be meant.

@@ -11,6 +11,9 @@
 namespace data {
 namespace {
 
+/// A torque of so few values says nothing of a limit: the logger is coarse.
+constexpr std::size_t coarse_levels = 3;
+
 constexpr std::array codes{999.0,   999.9,   999.99,  9999.0, 9999.9, 9999.99, 99999.0, 99999.9, 999999.0, 9999999.0,
                            32767.0, 32768.0, 65535.0, 1e10,   1e30,   9.9e37,  1e37,    1e38,    3.4e38};
 
@@ -151,18 +154,19 @@ std::vector<std::string> remove_no_values(TorqueLog& log) {
   return words;
 }
 
-bool is_saturated(const TorqueLog& log, const Plateau& plateau, double most) {
+std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau, double most) {
   const std::vector<double> values = used_torques(log, plateau);
-  if (values.size() < 10) return false;
+  if (values.size() < 10) return {};
   const std::map<double, std::size_t> levels = levels_of(values);
-  if (levels.size() == 1) return levels.begin()->first != 0.0;
+  if (levels.size() == 1) return levels.begin()->first != 0.0 ? std::optional(levels.begin()->first) : std::nullopt;
+  if (levels.size() <= coarse_levels) return {};
   for (const bool largest : {false, true}) {
     const Level level = extreme(levels, largest);
     // Values that are merely coarse become rarer towards the ends.
     if (static_cast<double>(level.count) > most * static_cast<double>(values.size()) && level.count > 3 * level.next)
-      return true;
+      return level.value;
   }
-  return false;
+  return {};
 }
 
 std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau) {
@@ -178,7 +182,8 @@ std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& pla
   if (levels.size() > 1) {
     for (const bool largest : {false, true}) {
       const Level level = extreme(levels, largest);
-      if (static_cast<double>(level.count) > 0.02 * count && level.count >= 5 && level.count > 3 * level.next)
+      if (levels.size() > coarse_levels && static_cast<double>(level.count) > 0.02 * count && level.count >= 5 &&
+          level.count > 3 * level.next)
         words.push_back(fmt::format(
             "{}: {:.0f} % of the samples are exactly {:.5g} {}, and none lies {}: clipped there, so its mean is too {}",
             at, 100.0 * static_cast<double>(level.count) / count, unit.from_si(level.value), unit.symbol,

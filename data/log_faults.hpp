@@ -1,5 +1,6 @@
 #pragma once
 // What loggers and sensors do to a torque log, found before and after its reduction.
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,9 @@ namespace data {
 /// took out, in words.
 std::vector<std::string> remove_no_values(TorqueLog& log);
 
-/// Whether the sensor was at its limit or stuck: every torque of the plateau is the same, or more than `most` of them
-/// are the same largest or smallest one.
-bool is_saturated(const TorqueLog& log, const Plateau& plateau, double most = 0.5);
+/// The torque [N m] at which the sensor was at its limit or stuck: every torque of the plateau, or more than `most` of
+/// them, the largest or smallest. A torque of two or three values is that of a coarse logger.
+std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau, double most = 0.5);
 
 /// What is doubtful in a plateau's torque, in words: clipped at a limit, coarse steps of the resolution, spikes, a
 /// drift.

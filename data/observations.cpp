@@ -91,6 +91,12 @@ ObservationSet read_observations(const std::string& path, const Study& study,
       const Control& control = study.controls[i];
       point.controls.push_back(control_columns[i] ? control_units[i].to_si(measured(csv, row, *control_columns[i]))
                                                   : settings.at(control.name));
+      if (control.scale == Scale::log && !(point.controls.back() > 0.0))
+        throw InputError(ExitStatus::bad_data,
+                         Problem{control_columns[i] ? csv.place(row, *control_columns[i]) : csv.file,
+                                 fmt::format("{} is {:.10g}, which has no logarithm", control.name,
+                                             control.unit.from_si(point.controls.back())),
+                                 fmt::format("correct it, or set controls.{}.scale = \"linear\"", control.name)});
     }
     for (std::size_t i = 0; i < value_columns.size(); ++i) {
       point.values.push_back(value_units[i].to_si(measured(csv, row, value_columns[i])));

@@ -264,17 +264,16 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     for (const Column& column : *columns) input_units.push_back(csv.unit(at.inputs[input_units.size()], column.unit));
   for (std::size_t i = 0; i < table.outputs.size(); ++i) {
     output_units.push_back(csv.unit(at.outputs[i], table.outputs[i].unit));
-    error_units.push_back(csv.unit(at.errors[i], output_units.back()));
-    error_units.back().offset = 0.0;
+    error_units.push_back(csv.unit(at.errors[i], output_units.back()).differences());
   }
   tell_columns(csv, at, result);
   RowNotes notes(csv);
   for (const CsvRow& line : csv.rows) {
     const Missing missing = not_finite(csv, line, at);
-    std::size_t no_logarithm = study.parameters.size();
-    for (std::size_t i = study.parameters.size(); i-- > 0;)
-      if (study.parameters[i].scale == Scale::log && csv.number(line, at.inputs[i]) <= 0.0) no_logarithm = i;
-    if (no_logarithm < study.parameters.size()) {
+    std::size_t no_logarithm = at.inputs.size();
+    for (std::size_t i = at.inputs.size(); i-- > 0;)
+      if (scale_of_input(study, i) == Scale::log && csv.number(line, at.inputs[i]) <= 0.0) no_logarithm = i;
+    if (no_logarithm < at.inputs.size()) {
       notes.add(line, at.inputs[no_logarithm], "which has no logarithm (scale = \"log\"), the row is left out",
                 "which has no logarithm (scale = \"log\"), the rows are left out");
       continue;
@@ -347,10 +346,9 @@ void write_table_csv(const std::string& path, const RunTable& table, const Study
       text += text_of(row.inputs[i], column.unit) + ',';
     }
     for (std::size_t i = 0; i < row.outputs.size(); ++i) {
-      Unit difference = table.outputs.at(i).unit;
-      text += text_of(row.outputs[i], difference) + ',';
-      difference.offset = 0.0;
-      text += text_of(row.standard_errors.at(i), difference) + ',';
+      const Unit& unit = table.outputs.at(i).unit;
+      text += text_of(row.outputs[i], unit) + ',';
+      text += text_of(row.standard_errors.at(i), unit.differences()) + ',';
     }
     text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_field(row.material), row.seed, csv_field(row.settings),
                         csv_field(row.isa), csv_field(row.origin), shortest(row.cpu_seconds), csv_field(row.state),

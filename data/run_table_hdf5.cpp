@@ -184,11 +184,13 @@ TableRead read_table_hdf5(const std::string& path, const Study& study) {
   std::size_t number = 0;
   std::erase_if(table.rows, [&](const RunRow& row) {
     ++number;
-    for (std::size_t i = 0; i < study.parameters.size(); ++i) {
-      if (study.parameters[i].scale != Scale::log || row.inputs[i] > 0.0 || std::isnan(row.inputs[i])) continue;
-      result.left_out.push_back(
-          fmt::format("{}: row {} is {}, which has no logarithm (scale = \"log\"), and is left out",
-                      parameters.place(study.parameters[i].name), number, row.inputs[i]));
+    for (std::size_t i = 0; i < row.inputs.size(); ++i) {
+      if (scale_of_input(study, i) != Scale::log || row.inputs[i] > 0.0 || std::isnan(row.inputs[i])) continue;
+      const bool is_parameter = i < study.parameters.size();
+      const std::string place = is_parameter ? parameters.place(study.parameters[i].name)
+                                             : controls.place(study.controls[i - study.parameters.size()].name);
+      result.left_out.push_back(fmt::format(
+          "{}: row {} is {}, which has no logarithm (scale = \"log\"), and is left out", place, number, row.inputs[i]));
       return true;
     }
     return false;

@@ -80,10 +80,16 @@ double check_range(const Node& node, std::string_view key, double value, const R
   return clamp_to(value, range);
 }
 
+struct Expected {
+  Range range;
+  const Unit* default_unit = nullptr;  ///< of a bare number
+  bool difference = false;             ///< units count without their offset
+};
+
 /// A number with its unit, in SI; records what is wrong with it.
 std::optional<double> read_quantity(const Node& node, std::string_view key, const toml::node& value,
-                                    std::string_view si_unit, const std::pair<Range, const Unit*>& expected) {
-  const auto& [range, default_unit] = expected;
+                                    std::string_view si_unit, const Expected& expected) {
+  const auto& [range, default_unit, difference] = expected;
   const bool dimensionless = convertible(si_unit, "1");
   std::optional<double> number = bare_number(value);
   std::string unit_text;
@@ -125,7 +131,8 @@ std::optional<double> read_quantity(const Node& node, std::string_view key, cons
                    fmt::format("write it like {}", example));
       return {};
     }
-    return check_range(node, key, parse_unit(unit_text).to_si(*number), range,
+    const Unit unit = parse_unit(unit_text);
+    return check_range(node, key, (difference ? unit.differences() : unit).to_si(*number), range,
                        {show(value), Display{nullptr, si_unit}});
   } catch (const std::invalid_argument& unknown) {
     node.problem(key, fmt::format("{} has an unknown unit: {}", show(value), unknown.what()),
@@ -194,13 +201,29 @@ std::int64_t Section::integer(std::string_view key, Range range, std::optional<s
   return inside == value ? whole->get() : static_cast<std::int64_t>(inside);
 }
 
+namespace {
+
+double read_one(const Node& node, std::string_view key, std::string_view si_unit, std::optional<double> fallback,
+                const Expected& expected) {
+  node.note(key, {"quantity", std::string(si_unit), expected.range, shown_default(fallback), {}});
+  const std::string example =
+      fmt::format("\"1 {}\"", expected.default_unit != nullptr ? expected.default_unit->symbol : si_unit);
+  const toml::node* value = fallback ? node.ask(key) : node.demand(key, convertible(si_unit, "1") ? "0.5" : example);
+  if (value == nullptr) return missing_value(expected.range, fallback);
+  return read_quantity(node, key, *value, si_unit, expected).value_or(missing_value(expected.range, fallback));
+}
+
+}  // namespace
+
 double Section::quantity(std::string_view key, std::string_view si_unit, Range range, std::optional<double> fallback,
                          const Unit* default_unit) const {
-  node_->note(key, {"quantity", std::string(si_unit), range, shown_default(fallback), {}});
-  const std::string example = fmt::format("\"1 {}\"", default_unit != nullptr ? default_unit->symbol : si_unit);
-  const toml::node* node = fallback ? node_->ask(key) : node_->demand(key, convertible(si_unit, "1") ? "0.5" : example);
-  if (node == nullptr) return missing_value(range, fallback);
-  return read_quantity(*node_, key, *node, si_unit, {range, default_unit}).value_or(missing_value(range, fallback));
+  const bool differences = default_unit != nullptr && default_unit->of_differences;
+  return read_one(*node_, key, si_unit, fallback, {range, default_unit, differences});
+}
+
+double Section::difference(std::string_view key, std::string_view si_unit, Range range, std::optional<double> fallback,
+                           const Unit* default_unit) const {
+  return read_one(*node_, key, si_unit, fallback, {range, default_unit, true});
 }
 
 std::string Section::text(std::string_view key, std::optional<std::string> fallback) const {

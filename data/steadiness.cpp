@@ -5,9 +5,11 @@
 // variance of its sum per sample; so is the mean's error (R. D. Foley, D. Goldsman, "Confidence intervals using
 // orthonormally weighted standardized time series", ACM Trans. Model. Comput. Simul. 9 (1999) 297).
 //
-// Error. V = (P_1 + ... + P_L)/L, the spectrum at frequency zero from the lowest frequencies as in P. Heidelberger,
-// P. D. Welch, Commun. ACM 24 (1981) 233. (mean - truth)/sqrt(V/n) follows Student's t with L degrees of freedom. The
-// error stated is the standard deviation of that law, sqrt(V/n L/(L - 2)), since others take it as a normal one.
+// Error. V = (P_1 + ... + P_8)/8, the spectrum at frequency zero from the lowest frequencies as in P. Heidelberger,
+// P. D. Welch, Commun. ACM 24 (1981) 233. (mean - truth)/sqrt(V/n) follows Student's t with 8 degrees of freedom. The
+// error stated is the standard deviation of that law, sqrt(V/n 8/6), since others take it as a normal one. More modes
+// would make it steadier by a little, and wrong where motions of several speeds mix: the torque of a slow cohesive bed
+// has a spectrum that still rises below one per turn, and 16 modes of one turn reach up to eight (dem/STEADY.md).
 //
 // Drift. A series that drifts has its excess in the slowest modes: of a straight line mode 1 holds 98.6 % of the
 // variance, and a decaying start-up lies in modes 1 and 2. The test compares them with the next,
@@ -19,7 +21,8 @@
 // 171): the drift itself does not enter it and hide, and the law is exact for a few degrees of freedom.
 //
 // L. The modes must lie where the spectrum is known. That of a Lorentzian with integrated time tau falls as
-// 1/(1 + (pi j tau/(2 n))^2), which each P_j is divided by; used are modes up to j = n/(2 tau), where that is 0.62. tau
+// 1/(1 + (pi j tau/(2 n))^2), which each P_j is divided by; used are modes up to j = n/(2 tau), where that is 0.62, and
+// 16 at most for the drift. Where there are fewer than 8 the error is not known. tau
 // is that of the series without its slowest two modes (data/time_series.hpp), so that a drift does not pass for
 // correlation.
 #include "data/steadiness.hpp"
@@ -68,26 +71,27 @@ Steadiness steadiness(std::span<const double> series, const SteadinessOptions& o
   Steadiness result;
   // What the usual estimate says, without its own truncation, where there is too little for this one.
   result.mean = mean_with_error(series, {.start_up_fraction_max = 0.0});
-  if (series.size() < 4 * options.fewest_modes || !std::isfinite(result.mean.standard_error)) {
+  if (series.size() < 2 * options.drift_modes || !std::isfinite(result.mean.standard_error)) {
     result.mean.reliable = false;
     return result;
   }
   if (result.mean.sd == 0.0) return result;  // a constant
   const auto n = static_cast<double>(series.size());
-  const std::vector<double> c = cosine_modes(series, result.mean.mean, options.most_modes);
+  const std::vector<double> c = cosine_modes(series, result.mean.mean, options.drift_modes);
   const SeriesMean rest = mean_with_error(without_slow_modes(series, c), {.start_up_fraction_max = 0.0});
   const double tau = rest.integrated_time;
   const auto flat = static_cast<std::size_t>(0.5 * n / tau);
-  const std::size_t modes = std::clamp(flat, options.fewest_modes, options.most_modes);
-  double slowest = 0.0, others = 0.0;
+  const std::size_t modes = std::clamp(flat, options.error_modes, options.drift_modes);
+  double of_error = 0.0, slowest = 0.0, others = 0.0;
   for (std::size_t j = 0; j < modes; ++j) {
     const double fall = 0.5 * std::numbers::pi * static_cast<double>(j + 1) * tau / n;
-    (j < slow ? slowest : others) += n * c[j] * c[j] * (1.0 + fall * fall);
+    const double power = n * c[j] * c[j] * (1.0 + fall * fall);
+    if (j < options.error_modes) of_error += power;
+    (j < slow ? slowest : others) += power;
   }
-  const auto freedom = static_cast<double>(modes), others_freedom = static_cast<double>(modes - slow);
-  const double variance = (slowest + others) / freedom;
-  result.modes = modes;
-  result.mean.reliable = flat >= options.fewest_modes;
+  const auto freedom = static_cast<double>(options.error_modes), others_freedom = static_cast<double>(modes - slow);
+  const double variance = of_error / freedom;
+  result.mean.reliable = flat >= options.error_modes;
   result.mean.standard_error = std::sqrt(variance / n * freedom / (freedom - 2.0));
   result.mean.integrated_time = std::max(variance / (result.mean.sd * result.mean.sd), 1.0 / n);
   result.mean.effective_samples = n / result.mean.integrated_time;

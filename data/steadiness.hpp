@@ -10,14 +10,13 @@
 namespace data {
 
 struct SteadinessOptions {
-  std::size_t fewest_modes = 8;  ///< of the error's degrees of freedom; with fewer, the series is too short
-  std::size_t most_modes = 16;   ///< so that the error sees the slowest motion alone
+  std::size_t error_modes = 8;   ///< of which the error is made: the slowest; with fewer, the series is too short
+  std::size_t drift_modes = 16;  ///< at most, of which the slowest two are compared with the others
 };
 
 struct Steadiness {
-  SeriesMean mean;        ///< `reliable`: there are `fewest_modes`
-  std::size_t modes = 0;  ///< of which the error is made
-  double drift_p = 1.0;   ///< how often a stationary series has as much power in its slowest two modes
+  SeriesMean mean;       ///< `reliable`: there are `error_modes`
+  double drift_p = 1.0;  ///< how often a stationary series has as much power in its slowest two modes
 };
 
 /// Of a series from which the start-up is gone already. Throws nothing; a series that is too short is not reliable.

@@ -136,6 +136,18 @@ std::optional<std::size_t> Study::parameter_index(std::string_view parameter_nam
   return {};
 }
 
+std::optional<std::size_t> Study::control_index(std::string_view control_name) const {
+  for (std::size_t i = 0; i < controls.size(); ++i) {
+    if (controls[i].name == control_name) return i;
+  }
+  return {};
+}
+
+Scale scale_of_input(const Study& study, std::size_t input) {
+  const std::size_t parameters = study.parameters.size();
+  return input < parameters ? study.parameters[input].scale : study.controls[input - parameters].scale;
+}
+
 std::optional<std::size_t> Study::observation_index(std::string_view set_name) const {
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (observations[i].name == set_name) return i;

@@ -68,11 +68,12 @@ struct Control {
   std::string name;
   std::string target;
   Unit unit;
-  double low = 0.0;                         ///< SI
-  double high = 1.0;                        ///< SI
+  double low = 0.0;   ///< SI
+  double high = 1.0;  ///< SI
+  Scale scale = Scale::linear;
   std::optional<SettingError> uncertainty;  ///< of every observation set that does not state its own
   std::string place;
-  Axis axis() const { return {low, high}; }
+  Axis axis() const { return {low, high, scale}; }
 };
 
 struct Output {
@@ -198,9 +199,13 @@ struct Study {
   std::vector<Prediction> predictions;
 
   std::optional<std::size_t> parameter_index(std::string_view parameter_name) const;
+  std::optional<std::size_t> control_index(std::string_view control_name) const;
   std::optional<std::size_t> observation_index(std::string_view set_name) const;
   const Material& material(std::string_view material_name) const;
 };
+
+/// Of the i-th input of a row: parameters, then controls.
+Scale scale_of_input(const Study& study, std::size_t input);
 
 /// Reads the sections above and the observation files. Problems are recorded in `file` (file.finish() throws them) so
 /// that the DEM's sections can be read in the same pass. Missing or malformed observation files throw InputError with

@@ -60,6 +60,10 @@ class Section {
   /// unless `default_unit` is given (a section with a `unit`), or the dimension is none ("1").
   double quantity(std::string_view key, std::string_view si_unit, Range range, std::optional<double> fallback = {},
                   const Unit* default_unit = nullptr) const;
+  /// The same of an error, a shift or another difference: "2 degC" are 2 K. So reads `quantity` too where its
+  /// `default_unit` is of differences.
+  double difference(std::string_view key, std::string_view si_unit, Range range, std::optional<double> fallback = {},
+                    const Unit* default_unit = nullptr) const;
   std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
   /// One of `options`; anything else is an error that lists them.
   std::string choice(std::string_view key, const std::vector<std::string>& options,

@@ -60,8 +60,7 @@ Parameter read_unknown(const Section& section, const std::string& name, const Un
     prior = read_prior(section, parameter, PriorOf::case_);
     return parameter;
   }
-  Unit difference = unit;
-  difference.offset = 0.0;
+  const Unit difference = unit.differences();
   if (!section.has("kind") || section.text("kind") == "normal") {
     prior.kind = PriorKind::normal;
     prior.mean = section.quantity("mean", unit.si_symbol, any_number, usual.mean, bare_unit(unit));
@@ -106,7 +105,7 @@ Nuisance noise_of(const Section& section, const Study& study) {
     return {NuisanceKind::noise_scale, read_output(table, study, {}), parameter};
   }
   const std::size_t output = read_output(table, study, 0).value();
-  const Unit& unit = study.outputs[output].unit;
+  const Unit unit = study.outputs[output].unit.differences();
   parameter = read_unknown(table, "noise", unit, {.mean = {}, .low = 0.0});
   return {NuisanceKind::noise_sd, output, parameter};
 }
@@ -145,10 +144,9 @@ Spread read_spread(const Section& section, std::string_view key, const Unit& uni
     spread.relative = section.quantity(key, "1", {.low = 0.0, .high = 1.0, .open_low = true});
     return spread;
   }
-  Unit difference = section_unit != nullptr ? *section_unit : Unit{};
-  difference.offset = 0.0;
+  const Unit difference = section_unit != nullptr ? section_unit->differences() : Unit{};
   spread.absolute =
-      section.quantity(key, unit.si_symbol, positive, {}, section_unit != nullptr ? &difference : nullptr);
+      section.difference(key, unit.si_symbol, positive, {}, section_unit != nullptr ? &difference : nullptr);
   return spread;
 }
 
@@ -250,8 +248,8 @@ std::vector<Nuisance> read_nuisances(const Section& section, const Study& study)
   if (section.has("offset")) {
     const Section table = section.child("offset");
     const std::size_t output = read_output(table, study, 0).value();
-    found.push_back(
-        {NuisanceKind::offset, output, read_unknown(table, "offset", study.outputs[output].unit, {.mean = 0.0})});
+    found.push_back({NuisanceKind::offset, output,
+                     read_unknown(table, "offset", study.outputs[output].unit.differences(), {.mean = 0.0})});
   }
   if (section.has("gain")) {
     const Section table = section.child("gain");

@@ -61,8 +61,7 @@ void read_limits(const Section& section, Prior& prior, const Parameter& paramete
 
 void read_mean_and_sd(const Section& section, Prior& prior, const Parameter& parameter) {
   prior.mean = read_value(section, "mean", parameter.unit);
-  Unit difference = parameter.unit;
-  difference.offset = 0.0;
+  const Unit difference = parameter.unit.differences();
   prior.sd = section.quantity("sd", parameter.unit.si_symbol, positive, {}, bare_unit(difference));
   const bool given = section.has("mean") && section.has("sd") && prior.sd > 0.0;
   if (given && (prior.mean < prior.low - 3.0 * prior.sd || prior.mean > prior.high + 3.0 * prior.sd)) {
@@ -77,6 +76,14 @@ void read_mean_and_sd(const Section& section, Prior& prior, const Parameter& par
 }  // namespace
 
 const Unit* bare_unit(const Unit& unit) { return unit.symbol.empty() || unit.symbol == "1" ? nullptr : &unit; }
+
+Scale read_scale(const Section& section, double low, const Unit& unit) {
+  if (section.choice("scale", {"linear", "log"}, "linear") == "linear") return Scale::linear;
+  if (section.has("low") && !(low > 0.0))
+    section.problem("low", fmt::format("{} has no logarithm", shown(low, unit)),
+                    "choose low above 0, or scale = \"linear\"");
+  return Scale::log;
+}
 
 const std::set<std::string>& reserved_columns() {
   static const std::set<std::string> names{"material", "seed", "settings", "isa", "origin", "cpu_seconds"};
@@ -125,13 +132,7 @@ void read_parameters(const Section& root, Study& study) {
     parameter.low = read_value(section, "low", parameter.unit);
     parameter.high = read_value(section, "high", parameter.unit);
     check_order(section, parameter.low, parameter.high, parameter.unit);
-    if (section.choice("scale", {"linear", "log"}, "linear") == "log") {
-      parameter.scale = Scale::log;
-      if (section.has("low") && !(parameter.low > 0.0)) {
-        section.problem("low", fmt::format("{} has no logarithm", shown(parameter.low, parameter.unit)),
-                        "choose low above 0, or scale = \"linear\"");
-      }
-    }
+    parameter.scale = read_scale(section, parameter.low, parameter.unit);
     parameter.prior = read_prior(section.child("prior"), parameter, PriorOf::parameter);
     study.parameters.push_back(std::move(parameter));
   }
@@ -144,6 +145,7 @@ void read_controls(const Section& root, Study& study) {
     control.low = read_value(section, "low", control.unit);
     control.high = read_value(section, "high", control.unit);
     check_order(section, control.low, control.high, control.unit);
+    control.scale = read_scale(section, control.low, control.unit);
     control.uncertainty = read_uncertainty(section, "uncertainty", control, bare_unit(control.unit));
     if (control.uncertainty) control.uncertainty->control = study.controls.size();
     study.controls.push_back(std::move(control));

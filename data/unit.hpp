@@ -12,6 +12,13 @@ struct Unit {
   double factor = 1.0;
   double offset = 0.0;
   std::string si_symbol = "1";  ///< the SI unit that it is mapped to, in base units: "kg m2 s-2"
+  bool of_differences = false;  ///< of errors and shifts: 2 degC are 2 K, and offset is 0
+  Unit differences() const {
+    Unit unit = *this;
+    unit.offset = 0.0;
+    unit.of_differences = true;
+    return unit;
+  }
   double to_si(double value) const { return factor * value + offset; }
   double from_si(double si) const { return (si - offset) / factor; }
   /// Of a number as text, converted in long double: every reader of text gives the same bits. Of what is not a number

@@ -27,7 +27,14 @@ std::string normalised(std::string_view given) {
                                                                             {"\xe2\x88\x99", " "},
                                                                             {"\xe2\x80\xa2", " "},
                                                                             {"\xc2\xa0", " "},
-                                                                            {"\xe2\x81\xbb\xc2\xb9", "-1"},
+                                                                            {"\xe2\x81\xbb", "-"},
+                                                                            {"\xe2\x81\xb0", "0"},
+                                                                            {"\xc2\xb9", "1"},
+                                                                            {"\xc2\xb2", "2"},
+                                                                            {"\xc2\xb3", "3"},
+                                                                            {"\xe2\x81\xb4", "4"},
+                                                                            {"\xe2\x81\xb5", "5"},
+                                                                            {"\xe2\x81\xb6", "6"},
                                                                             {"\xe2\x88\x92", "-"},
                                                                             {"^-1", "-1"},
                                                                             {"*", " "}})
@@ -40,9 +47,10 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// "mNm" -> "mN m", "kgfcm" -> "kgf cm": a force and a length without a sign between them.
+/// "mNm" -> "mN m", "kgfcm" -> "kgf cm", "in-lb" -> "lbf in": a force and a length in any order, with any sign or none
+/// between them. A mass stands for its weight.
 std::string torque_spelling(const std::string& text) {
-  static constexpr std::array forces{"kgf", "gf", "kp", "ozf", "lbf", "lb", "oz", "N"};
+  static constexpr std::array forces{"kgf", "gf", "kp", "ozf", "lbf", "lb", "oz", "kg", "dyn", "N"};
   static constexpr std::array lengths{"mm", "cm", "m", "in", "ft"};
   static constexpr std::array prefixes{"", "u", "m", "c", "k", "n", "M"};
   std::string joined;
@@ -51,12 +59,13 @@ std::string torque_spelling(const std::string& text) {
   for (const char* force : forces)
     for (const char* length : lengths)
       for (const char* prefix : prefixes)
-        if (joined == std::string(prefix) + force + length) {
+        if (joined == std::string(prefix) + force + length || joined == std::string(length) + prefix + force) {
           const std::string name = force;
-          const std::string udunits = name == "kp" || name == "kgf" ? "kgf"
-                                      : name == "lb"                ? "lbf"
-                                      : name == "oz"                ? "ozf"
-                                                                    : name;
+          const std::string udunits = name == "kp" || name == "kg" ? "kgf"
+                                      : name == "lb"               ? "lbf"
+                                      : name == "oz"               ? "ozf"
+                                      : name == "dyn"              ? "dyne"
+                                                                   : name;
           if (name != "N" && *prefix != '\0') continue;
           if (udunits == "gf") return std::string("0.001 kgf ") + length;
           if (udunits == "ozf") return std::string("0.0625 lbf ") + length;

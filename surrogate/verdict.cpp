@@ -183,8 +183,7 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
     v.more_runs = std::max(8, v.runs / 4);
     v.remedy = fmt::format(
         "Look at the standardised errors above 2 (runs with a wrong standard error?); else add about {} runs, or try "
-        "the log "
-        "scale or another kernel.",
+        "the log scale of the output (surrogate.log_outputs) or another kernel (surrogate.kernel).",
         v.more_runs);
   } else {
     v.more_runs = std::max(8, v.runs / 4);

@@ -24,7 +24,7 @@ Setup make_setup(const Case& c, BuiltRig rig, std::uint64_t rest_steps, int thre
   s.overlap_limit = c.run.overlap_limit;
   s.rest_steps = rest_steps;
   s.threads = threads;
-  s.two_streams = rig.two_streams;
+  s.channels = rig.channels;
   return s;
 }
 

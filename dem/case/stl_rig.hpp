@@ -34,8 +34,8 @@ struct FillRegion {
 
 struct StlRig {
   std::vector<RigMesh> meshes;
-  std::size_t measured = 0;  ///< the mesh whose torque is the output
-  Vec3 low, high;            ///< m, the box; a sphere beyond it ends the run
+  std::vector<std::size_t> measured{0};  ///< the meshes whose torques, together, are the output
+  Vec3 low, high;                        ///< m, the box; a sphere beyond it ends the run
   std::array<bool, 3> periodic{false, false, false};
   Vec3 down{0.0, 0.0, -1.0};  ///< unit, direction of gravity
   FillRegion region;

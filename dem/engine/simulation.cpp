@@ -147,6 +147,7 @@ void Simulation::integrate() {
   const double dt = setup_.time_step;
   const std::size_t chunks = s.chunks();
   chunk_steps_.assign(chunks, {});
+  const Channels& channels = setup_.channels;
   team_.for_each(chunks, [&](std::size_t c) {
     // Whole rows at once; what rides in the fourth places of motion and load stays as it is.
     typedef long long Places __attribute__((vector_size(32)));
@@ -155,7 +156,7 @@ void Simulation::integrate() {
     const Four gravity{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z, 0.0};
     Four late{};  // force * (v*(n) - v(n)) and the same of torque and spin
     Four momentum{}, moment{}, twice_energy{};
-    double farthest = 0.0, fastest = 0.0, circulation = 0.0;
+    double farthest = 0.0, fastest = 0.0, flow[2]{};
     for (std::uint32_t i = s.chunk_first[c]; i < s.chunk_first[c + 1]; ++i) {
       HalfRow& half = s.half[i];
       MotionRow& motion = s.motion[i];
@@ -179,17 +180,22 @@ void Simulation::integrate() {
       const double radius = s.position[i].radius;
       momentum += motion.mass * velocity;
       moment += motion.mass * at;
-      const bool in_streams = at[0] > setup_.two_streams.from && at[0] < setup_.two_streams.to;
-      circulation += in_streams ? std::copysign(motion.mass, at[1]) * velocity[0] : 0.0;
+      if (channels.exist()) {
+        const double place = dot(channels.along, three(at));
+        if (place > channels.flow_from && place < channels.flow_to)
+          flow[channels.of(three(at))] += motion.mass * dot(channels.along, three(velocity));
+      }
       twice_energy += motion.mass * (speeds + (0.4 * radius * radius) * (spin * spin));
       four(load.force.x) = fourth * four(load.force.x);
       four(load.torque.x) = fourth * torque;
     }
-    chunk_steps_[c] = {
-        farthest,
-        fastest,
-        late[0] + late[1] + late[2],
-        {three(momentum), three(moment), 0.5 * (twice_energy[0] + twice_energy[1] + twice_energy[2]), circulation}};
+    chunk_steps_[c] = {farthest,
+                       fastest,
+                       late[0] + late[1] + late[2],
+                       {three(momentum),
+                        three(moment),
+                        0.5 * (twice_energy[0] + twice_energy[1] + twice_energy[2]),
+                        {flow[0], flow[1]}}};
   });
   max_displacement2_ = 0.0;
   carried_ = {};
@@ -201,7 +207,7 @@ void Simulation::integrate() {
     carried_.momentum += moved.carried.momentum;
     carried_.moment += moved.carried.moment;
     carried_.kinetic_energy += moved.carried.kinetic_energy;
-    carried_.circulation += moved.carried.circulation;
+    for (std::size_t k = 0; k < carried_.flow.size(); ++k) carried_.flow[k] += moved.carried.flow[k];
   }
   fastest_ = std::sqrt(fastest2);
   ++s.step;

@@ -37,9 +37,17 @@ struct Spheres {
   std::vector<Vec3> spin;            ///< rad/s, empty: none
 };
 
-/// Where two streams run side by side against each other along x, parted by the plane y = 0: between these places.
-struct TwoStreams {
-  double from = 0.0, to = 0.0;  ///< m along x
+/// Two channels side by side, as of a machine of two mixers. A plane parts them: at `middle` across. A rig without them
+/// has the length 0.
+struct Channels {
+  Vec3 along{1.0, 0.0, 0.0};              ///< unit, the way that the powder of the first is to flow
+  Vec3 across{0.0, 1.0, 0.0};             ///< unit, from the first to the second
+  double middle = 0.0;                    ///< m along `across`
+  double from = 0.0, to = 0.0;            ///< m along `along`, where they are
+  double flow_from = 0.0, flow_to = 0.0;  ///< m, between the openings, where nothing goes from one to the other
+
+  bool exist() const { return to > from; }
+  int of(Vec3 at) const { return dot(across, at) < middle ? 0 : 1; }
 };
 
 struct Setup {
@@ -54,7 +62,7 @@ struct Setup {
   double overlap_limit = std::numeric_limits<double>::infinity();  ///< of a radius; beyond it the run ends
   std::uint64_t rest_steps = 0;                                    ///< before the bodies' motions begin
   int threads = 1;
-  TwoStreams two_streams;
+  Channels channels;
 };
 
 /// The run cannot go on: what, where, when and the likely cause.
@@ -70,10 +78,10 @@ struct Energy {
 
 /// What all spheres carried in the last step, at its half, where leapfrog has their velocities.
 struct Carried {
-  Vec3 momentum;                ///< kg m/s
-  Vec3 moment;                  ///< kg m, sum of mass * position, at the step's end
-  double kinetic_energy = 0.0;  ///< J, translation and rotation
-  double circulation = 0.0;     ///< kg m/s along x of Setup::two_streams, what is at y > 0 less what is at y < 0
+  Vec3 momentum;                 ///< kg m/s
+  Vec3 moment;                   ///< kg m, sum of mass * position, at the step's end
+  double kinetic_energy = 0.0;   ///< J, translation and rotation
+  std::array<double, 2> flow{};  ///< kg m/s along Channels::along, of each channel between its openings
 };
 
 /// The grid along which rows are sorted: x outermost, z innermost.

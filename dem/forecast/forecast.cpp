@@ -168,6 +168,10 @@ Extent extent_of(const TriangleMesh& mesh) {
   return e;
 }
 
+bool is_measured(const StlRig& rig, std::size_t mesh) {
+  return std::find(rig.measured.begin(), rig.measured.end(), mesh) != rig.measured.end();
+}
+
 void say_bodies(const Case& c, const BuiltRig& rig, Forecast& f) {
   const StlRig& stl = *c.rig.stl;
   bool anything = false;
@@ -177,7 +181,9 @@ void say_bodies(const Case& c, const BuiltRig& rig, Forecast& f) {
     const Vec3 size = e.high - e.low;
     f.bodies.push_back(fmt::format("{}: {} triangles, {} x {} x {} mm, {}{}", m.name, m.mesh.triangles.size(),
                                    mm(size.x), mm(size.y), mm(size.z), motion_text(m, rig.bodies[k].motion),
-                                   k == stl.measured ? "; its torque is the output" : ""));
+                                   !is_measured(stl, k)      ? ""
+                                   : stl.measured.size() > 1 ? "; its torque counts for the output"
+                                                             : "; its torque is the output"));
     anything = anything || moves(rig.bodies[k].motion);
   }
   if (!anything)
@@ -351,7 +357,7 @@ void check_powder(const Case& c, const BuiltRig& rig, Forecast& f) {
   const Poured loose = pour(room, room.at(lowest), solids / loosest);
   const std::vector<RigMesh>& meshes = c.rig.stl->meshes;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    const bool measured = k == c.rig.stl->measured;
+    const bool measured = is_measured(*c.rig.stl, k);
     if (!measured && !moves(rig.bodies[k].motion)) continue;
     const std::vector<Vec3> points = swept_points(rig, k, c.run);
     if (reaches(room, loose.wet, points)) continue;

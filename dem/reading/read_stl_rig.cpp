@@ -183,18 +183,26 @@ void read_packing(const Section& s, const std::string& folder, StlRig& r) {
 void choose_measured(const Section& s, StlRig& r) {
   const auto moving = std::find_if(r.meshes.begin(), r.meshes.end(),
                                    [](const RigMesh& m) { return m.speed_ratio != 0.0 || moves(m.motion); });
-  if (moving != r.meshes.end()) r.measured = static_cast<std::size_t>(moving - r.meshes.begin());
-  const std::string name = s.text("torque_of", "");
-  if (name.empty()) return;
-  std::string known;
-  for (std::size_t k = 0; k < r.meshes.size(); ++k) {
-    if (r.meshes[k].name == name) {
-      r.measured = k;
-      return;
-    }
-    known += (known.empty() ? "" : ", ") + r.meshes[k].name;
+  if (!r.meshes.empty())
+    r.measured = {moving != r.meshes.end() ? static_cast<std::size_t>(moving - r.meshes.begin()) : 0};
+  const std::vector<std::string> chosen = s.kind("torque_of") == data::ValueKind::text
+                                              ? std::vector<std::string>{s.text("torque_of")}
+                                              : s.texts("torque_of");
+  if (chosen.empty() || chosen.front().empty()) return;
+  r.measured.clear();
+  std::vector<std::string> known;
+  for (const RigMesh& m : r.meshes) known.push_back(m.name);
+  for (const std::string& name : chosen) {
+    const auto found = std::find_if(r.meshes.begin(), r.meshes.end(), [&](const RigMesh& m) { return m.name == name; });
+    const auto k = static_cast<std::size_t>(found - r.meshes.begin());
+    if (found == r.meshes.end())
+      s.problem("torque_of", fmt::format("there is no mesh '{}'", name),
+                fmt::format("choose of: {}", fmt::join(known, ", ")));
+    else if (std::find(r.measured.begin(), r.measured.end(), k) != r.measured.end())
+      s.problem("torque_of", fmt::format("names the mesh '{}' twice", name), "name each once");
+    else
+      r.measured.push_back(k);
   }
-  s.problem("torque_of", fmt::format("there is no mesh '{}'", name), "choose one of: " + known);
 }
 
 /// Identity of what came from files, so that runs are made again when a file changes.

@@ -55,6 +55,57 @@ void check_packing(const StlRig& rig, std::span<const Body> bodies, double radiu
   }
 }
 
+/// Of a box of these edges [m].
+double extent_along(Vec3 axis, Vec3 size) {
+  return std::abs(axis.x) * size.x + std::abs(axis.y) * size.y + std::abs(axis.z) * size.z;
+}
+
+/// From one line to another, across them [m]; both about parallel axes.
+Vec3 offset_between(const Motion& first, const Motion& second) {
+  const Vec3 apart = second.point - first.point;
+  return apart - dot(apart, first.axis) * first.axis;
+}
+
+bool parallel(Vec3 a, Vec3 b) { return length(cross(a, b)) < 1e-6; }
+
+/// None of a rig without meshes.
+std::vector<std::size_t> measured_meshes(const StlRig& rig) {
+  return rig.meshes.empty() ? std::vector<std::size_t>{} : rig.measured;
+}
+
+/// How the k-th measured mesh moves.
+Motion measured_motion(const Case& c, std::size_t k) {
+  const StlRig& rig = *c.rig.stl;
+  return motion_of(rig.meshes[rig.measured[k]], c.rig.angular_velocity);
+}
+
+/// Whether all measured meshes turn about the same line.
+bool one_axis(const Case& c) {
+  const StlRig& rig = *c.rig.stl;
+  const Motion first = measured_motion(c, 0);
+  for (std::size_t k = 1; k < rig.measured.size(); ++k) {
+    const Motion other = measured_motion(c, k);
+    if (!parallel(first.axis, other.axis) || length(offset_between(first, other)) > 1e-6 * length(rig.high - rig.low))
+      return false;
+  }
+  return true;
+}
+
+/// Of two measured meshes that turn about parallel axes: the channels meet halfway, over the length of the box.
+Channels channels(const Case& c) {
+  const StlRig& rig = *c.rig.stl;
+  if (rig.measured.size() != 2 || one_axis(c)) return {};
+  const Motion first = measured_motion(c, 0), second = measured_motion(c, 1);
+  if (!parallel(first.axis, second.axis)) return {};
+  const Vec3 apart = offset_between(first, second), middle = 0.5 * (rig.low + rig.high);
+  const double half = 0.5 * extent_along(first.axis, rig.high - rig.low);
+  Channels found{.along = first.axis, .across = unit(apart)};
+  found.middle = dot(found.across, first.point) + 0.5 * length(apart);
+  found.from = found.flow_from = dot(middle, first.axis) - half;
+  found.to = found.flow_to = dot(middle, first.axis) + half;
+  return found;
+}
+
 void fill(const Case& c, std::uint64_t seed, BuiltRig& built) {
   const StlRig& rig = *c.rig.stl;
   const BedSummary bed = summarise_bed(c);
@@ -148,14 +199,19 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
     built.velocity = rig.velocity;
     built.frozen = rig.frozen;
   }
-  const Motion measured = built.bodies.empty() ? Motion{} : built.bodies[rig.measured].motion;
-  const Vec3 axis = measured.axis, size = rig.high - rig.low;
-  const Vec3 torque_axis = drive_sign(measured, c.run) * axis;
-  built.sensor = {{{rig.measured, torque_axis}},
-                  axis,
-                  std::abs(axis.x) * size.x + std::abs(axis.y) * size.y + std::abs(axis.z) * size.z,
-                  period(measured),
-                  picture_along(-torque_axis, measured.point, rig.down)};
+  Sensor& sensor = built.sensor;
+  for (const std::size_t k : measured_meshes(rig)) {
+    const Motion& motion = built.bodies[k].motion;
+    sensor.driven.push_back({k, drive_sign(motion, c.run) * motion.axis});
+  }
+  const Motion first = sensor.driven.empty() ? Motion{} : built.bodies[sensor.driven.front().body].motion;
+  sensor.flow_axis = first.axis;
+  sensor.flow_length = extent_along(first.axis, rig.high - rig.low);
+  sensor.period = period(first);
+  sensor.picture = {{}, {}, -rig.down};  // bodies about several axes have no side on which they rise
+  if (!sensor.driven.empty() && one_axis(c))
+    sensor.picture = picture_along(-sensor.driven.front().torque_axis, first.point, rig.down);
+  built.channels = channels(c);
   return built;
 }
 
@@ -214,7 +270,9 @@ std::string settings(const Case& c) {
     }
     lines += "\n";
   }
-  lines += fmt::format("rig.torque_of = {}\n", rig.meshes.empty() ? "" : rig.meshes[rig.measured].name);
+  std::vector<std::string> measured;
+  for (const std::size_t k : measured_meshes(rig)) measured.push_back(rig.meshes[k].name);
+  lines += fmt::format("rig.torque_of = {}\n", fmt::join(measured, ", "));
   const FillRegion& r = rig.region;
   if (!rig.packing.empty()) return lines;
   if (r.shape == FillRegion::Shape::box)
@@ -252,7 +310,8 @@ const RigKind stl_rig{.name = "stl",
                       .problems = problems_of,
                       .settings = settings,
                       .labels = labels,
-                      .measured_bodies = [](const Case&) { return std::size_t{1}; },
+                      .measured_bodies = [](const Case& c) { return measured_meshes(*c.rig.stl).size(); },
+                      .channels = channels,
                       .tool_speed = [](const Case& c) { return mesh_speed(*c.rig.stl, c.rig.angular_velocity); },
                       .fill_depth = fill_depth};
 

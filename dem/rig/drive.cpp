@@ -16,14 +16,17 @@ double drive_sign(const Motion& motion, const RunControl& run) {
 
 bool drive_sign_corrected(const Case& c) {
   if (!c.rig.stl || c.rig.stl->meshes.empty()) return false;
-  const Motion motion = motion_of(c.rig.stl->meshes[c.rig.stl->measured], c.rig.angular_velocity);
-  const double at_last = programme_speed(motion, std::numeric_limits<double>::max()) > 0.0 ? -1.0 : 1.0;
-  return drive_sign(motion, c.run) != at_last;
+  const StlRig& rig = *c.rig.stl;
+  return std::any_of(rig.measured.begin(), rig.measured.end(), [&](std::size_t k) {
+    const Motion motion = motion_of(rig.meshes[k], c.rig.angular_velocity);
+    const double at_last = programme_speed(motion, std::numeric_limits<double>::max()) > 0.0 ? -1.0 : 1.0;
+    return drive_sign(motion, c.run) != at_last;
+  });
 }
 
 double turn_of(const Case& c) {
   if (c.rig.stl && !c.rig.stl->meshes.empty())
-    return period(motion_of(c.rig.stl->meshes[c.rig.stl->measured], c.rig.angular_velocity));
+    return period(motion_of(c.rig.stl->meshes[c.rig.stl->measured.front()], c.rig.angular_velocity));
   const double speed = std::abs(c.rig.angular_velocity);
   return speed > 0.0 ? 2.0 * std::numbers::pi / speed : 0.0;
 }

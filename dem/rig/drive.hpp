@@ -10,11 +10,11 @@ namespace dem {
 /// has the moment itself as its torque.
 double drive_sign(const Motion& motion, const RunControl& run);
 
-/// Whether the measured mesh's sign differs from that of its programme's last speed, which decided once: runs of such a
+/// Whether the sign of a measured mesh differs from that of its programme's last speed, which decided once: runs of such a
 /// rig are not those of before.
 bool drive_sign_corrected(const Case& c);
 
-/// Time of a turn of the measured body, 0 when it does not move [s].
+/// Time of a turn of the first measured body, 0 when it does not move [s].
 double turn_of(const Case& c);
 
 }  // namespace dem

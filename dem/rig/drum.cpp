@@ -176,6 +176,7 @@ const RigKind drum_rig{
     .labels = labels,
     .measured_bodies =
         [](const Case& c) { return std::size_t{c.rig.drum->end_plates == EndPlates::turning ? 2u : 1u}; },
+    .channels = [](const Case&) { return Channels{}; },
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.drum->radius; },
     .fill_depth = [](const Case& c,
                      double volume) { return volume / (c.rig.drum->length * 2.0 * c.rig.drum->radius); }};

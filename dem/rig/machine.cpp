@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "dem/rig/auger.hpp"
 #include "dem/rig/grow.hpp"
@@ -124,6 +125,16 @@ TroughFill fill_of_machine(const Case& c) {
 
 namespace {
 
+Channels channels(const Case& c) {
+  const Machine& m = *c.rig.machine;
+  // An auger whose helix turns forward about +x conveys towards -x.
+  const double conveys = c.rig.angular_velocity > 0.0 ? -1.0 : 1.0;
+  Channels found{.along = {conveys, 0.0, 0.0}, .across = {0.0, 1.0, 0.0}};
+  std::tie(found.from, found.to) = std::minmax({0.0, conveys * m.length});
+  std::tie(found.flow_from, found.flow_to) = std::minmax({conveys * m.opening, conveys * (m.length - m.opening)});
+  return found;
+}
+
 BuiltRig build(const Case& c, std::uint64_t seed) {
   const Rig& rig = c.rig;
   const Machine& m = *rig.machine;
@@ -146,8 +157,8 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
         {first ? "first_mixer" : "second_mixer", first ? first_auger(rig) : second_auger(rig), motion});
   }
   built.bodies.push_back({"trough", double_trough(rig, top), {}});
-  built.sensor.flow_axis = {rig.angular_velocity > 0.0 ? 1.0 : -1.0, 0.0, 0.0};
-  built.two_streams = {m.opening, m.length - m.opening};
+  built.channels = channels(c);
+  built.sensor.flow_axis = built.channels.along;
   built.sensor.flow_length = 2.0 * (m.length - 2.0 * m.opening);
   built.sensor.circulates = true;
   built.sensor.period = period(built.bodies[first_mixer].motion);
@@ -216,6 +227,7 @@ const RigKind machine_rig{
           return std::vector<BodyLabel>{{"first_mixer", "wall"}, {"second_mixer", "wall"}, {"trough", "wall"}};
         },
     .measured_bodies = [](const Case&) { return std::size_t{2}; },
+    .channels = channels,
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.blade_radius; },
     .fill_depth = [](const Case& c,
                      double volume) { return volume / (c.rig.machine->length * 4.0 * c.rig.trough_radius); }};

@@ -17,6 +17,8 @@ const RigKind& kind_of(const Case& c) {
 const char* rig_kind(const Case& c) { return kind_of(c).name; }
 BuiltRig build_rig(const Case& c, std::uint64_t seed) { return kind_of(c).build(c, seed); }
 std::size_t measured_bodies(const Case& c) { return kind_of(c).measured_bodies(c); }
+
+Channels channels_of(const Case& c) { return kind_of(c).channels(c); }
 std::vector<NamedMesh> rig_meshes(const Case& c) { return kind_of(c).meshes(c); }
 std::vector<std::string> rig_warnings(const Case& c) { return kind_of(c).warnings(c); }
 std::vector<data::Problem> rig_problems(const Case& c) { return kind_of(c).problems(c); }

@@ -35,7 +35,7 @@ struct Sensor {
   double flow_length = 1.0;    ///< m, of the box along that axis
   double period = 0.0;         ///< s of a turn of those bodies, 0 when they do not move
   Picture picture;
-  bool circulates = false;  ///< the flow is that of BuiltRig::two_streams, and flow_length both their lengths
+  bool circulates = false;  ///< the flow is that of both BuiltRig::channels, and flow_length both their lengths
 };
 
 struct BuiltRig {
@@ -47,7 +47,7 @@ struct BuiltRig {
   std::vector<Vec3> position;        ///< m, of the spheres at the start
   std::vector<Vec3> velocity;        ///< m/s, empty: at rest
   std::vector<std::uint8_t> frozen;  ///< 1: that sphere does not move; empty: none
-  TwoStreams two_streams;
+  Channels channels;                 ///< as channels_of says
   Sensor sensor;
 };
 
@@ -59,6 +59,9 @@ BuiltRig build_rig(const Case& c, std::uint64_t seed);
 
 /// How many bodies' torques make the output.
 std::size_t measured_bodies(const Case& c);
+
+/// Where the powder goes along two measured bodies side by side; of length 0 where there are not two.
+Channels channels_of(const Case& c);
 
 /// One box length of each mesh, for the user to look at.
 struct NamedMesh {

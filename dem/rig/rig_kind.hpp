@@ -15,6 +15,7 @@ struct RigKind {
   std::string (*settings)(const Case& c);                 ///< that no target names, one "name = value" a line
   std::vector<BodyLabel> (*labels)(const Case& c);        ///< of the bodies, in their order
   std::size_t (*measured_bodies)(const Case& c);          ///< whose torques make the output
+  Channels (*channels)(const Case& c);                    ///< of two bodies side by side; of length 0 where none are
   double (*tool_speed)(const Case& c);                    ///< m/s, highest of any point of a moving body
   double (*fill_depth)(const Case& c, double volume);     ///< m, of a lattice of this volume in the box without bodies
 };

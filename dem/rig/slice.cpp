@@ -164,6 +164,7 @@ const RigKind slice_rig{
           return std::vector<BodyLabel>{{"mixer", "wall"}, {"trough", "wall"}};
         },
     .measured_bodies = [](const Case&) { return std::size_t{1}; },
+    .channels = [](const Case&) { return Channels{}; },
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.blade_radius; },
     .fill_depth = [](const Case& c,
                      double volume) { return volume / (c.rig.pitches * c.rig.pitch * 2.0 * c.rig.trough_radius); }};

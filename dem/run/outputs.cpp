@@ -22,6 +22,13 @@ double torque_of(std::size_t k, const Sampling& of, const Simulation& now) {
   return dot(d.torque_axis, now.sums().body[d.body].torque);
 }
 
+/// Momentum along the channels, of one of them [kg m/s]; not a number where there are none.
+double flow_of(std::size_t channel, const Sampling& of, const Simulation& now) {
+  return of.channels.exist() ? now.carried().flow[channel] : std::numeric_limits<double>::quiet_NaN();
+}
+
+double length_of_flow(const Sampling& of) { return of.channels.flow_to - of.channels.flow_from; }
+
 /// Mass times the distance of its centre from the axis along a direction of the picture [kg m].
 double moment(const Sampling& of, const Simulation& now, Vec3 direction) {
   return dot(direction, now.carried().moment) - of.mass * dot(direction, of.sensor.picture.origin);
@@ -41,7 +48,7 @@ const std::vector<MeanOutput>& mean_outputs() {
       {"axial_flow", "kg/s", &Series::axial_flow,
        [](const Sampling& of, const Simulation& now) {
          const Carried& carried = now.carried();
-         return dot(of.sensor.flow_axis, of.sensor.circulates ? Vec3{carried.circulation, 0.0, 0.0} : carried.momentum);
+         return of.sensor.circulates ? carried.flow[0] - carried.flow[1] : dot(of.sensor.flow_axis, carried.momentum);
        },
        [](const Sampling& of) { return of.sensor.flow_length; }},
       {"coordination", "1", &Series::coordination,
@@ -60,6 +67,10 @@ const std::vector<MeanOutput>& mean_outputs() {
        [](const Sampling& of, const Simulation& now) { return torque_of(0, of, now); }, one},
       {"second_torque", "N m", &Series::second_torque,
        [](const Sampling& of, const Simulation& now) { return torque_of(1, of, now); }, one},
+      {"first_flow", "kg/s", &Series::first_flow,
+       [](const Sampling& of, const Simulation& now) { return flow_of(0, of, now); }, length_of_flow},
+      {"second_flow", "kg/s", &Series::second_flow,
+       [](const Sampling& of, const Simulation& now) { return -flow_of(1, of, now); }, length_of_flow},
   };
   return all;
 }
@@ -97,7 +108,7 @@ namespace {
 bool has_picture(const Rig& rig) {
   if (!rig.stl || rig.stl->meshes.empty()) return true;  // the axes of slice and drum are horizontal
   const StlRig& stl = *rig.stl;
-  const Motion motion = motion_of(stl.meshes[stl.measured], rig.angular_velocity);
+  const Motion motion = motion_of(stl.meshes[stl.measured.front()], rig.angular_velocity);
   constexpr double any_radius = 1.0;
   return picture_plane(picture_along(motion.axis, motion.point, stl.down), {stl.low, stl.high, stl.periodic},
                        any_radius)
@@ -124,7 +135,10 @@ std::string no_output_because(const Case& c, std::string_view name) {
                             : "is measured on the picture along a horizontal axis, but this rig's axis is vertical, or "
                               "its box repeats across it";
   }
-  if (name == "second_torque" && measured_bodies(c) < 2) return "is that of a second body, and this rig measures one";
+  if (name == "second_torque" && measured_bodies(c) < 2)
+    return "is that of a second body, and this rig measures one: name two meshes in rig.torque_of";
+  if ((name == "first_flow" || name == "second_flow") && !channels_of(c).exist())
+    return "is that of a channel, and this rig has no two bodies that turn side by side";
   return "";
 }
 

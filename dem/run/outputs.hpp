@@ -18,6 +18,7 @@ struct Sampling {
   double solid_volume = 0.0;  ///< m3
   double mass = 0.0;          ///< kg
   PicturePlane plane;
+  Channels channels;
 };
 
 struct MeanOutput {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <span>
 
 #include "data/error.hpp"
 #include "dem/bed/setup.hpp"
@@ -13,6 +14,7 @@
 #include "dem/contact/isa.hpp"
 #include "dem/engine/order.hpp"
 #include "dem/reading/target.hpp"
+#include "dem/run/mixing.hpp"
 #include "dem/run/outputs.hpp"
 #include "dem/run/summary.hpp"
 
@@ -96,10 +98,15 @@ void take_picture(const Sampling& of, const Simulation& simulation, const Plan& 
   exposure = {};
 }
 
-void look_at_bed(const Simulation& simulation, const Box& box, std::uint64_t turning_steps, Series& s) {
+void look_at_bed(const Simulation& simulation, const Box& box, std::span<const std::uint8_t> colour,
+                 std::uint64_t turning_steps, Series& s) {
   const double time = static_cast<double>(turning_steps) * simulation.setup().time_step;
   s.look_time.push_back(time);
   s.bond_order.push_back(bond_order(simulation.state(), box));
+  if (colour.empty()) return;
+  const ChannelLook look = look_into(simulation.setup().channels, colour, simulation.state());
+  s.mixing_index.push_back(look.mixing_index);
+  s.channel_mass.insert(s.channel_mass.end(), look.mass.begin(), look.mass.end());
 }
 
 void cut(Series& s, std::size_t samples, std::uint64_t window) {
@@ -108,6 +115,8 @@ void cut(Series& s, std::size_t samples, std::uint64_t window) {
   const auto looks = std::upper_bound(s.look_time.begin(), s.look_time.end(), s.time.empty() ? 0.0 : s.time.back());
   s.bond_order.resize(static_cast<std::size_t>(looks - s.look_time.begin()));
   s.look_time.erase(looks, s.look_time.end());
+  s.mixing_index.resize(std::min(s.mixing_index.size(), s.look_time.size()));
+  s.channel_mass.resize(s.mixing_index.size() * channel_places);
   s.window_time.resize(std::min(s.window_time.size(), s.time.size() / window));
   for (const CameraOutput& output : camera_outputs()) (s.*output.series).resize(s.window_time.size());
 }
@@ -148,9 +157,13 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
   const Sensor sensor = rig.sensor;
   const std::size_t spheres = rig.position.size();
   const Box box{rig.low, rig.high, rig.periodic};
-  const Sampling sampling{sensor, static_cast<double>(spheres), solid_volume(rig.grains, spheres),
+  const Sampling sampling{sensor,
+                          static_cast<double>(spheres),
+                          solid_volume(rig.grains, spheres),
                           solid_mass(rig.grains, spheres),
-                          picture_plane(sensor.picture, box, 0.5 * summarise_bed(c).smallest)};
+                          picture_plane(sensor.picture, box, 0.5 * summarise_bed(c).smallest),
+                          rig.channels};
+  const std::vector<std::uint8_t> colour = colours(rig.channels, rig.position);
   const Plan plan = make_plan(c, d, sensor);
   Looks looks = begin_looks(plan.rule);
   RunResult result;
@@ -211,7 +224,7 @@ RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
           done = done || looks.ended;
         }
         if (turning % plan.check == 0) {
-          look_at_bed(simulation, box, turning, now.series);
+          look_at_bed(simulation, box, colour, turning, now.series);
           keep(good);
           if (options.progress) options.progress(progress_of(now.series, plan));
         }

@@ -18,7 +18,13 @@
 //                       = weight * centre_x. Of a vertical axis centre_x is 0; across a periodic axis they say nothing.
 //   first_torque, second_torque
 //                       N m, of the parts of the torque: of the machine's two mixers, of a drum's shell and its turning
-//                       end plates. A rig with one measured body has no second.
+//                       end plates, of an STL rig's first two measured meshes. A rig with one measured body has no
+//                       second.
+//   first_flow, second_flow
+//                       kg/s, of two channels side by side, as of the machine: sum of m v along the channel / its
+//                       length, between the openings. Both are positive where the powder goes round, out along the
+//                       first and back along the second. The machine's axial_flow is their mean, and the powder's mass
+//                       over it the time of a lap.
 //   silhouette_x, silhouette_z, silhouette_area, upper_angle, lower_angle
 //                       m, m, m2, rad, rad: of the silhouette that a camera sees along the axis
 //                       (dem/run/silhouette.hpp). The time-averaged projection is of RunControl::window, and each
@@ -54,8 +60,12 @@ struct Series {
   std::vector<double> centre_z;         ///< m
   std::vector<double> first_torque;     ///< N m
   std::vector<double> second_torque;    ///< N m
+  std::vector<double> first_flow;       ///< kg/s
+  std::vector<double> second_flow;      ///< kg/s
   std::vector<double> look_time;        ///< s, of the looks at the bed, each 0.05 s
   std::vector<double> bond_order;       ///< 1, dem/engine/order.hpp, at a look
+  std::vector<double> mixing_index;     ///< 1, dem/run/mixing.hpp, at a look; empty without channels, as the next
+  std::vector<double> channel_mass;     ///< kg, channel_places numbers a look
   std::vector<double> window_time;      ///< s, end of each window
   std::vector<double> silhouette_x;     ///< m, of a window, as all below
   std::vector<double> silhouette_z;     ///< m

@@ -103,6 +103,13 @@ void each_window_series(AnySeries& s, Visit&& visit) {
   for (const CameraOutput& output : camera_outputs()) visit(output.name, output.unit, s.*output.series);
 }
 
+/// Of rigs with two channels.
+template <class AnySeries, class Visit>
+void each_channel_series(AnySeries& s, Visit&& visit) {
+  visit("mixing_index", "1", s.mixing_index);
+  visit("channel_mass", "kg", s.channel_mass);
+}
+
 void write_checkpoint(const data::Hdf5Group& group, const Checkpoint& now) {
   group.set("step", static_cast<std::int64_t>(now.state.step));
   group.set("rebuilds", static_cast<std::int64_t>(now.state.rebuilds));
@@ -240,6 +247,7 @@ void write_run(const std::string& path, const Case& c, const RunResult& result) 
     };
     each_series(result.series, write);
     if (!result.series.window_time.empty()) each_window_series(result.series, write);
+    if (!result.series.mixing_index.empty()) each_channel_series(result.series, write);
     const data::Hdf5Group summary = file.create_group("summary");
     std::vector<std::string> names, units;
     std::array<std::vector<double>, 7> columns;
@@ -291,9 +299,11 @@ SavedRun read_run(const std::string& path) {
   r.warnings = file.read_texts("warnings");
   r.summary.cpu_seconds = file.number("cpu_seconds");
   const data::Hdf5Group series = file.group("series");
-  each_window_series(r.series, [&](const char* name, const char*, std::vector<double>& values) {
+  const auto read_if_there = [&](const char* name, const char*, std::vector<double>& values) {
     if (series.has(name)) values = series.read<double>(name).values;
-  });
+  };
+  each_window_series(r.series, read_if_there);
+  each_channel_series(r.series, read_if_there);
   each_series(r.series, [&](const char* name, const char*, std::vector<double>& values) {
     // A run of before there was this output.
     if (series.has(name))

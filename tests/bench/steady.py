@@ -28,7 +28,6 @@ POINTS = [(material, f"friction=0.4,hamaker={hamaker} J,rpm={rpm}")
           for rpm in (60, 300)]
 
 
-START_UP = ["run.start_up_turns=2"]  # as a new study has it; data/developer still drops a turn and a half
 REFERENCE = ["run.shortest_turns=15", "run.shortest=\"3 s\"", "run.longest=\"40 s\""]
 EQUAL = [f"materials.{name}.sizes=[{{ diameter = \"0.8 mm\", mass_fraction = 1.0 }}]"
          for name in ("zirconia-800", "zirconia-100", "carrier")]
@@ -93,7 +92,7 @@ def simulate(options, table, point, seed, kind, settings):
     name = f"{material}-{at}-{seed}-{kind}".replace(" J", "").replace("=", "").replace(",", "-")
     command = [options.demcal, "simulate", options.study, "--material", material, "--at", at, "--seed", str(seed),
                "--out", str(options.out / name), "--json", "--quiet"]
-    for setting in [*START_UP, *options.set, *settings]:
+    for setting in [*options.set, *settings]:
         command += ["--set", setting]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode not in (0, 2):

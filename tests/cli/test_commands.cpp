@@ -64,7 +64,7 @@ TEST_CASE("another code's runs give a whole calibration: report, results and pos
   const nlohmann::json report = nlohmann::json::parse(outcome.out);
   CHECK(report["format"] == 1);
   CHECK(report["cases"].size() == 1);
-  for (const char* file : {"report.html", "report.json", "results.json", "surrogate.h5", "posterior-powder.nc"})
+  for (const char* file : {"report.html", "report.json", "surrogate.h5", "posterior-powder.nc"})
     CHECK(fs::exists(folder.path / "other-code-results" / file));
   CHECK(nlohmann::json::parse(folder.read("other-code-results/report.json"))["cases"] == report["cases"]);
 

@@ -170,7 +170,7 @@ TEST_CASE("a terminal that is full or closed loses no result, and a result that 
     fs::remove_all(folder.path / "other-code-results");
     const auto outcome = folder.shell(std::string("\"$demcal\" calibrate study ") + streams);
     CHECK((outcome.status == 0 || outcome.status == 2));
-    CHECK(fs::exists(folder.path / "other-code-results/results.json"));
+    CHECK(fs::exists(folder.path / "other-code-results/report.json"));
     CHECK(fs::exists(folder.path / "other-code-results/report.html"));
   }
   for (const char* streams : {">/dev/full", ">&-"}) {
@@ -252,11 +252,11 @@ TEST_CASE("damage to a saved result is found, named and made good where it can b
     bytes[at % bytes.size()] = static_cast<char>(bytes[at % bytes.size()] ^ 4);
     folder.write(file, bytes);
   };
-  const std::size_t middle = folder.read("other-code-results/results.json").size() / 2;
-  flip("other-code-results/results.json", middle);
+  const std::size_t middle = folder.read("other-code-results/report.json").size() / 2;
+  flip("other-code-results/report.json", middle);
   const auto report = folder.demcal({"report", "study"});
   CHECK(report.status == 65);
-  CHECK_THAT(report.err, Contains("results.json") && Contains("is damaged"));
+  CHECK_THAT(report.err, Contains("report.json") && Contains("is damaged"));
   flip("other-code-results/surrogate.h5", folder.read("other-code-results/surrogate.h5").size() / 2);
   const auto again = folder.demcal({"calibrate", "study", "--json"});
   CHECK(again.status == first.status);

@@ -124,7 +124,8 @@ TEST_CASE("an observation outside the runs is refused by check and by sample wit
   CHECK_THAT(check.err, Contains("bench.csv:10: speed: 600 rpm is outside the training range, 50 to 300 rpm"));
   const auto outcome = folder.demcal({"sample", "study", "--out", "out"});
   CHECK(outcome.status == 78);
-  CHECK_THAT(outcome.err, Contains("bench.csv:10: speed is 600 rpm") && Contains("leave the point out, or train in"));
+  CHECK_THAT(outcome.err,
+             Contains("bench.csv:10: speed is 600 rpm") && Contains("leave the point out, or make runs there"));
 }
 
 TEST_CASE("fewer runs than a surrogate needs are named by check and calibrate, with how to get more") {

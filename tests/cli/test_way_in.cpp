@@ -105,12 +105,12 @@ TEST_CASE("two studies of one name do not replace each other's results", "[slow]
   const Folder folder;
   folder.study("other-code");
   CHECK(folder.demcal({"calibrate", "study", "--quiet"}).status == 0);
-  const std::string kept = folder.read("other-code-results/results.json");
+  const std::string kept = folder.read("other-code-results/report.json");
   const auto second = folder.demcal({"calibrate", other_code, "--quiet"});
   CHECK(second.status == 73);
   CHECK_THAT(second.err,
              Contains("holds the results of another study") && Contains("study/study.toml") && Contains("--out DIR"));
-  CHECK(folder.read("other-code-results/results.json") == kept);
+  CHECK(folder.read("other-code-results/report.json") == kept);
   // A study that moved is still the same one.
   fs::rename(folder.path / "study", folder.path / "elsewhere");
   CHECK(folder.demcal({"calibrate", "elsewhere", "--quiet"}).status == 0);

@@ -176,6 +176,7 @@ TEST_CASE("the unit of a column is the heading's, that of a row below it, or tha
   CHECK(factor("rpm,torque\n50,1\n") == Approx(1e-6));
   CHECK(factor("rpm,torque [mN m]\n50,1\n") == Approx(1e-3));
   CHECK(factor("rpm,torque\n1/min,mNm\n50,1\n") == Approx(1e-3));
+  CHECK(factor("rpm\ttorque\tstatus\n[1/min]\t[mNm]\t[]\n50\t1\tM-\n") == Approx(1e-3));
   CHECK(
       factor("# from log.csv, by demcal observe\n# units: rpm [rpm], torque [mN m]; seconds: s\nrpm,torque\n50,1\n") ==
       Approx(1e-3));

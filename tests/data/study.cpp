@@ -121,6 +121,64 @@ TEST_CASE("priors are read in the parameter's unit") {
         std::string::npos);
 }
 
+TEST_CASE("an error in degrees Celsius is one in kelvins, wherever it stands") {
+  const TemporaryFolder folder;
+  folder.write("bench.csv", "temp,melt,melt_se\n20,50,0.5\n40,60,0.5\n");
+  const data::Study study = read(folder, R"([training]
+table = "x.csv"
+[parameters.Ts]
+unit = "degC"
+low = 20
+high = 90
+prior = { kind = "normal", mean = "50 degC", sd = "10 degC" }
+[controls.temp]
+unit = "degC"
+low = 10
+high = "60 degC"
+uncertainty = "2 degC"
+[outputs.melt]
+unit = "degC"
+[[observe]]
+name = "bench"
+file = "bench.csv"
+common_error = "1 degC"
+[[calibrate]]
+name = "powder"
+observe = ["bench"]
+free = ["Ts"]
+offset = { mean = "-0.5 degC", sd = "0.5 degC" }
+noise = { kind = "log_normal", absolute = true, median = "0.3 degC", sd = 0.2 }
+)");
+  CHECK(study.parameters[0].prior.mean == Approx(323.15));
+  CHECK(study.parameters[0].prior.sd == Approx(10.0));
+  CHECK(study.controls[0].high == Approx(333.15));
+  CHECK(study.controls[0].uncertainty->spread.absolute == Approx(2.0));
+  CHECK(study.observations[0].common_errors.at(0).spread.absolute == Approx(1.0));
+  const data::Nuisance offset = study.cases[0].nuisances.at(0);
+  CHECK(offset.parameter.prior.mean == Approx(-0.5));
+  CHECK(offset.parameter.prior.sd == Approx(0.5));
+  CHECK(offset.parameter.unit.from_si(0.25) == Approx(0.25));  // as it is shown
+  CHECK(study.cases[0].nuisances.at(1).parameter.prior.mean == Approx(0.3));
+}
+
+TEST_CASE("a control may have a log scale, and then no value without a logarithm") {
+  const TemporaryFolder folder;
+  const auto with = [&](const std::string& low, const std::string& measured) {
+    folder.write("bench.csv", "speed,torque,torque_se\n" + measured + ",1,0.1\n");
+    return read(
+        folder,
+        "[training]\ntable = \"x.csv\"\n[parameters.a]\nlow = 0\nhigh = 1\n[controls.speed]\nunit = \"rpm\"\nlow = " +
+            low + "\nhigh = 300\nscale = \"log\"\n[[observe]]\nname = \"bench\"\nfile = \"bench.csv\"\n" +
+            "[[calibrate]]\nname = \"p\"\nobserve = [\"bench\"]\nfree = [\"a\"]\n");
+  };
+  const data::Control control = with("3", "30").controls.at(0);
+  CHECK(control.axis().to_unit(control.unit.to_si(30.0)) == Approx(0.5));
+  CHECK(failure_of(folder, [&] { with("0", "30"); }).find("controls.speed.low: 0 rpm has no logarithm") !=
+        std::string::npos);
+  CHECK(failure_of(folder, [&] { with("3", "0"); }).find("bench.csv:2") != std::string::npos);
+  CHECK(failure_of(folder, [&] { with("3", "-2"); }).find("has no logarithm") != std::string::npos);
+}
+
 TEST_CASE("ranges and names of parameters are checked where they stand") {
   const auto with = [](const std::string& lines) { return problem("[training]\ntable = \"x.csv\"\n" + lines); };
   CHECK(with("[parameters.a]\nlow = 0.8\nhigh = 0.1\n") ==

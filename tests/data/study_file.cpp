@@ -194,5 +194,7 @@ TEST_CASE("the edit distance counts insertions, deletions, substitutions and swa
   CHECK(data::edit_distance("friction", "fritcion") == 1);
   CHECK(data::edit_distance("kitten", "sitting") == 3);
   CHECK(data::edit_distance("", "abc") == 3);
+  CHECK(data::edit_distance("speed", "SPEED") == 0);
+  CHECK(data::nearest("speed", {"torque", "SPEED"}) == "SPEED");
   CHECK_FALSE(data::nearest("zzz", {"friction", "low"}).has_value());
 }

@@ -1,6 +1,7 @@
 // Logs as loggers write them, those of shared cases among them (tests/data/files).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
@@ -74,8 +75,8 @@ TEST_CASE("a slow ramp is no plateau, saturation and codes are found, drop-outs 
   const data::TorqueLog saturated = data::read_torque_log(file("d08-saturated.csv"));
   const std::vector<data::Plateau> three = data::find_plateaus(saturated);
   REQUIRE(three.size() == 3);
-  CHECK_FALSE(data::is_saturated(saturated, three[0]));
-  CHECK(data::is_saturated(saturated, three[2]));
+  CHECK_FALSE(data::saturated_at(saturated, three[0]).has_value());
+  CHECK(data::saturated_at(saturated, three[2]).has_value());
   data::TorqueLog codes = data::read_torque_log(file("d10-sentinels.csv"));
   CHECK(data::remove_no_values(codes) ==
         std::vector<std::string>{
@@ -166,4 +167,21 @@ TEST_CASE("a standstill of 200,000 samples takes no longer than its reading") {
   const auto start = std::chrono::steady_clock::now();
   CHECK(data::find_plateaus(log).size() == 1);
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
+}
+
+TEST_CASE("a torque of two values is a coarse logger's, not a saturated sensor's") {
+  data::TorqueLog log;
+  for (int i = 0; i < 400; ++i) {
+    log.time.push_back(0.1 * i);
+    log.torque.push_back(i % 11 == 0 ? 1.5e-3 : 2.0e-3);
+    log.speed.push_back(200.0 * rpm);
+  }
+  const data::Plateau all{.first = 0, .count = 400, .used_from = 0};
+  CHECK_FALSE(data::saturated_at(log, all).has_value());
+  for (const std::string& words : data::plateau_faults(log, all)) CHECK(words.find("clipped") == std::string::npos);
+  // Cut off at 2 mN m, of a torque that takes many values below it.
+  for (int i = 0; i < 400; ++i)
+    log.torque[static_cast<std::size_t>(i)] = std::min(2e-3, 1.6e-3 + 1e-6 * (7 * i % 1000));
+  REQUIRE(data::saturated_at(log, all).has_value());
+  CHECK(*data::saturated_at(log, all) == 2e-3);
 }

@@ -22,7 +22,19 @@ TEST_CASE("units as they are spelled on instruments mean what they can only mean
                                  "cm",
                                  "kp cm"})
     CHECK(factor(text, "N m") == Approx(9.80665e-2));
+  for (const std::string text : {"kg cm", "kgcm"}) CHECK(factor(text, "N m") == Approx(9.80665e-2));
   CHECK(factor("gf cm", "N m") == Approx(9.80665e-5));
+  CHECK(factor("dyn cm", "N m") == Approx(1e-7));
+  for (const std::string text : {"lb in", "lb-in", "lbf in", "in-lb", "in lb", "in\xc2\xb7lb", "in-lbf"})
+    CHECK(factor(text, "N m") == Approx(0.1129848).epsilon(1e-6));
+  for (const std::string text : {"ft lb", "ft-lb", "lb-ft", "ft\xc2\xb7lbf"})
+    CHECK(factor(text, "N m") == Approx(1.3558179).epsilon(1e-6));
+  CHECK(factor("oz-in", "N m") == Approx(7.0615518e-3).epsilon(1e-6));
+  // Superscripts: mJ m^-2, g s^-2, cm^2.
+  for (const std::string text :
+       {"mJ\xc2\xb7m\xe2\x81\xbb\xc2\xb2", "mJ m\xe2\x81\xbb\xc2\xb2", "g s\xe2\x81\xbb\xc2\xb2"})
+    CHECK(factor(text, "mJ/m2") == Approx(1e-3));
+  CHECK(factor("cm\xc2\xb2", "m2") == Approx(1e-4));
   for (const std::string text :
        {"rpm", "RPM", "1/min", "min-1", "min^-1", "min\xe2\x81\xbb\xc2\xb9", "U/min", "r/min", "rev/min", "Upm"})
     CHECK(factor(text, "rpm") == Approx(std::numbers::pi / 30.0));

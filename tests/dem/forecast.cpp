@@ -49,7 +49,7 @@ struct Mixer {
     bar.motion.axis = {0.0, 0.0, 1.0};
     bar.speed_ratio = 1.0;
     rig.meshes = {vessel, bar};
-    rig.measured = 1;
+    rig.measured = {1};
   }
   dem::RigMesh& bar() { return rig.meshes[1]; }
   dem::RigMesh& vessel() { return rig.meshes[0]; }

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "data/random.hpp"
 #include "dem/case/cross_section.hpp"
@@ -11,6 +12,7 @@
 #include "dem/forecast/forecast.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/machine.hpp"
+#include "dem/run/mixing.hpp"
 #include "dem/run/run.hpp"
 #include "scene.hpp"
 
@@ -89,7 +91,7 @@ Flow turn(const dem::Case& c, double start_up, double measured) {
   const auto steps = static_cast<int>(measured / dt);
   for (int k = 0; k < steps; ++k) {
     s.step();
-    mean.circulation += sensor.flow_axis.x * s.carried().circulation / sensor.flow_length / steps;
+    mean.circulation += (s.carried().flow[0] - s.carried().flow[1]) / sensor.flow_length / steps;
     mean.first += dot(sensor.driven[0].torque_axis, s.sums().body[dem::first_mixer].torque) / steps;
     mean.second += dot(sensor.driven[1].torque_axis, s.sums().body[dem::second_mixer].torque) / steps;
     if (k % 10 == 9 || k + 1 == steps) crossings.look(s.state());
@@ -221,7 +223,7 @@ TEST_CASE("a machine has the same bits with 1, 2 and 4 threads") {
     for (int k = 0; k < 1500; ++k) {
       s.step();
       sum += s.sums().body[dem::first_mixer].torque.x;
-      circulation += s.carried().circulation;
+      circulation += s.carried().flow[0] - s.carried().flow[1];
     }
     CHECK(circulation != 0.0);
     torque.push_back(sum + circulation);
@@ -256,6 +258,15 @@ TEST_CASE("a run of the machine has both mixers' torques, which sum to the outpu
   CHECK(mean("first_torque") > 0.0);
   CHECK(mean("second_torque") > 0.0);
   CHECK(std::isnan(mean("silhouette_x")));
+  CHECK(0.5 * (mean("first_flow") + mean("second_flow")) == Approx(mean("axial_flow")).epsilon(1e-9));
+  REQUIRE(result.series.mixing_index.size() == result.series.look_time.size());
+  REQUIRE_FALSE(result.series.mixing_index.empty());
+  // The colours are those of the filling: what has gone round by the first looks is little.
+  CHECK(result.series.mixing_index.back() > 0.0);
+  CHECK(result.series.mixing_index.back() < 0.2);
+  const double held =
+      std::accumulate(result.series.channel_mass.end() - dem::channel_places, result.series.channel_mass.end(), 0.0);
+  CHECK(held == Approx(dem::summarise_bed(c).mass).epsilon(0.02));
 }
 
 TEST_CASE("a machine that cannot be is refused with its key, and a level that stops the powder is warned of") {

@@ -179,6 +179,45 @@ TEST_CASE("the rig's speed drives its meshes, its dimensions do not exist, and i
   }
 }
 
+TEST_CASE("the torques of several meshes are summed, and two that turn side by side have channels") {
+  const SliceFolder folder;
+  const std::string two = replaced(rig, "speed_ratio = 1", R"(speed_ratio = 1
+[[rig.mesh]]
+name = "second"
+file = "mixer.stl"
+unit = "m"
+axis = [-1, 0, 0]
+point = ["0 mm", "4 mm", "0 mm"]
+speed_ratio = 1
+)");
+  const auto read = [&](const std::string& measured) {
+    const std::string text = replaced(two, "rpm = \"150 rpm\"", "rpm = \"150 rpm\"\ntorque_of = " + measured);
+    return dem::read_case(folder.study(text + rest), "steel");
+  };
+  const dem::Case both = read("[\"mixer\", \"second\"]"), one = read("\"second\"");
+  REQUIRE(both.rig.stl->measured == std::vector<std::size_t>{0, 1});
+  CHECK(one.rig.stl->measured == std::vector<std::size_t>{1});
+  CHECK(dem::measured_bodies(both) == 2);
+  CHECK(dem::settings_text(both) != dem::settings_text(one));
+  const dem::Channels channels = dem::channels_of(both);
+  CHECK(channels.along.x == 1.0);
+  CHECK(channels.across.y == Approx(1.0));
+  CHECK(channels.middle == Approx(2e-3));
+  CHECK(channels.to - channels.from == Approx(12e-3));
+  CHECK(channels.of({0.0, 1.9e-3, 0.0}) == 0);
+  CHECK(channels.of({0.0, 2.1e-3, 0.0}) == 1);
+  CHECK_FALSE(dem::channels_of(one).exist());
+  CHECK(dem::no_output_because(both, "second_flow").empty());
+  CHECK_THAT(dem::no_output_because(one, "second_flow"), Catch::Contains("side by side"));
+  const dem::BuiltRig built = dem::build_rig(both, 1);
+  REQUIRE(built.sensor.driven.size() == 2);
+  CHECK(built.sensor.driven[1].torque_axis.x == 1.0);  // it turns the other way
+  CHECK(dem::length(built.sensor.picture.right) == 0.0);
+  CHECK_THAT(
+      said(folder, replaced(two, "rpm = \"150 rpm\"", "rpm = \"150 rpm\"\ntorque_of = [\"mixer\", \"mixer\"]") + rest),
+      Catch::Contains("names the mesh 'mixer' twice"));
+}
+
 TEST_CASE("a programme and oscillations are read with their units") {
   const SliceFolder folder;
   const std::string text = replaced(rig, "speed_ratio = 1", R"(

@@ -331,6 +331,8 @@ Asked asked_by_the_readers() {
   collect(std::string(common) + machine, all);
   const std::string cylinder = std::string(common) + meshes;
   collect(cylinder, all);
+  const std::string one = "torque_of = \"mixer\"";
+  collect(std::string(cylinder).replace(cylinder.find(one), one.size(), "torque_of = [\"mixer\"]"), all);
   const std::string radius = "\nradius = \"7 mm\"";
   collect(std::string(cylinder).erase(cylinder.find(radius), radius.size()), all);
   return all;

@@ -19,11 +19,12 @@ using data::Finding;
 using data::Severity;
 
 Eigen::VectorXd scaled(const data::Study& study, const Column& column) {
+  const data::Axis axis = column.is_parameter ? study.parameters[*study.parameter_index(column.name)].axis()
+                                              : study.controls[*study.control_index(column.name)].axis();
   Eigen::VectorXd u(static_cast<Eigen::Index>(column.values.size()));
   for (Eigen::Index i = 0; i < u.size(); ++i) {
     const double value = column.values[static_cast<std::size_t>(i)];
-    u[i] = column.is_parameter ? study.parameters[*study.parameter_index(column.name)].axis().to_unit(value)
-                               : (value - column.low) / (column.high - column.low);
+    u[i] = axis.to_unit(value);
   }
   return u;
 }

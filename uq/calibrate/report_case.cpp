@@ -6,6 +6,7 @@
 
 #include "uq/calibrate/calibrate.hpp"
 #include "uq/calibrate/misfit.hpp"
+#include "uq/emulate/scale_hint.hpp"
 #include "uq/infer/diagnostics.hpp"
 #include "uq/infer/quadrature.hpp"
 #include "uq/posterior/discrepancy.hpp"
@@ -310,6 +311,10 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
       words.finding += " " + sets.finding;
       words.remedy = sets.remedy + " " + words.remedy;
     }
+    for (const RowGroup& group : model.groups)
+      if (const std::string hint = scale_hint(study, group.emulator.control_range);
+          !hint.empty() && words.remedy.find(hint) == std::string::npos)
+        words.remedy += " " + hint;
   }
   if (!report.doubt.empty()) doubt(report, words, study);
   report.finding = words.finding;

@@ -8,17 +8,17 @@
 #include "data/hash.hpp"
 #include "data/provenance.hpp"
 #include "surrogate/storage.hpp"
-#include "uq/findings/results_file.hpp"
+#include "uq/findings/report_file.hpp"
 
 namespace uq {
 namespace {
 
 surrogate::SurrogateKey key_of(const data::Study& study, const data::RunTable& table, const SurrogateOptions& options) {
-  std::string text = data::program_version() + "\n";
+  std::string text = fmt::format("{} {}\n", data::program_version(), report_edition);
   for (const data::Parameter& p : study.parameters)
     text += fmt::format("{} {} {} {} {}\n", p.name, p.unit.symbol, p.low, p.high, p.scale == data::Scale::log);
   for (const data::Control& c : study.controls)
-    text += fmt::format("{} {} {} {}\n", c.name, c.unit.symbol, c.low, c.high);
+    text += fmt::format("{} {} {} {} {}\n", c.name, c.unit.symbol, c.low, c.high, c.scale == data::Scale::log);
   for (const data::Output& output : study.outputs) text += fmt::format("{} {}\n", output.name, output.unit.symbol);
   const surrogate::FitOptions& fit = options.fit;
   text +=

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "uq/emulate/outlying_runs.hpp"
+#include "uq/emulate/scale_hint.hpp"
 #include "uq/emulate/sensitivity.hpp"
 
 namespace uq {
@@ -198,6 +199,9 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
     add_levels(report, fitted, output);
   else
     add_outlying(report, fitted, fit_options, output);
+  if (const std::string hint = scale_hint(study, rows.control_range);
+      !hint.empty() && (report.verdict != SurrogateWord::good || !report.outlying.empty()))
+    report.remedy += " " + hint;
   name_inputs(report);
   return report;
 }

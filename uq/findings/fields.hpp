@@ -1,14 +1,37 @@
 #pragma once
-// The fields of the result structs, in their order: visit(name, member). A field added to results.hpp is added here;
-// a test compares the sizes.
+// The fields of the findings, each with its key in report.json: the one list by which they are written and read.
+// A field added to results.hpp is added here; a test compares the sizes.
+//
+// visit_fields(visit, finding) calls the visitor once for each field, in the order of the file:
+//   visit("key", field)                               a number, text, list, map or struct
+//   visit.text("key", field)                          a text, null where it is empty
+//   visit.table("key", [&](auto& inner) {...})        fields under a key of their own
+//   visit.pair("key", low, high)                      two fields as a list
+//   visit.range("key", low, high)                     two numbers as a list, null where they are equal
+//   visit.each("key", list, [&](auto& inner, auto& item) {...})   a list whose items are visited so
+//   visit.columns(list, column...)                    a list of structs as lists of equal length, each with its key
+//   visit.keyed("key", list, &T::name, &T::value)     a list of structs of two fields as a table
+//   visit.gathered("key", list, "name", &T::name, &T::field)   an optional field of listed structs, each with its name
+//   visit.shown("key", [&] { return ...; })           what follows from other fields: written for readers, never read
 #include <type_traits>
 
+#include "uq/findings/headline.hpp"
 #include "uq/findings/results.hpp"
+#include "uq/findings/wording.hpp"
 
 namespace uq {
 
 template <class T, class S>
 concept SameAs = std::is_same_v<std::remove_const_t<T>, S>;
+
+/// One field of each struct of a list, and its key.
+template <class Struct, class Field>
+struct Column {
+  const char* key;
+  Field Struct::*field;
+};
+template <class Struct, class Field>
+Column(const char*, Field Struct::*) -> Column<Struct, Field>;
 
 template <class Visit, SameAs<DataFinding> T>
 void visit_fields(Visit&& visit, T& f) {
@@ -32,12 +55,10 @@ template <class Visit, SameAs<InputSupport> T>
 void visit_fields(Visit&& visit, T& i) {
   visit("name", i.name);
   visit("unit", i.unit);
-  visit("runs_low", i.runs_low);
-  visit("runs_high", i.runs_high);
+  visit.pair("runs", i.runs_low, i.runs_high);
   visit("outside", i.outside);
   visit("gap", i.gap);
-  visit("gap_low", i.gap_low);
-  visit("gap_high", i.gap_high);
+  visit.range("gap_between", i.gap_low, i.gap_high);
 }
 
 template <class Visit, SameAs<NextRun> T>
@@ -62,20 +83,12 @@ void visit_fields(Visit&& visit, T& s) {
   visit("next_runs", s.next_runs);
 }
 
-template <class Visit, SameAs<ParameterAgain> T>
-void visit_fields(Visit&& visit, T& p) {
-  visit("name", p.name);
-  visit("verdict", p.verdict);
-  visit("reason", p.reason);
-  visit("borderline", p.borderline);
-  visit("mean", p.mean);
-  visit("sd", p.sd);
-}
-
 template <class Visit, SameAs<WithoutRuns> T>
 void visit_fields(Visit&& visit, T& w) {
   visit("places", w.places);
-  visit("parameters", w.parameters);
+  visit.columns(w.parameters, Column{"parameters", &ParameterAgain::name}, Column{"verdicts", &ParameterAgain::verdict},
+                Column{"reasons", &ParameterAgain::reason}, Column{"borderline", &ParameterAgain::borderline},
+                Column{"mean", &ParameterAgain::mean}, Column{"sd", &ParameterAgain::sd});
   visit("fits", w.fits);
   visit("sentence", w.sentence);
 }
@@ -84,38 +97,44 @@ template <class Visit, SameAs<SurrogateReport> T>
 void visit_fields(Visit&& visit, T& s) {
   visit("output", s.output);
   visit("material", s.material);
-  visit("runs", s.runs);
   visit("q2", s.q2);
-  visit("q2_held_out", s.q2_held_out);
   visit("coverage95", s.coverage95);
+  visit("runs", s.runs);
+  visit("verdict", s.verdict);
+  visit("q2_held_out", s.q2_held_out);
   visit("nugget_sd", s.nugget_sd);
   visit("unit", s.unit);
-  visit("verdict", s.verdict);
+  visit("inputs", s.inputs);
+  visit("length_scales", s.length_scales);
+  visit.table("sobol", [&](auto& sobol) {
+    sobol("first", s.first_order);
+    sobol("first_sd", s.first_order_sd);
+    sobol("total", s.total_order);
+    sobol("total_sd", s.total_order_sd);
+  });
+  visit.table("coverage", [&](auto& coverage) {
+    coverage("left_out", s.coverage_left_out);
+    coverage("held_out", s.coverage_held_out);
+  });
+  visit.table("folds", [&](auto& folds) {
+    folds("mahalanobis", s.fold_distance);
+    folds("runs", s.fold_runs);
+    folds("probability", s.fold_probability);
+    folds("pivoted_cholesky_errors", s.pivoted_errors);
+  });
+  visit("observed", s.observed);
+  visit("observed_se", s.observed_se);
+  visit("predicted", s.predicted);
+  visit("standardised_errors", s.standardised);
   visit("finding", s.finding);
   visit("consequence", s.consequence);
   visit("remedy", s.remedy);
-  visit("inputs", s.inputs);
-  visit("length_scales", s.length_scales);
-  visit("first_order", s.first_order);
-  visit("first_order_sd", s.first_order_sd);
-  visit("total_order", s.total_order);
-  visit("total_order_sd", s.total_order_sd);
-  visit("observed", s.observed);
-  visit("predicted", s.predicted);
-  visit("standardised", s.standardised);
-  visit("observed_se", s.observed_se);
-  visit("coverage_left_out", s.coverage_left_out);
-  visit("coverage_held_out", s.coverage_held_out);
-  visit("fold_distance", s.fold_distance);
-  visit("fold_runs", s.fold_runs);
-  visit("fold_probability", s.fold_probability);
-  visit("pivoted_errors", s.pivoted_errors);
   visit("notes", s.notes);
   visit("converged", s.converged);
   visit("low_runs", s.low_runs);
   visit("rho", s.rho);
   visit("rho_sd", s.rho_sd);
-  visit("outlying", s.outlying);
+  visit("outlying_runs", s.outlying);
 }
 
 template <class Visit, SameAs<ValueRange> T>
@@ -134,7 +153,7 @@ void visit_fields(Visit&& visit, T& h) {
   visit("low", h.low);
   visit("high", h.high);
   visit("deviance", h.deviance);
-  visit("in_doubt", h.in_doubt);
+  visit("within_surrogate_error", h.in_doubt);
 }
 
 template <class Visit, SameAs<WordProbability> T>
@@ -147,48 +166,52 @@ template <class Visit, SameAs<ParameterReport> T>
 void visit_fields(Visit&& visit, T& p) {
   visit("name", p.name);
   visit("unit", p.unit);
-  visit("prior_low", p.prior_low);
-  visit("prior_high", p.prior_high);
-  visit("prior_mean", p.prior_mean);
-  visit("prior_sd", p.prior_sd);
   visit("mean", p.mean);
   visit("sd", p.sd);
-  visit("mcse", p.mcse);
   visit("q05", p.q05);
   visit("q50", p.q50);
   visit("q95", p.q95);
-  visit("map", p.map);
   visit("rhat", p.rhat);
   visit("ess_bulk", p.ess_bulk);
   visit("ess_tail", p.ess_tail);
   visit("contraction", p.contraction);
-  visit("profile_low", p.profile_low);
-  visit("profile_high", p.profile_high);
-  visit("low_is_bound", p.low_is_bound);
-  visit("high_is_bound", p.high_is_bound);
-  visit("profile_x", p.profile_x);
-  visit("profile_deviance", p.profile_deviance);
+  visit.pair("profile95", p.profile_low, p.profile_high);
   visit("verdict", p.verdict);
   visit("reason", p.reason);
   visit("borderline", p.borderline);
+  visit("mcse", p.mcse);
+  visit("map", p.map);
+  visit.table("prior", [&](auto& prior) {
+    prior("low", p.prior_low);
+    prior("high", p.prior_high);
+    prior("mean", p.prior_mean);
+    prior("sd", p.prior_sd);
+  });
   visit("sentence", p.sentence);
   visit("intervals", p.intervals);
   visit("holes", p.holes);
-  visit("low_pinned_by", p.low_pinned_by);
-  visit("high_pinned_by", p.high_pinned_by);
-  visit("word_probabilities", p.word_probabilities);
-  visit("share_measurement", p.share_measurement);
-  visit("share_surrogate", p.share_surrogate);
-  visit("share_structure", p.share_structure);
-  visit("share_range", p.share_range);
+  visit.table("open_for_range_of", [&](auto& pinned) {
+    pinned.text("low", p.low_pinned_by);
+    pinned.text("high", p.high_pinned_by);
+  });
+  visit.keyed("word_probabilities", p.word_probabilities, &WordProbability::verdict, &WordProbability::probability);
+  visit.table("width_shares", [&](auto& share) {
+    share("measurement", p.share_measurement);
+    share("surrogate", p.share_surrogate);
+    share("structure", p.share_structure);
+    share("range", p.share_range);
+  });
+  visit.table("profile", [&](auto& profile) {
+    profile("x", p.profile_x);
+    profile("deviance", p.profile_deviance);
+    profile.pair("ends_at_the_range", p.low_is_bound, p.high_is_bound);
+  });
 }
 
 template <class Visit, SameAs<NuisanceReport> T>
 void visit_fields(Visit&& visit, T& n) {
   visit("name", n.name);
   visit("unit", n.unit);
-  visit("prior_mean", n.prior_mean);
-  visit("prior_sd", n.prior_sd);
   visit("mean", n.mean);
   visit("sd", n.sd);
   visit("q05", n.q05);
@@ -197,6 +220,10 @@ void visit_fields(Visit&& visit, T& n) {
   visit("rhat", n.rhat);
   visit("ess_bulk", n.ess_bulk);
   visit("ess_tail", n.ess_tail);
+  visit.table("prior", [&](auto& prior) {
+    prior("mean", n.prior_mean);
+    prior("sd", n.prior_sd);
+  });
 }
 
 template <class Visit, SameAs<DiscrepancyBand> T>
@@ -215,8 +242,7 @@ void visit_fields(Visit&& visit, T& d) {
 
 template <class Visit, SameAs<TradedPair> T>
 void visit_fields(Visit&& visit, T& t) {
-  visit("first", t.first);
-  visit("second", t.second);
+  visit.pair("pair", t.first, t.second);
   visit("parameters", t.parameters);
   visit("combination", t.combination);
   visit("form", t.form);
@@ -227,7 +253,7 @@ void visit_fields(Visit&& visit, T& t) {
   visit("correlation", t.correlation);
   visit("equivalent", t.equivalent);
   visit("equivalent_u", t.equivalent_u);
-  visit("curves", t.curves);
+  visit("equivalent_curves", t.curves);
 }
 
 template <class Visit, SameAs<ModeReport> T>
@@ -260,17 +286,22 @@ void visit_fields(Visit&& visit, T& p) {
   visit("observation_set", p.observation_set);
 }
 
+template <class Visit, SameAs<PredictedPoint> T>
+void visit_fields(Visit&& visit, T& p) {
+  visit_fields(visit, p.point);
+  visit("z", p.z);
+}
+
 template <class Visit, SameAs<PredictionReport> T>
 void visit_fields(Visit&& visit, T& p) {
   visit("name", p.name);
-  visit("observed_sets", p.observed_sets);
-  visit("points", p.points);
-  visit("z", p.z);
-  visit("inside", p.inside);
+  visit("observe", p.observed_sets);
+  visit("inside90", p.inside);
   visit("chi2", p.chi2);
   visit("p", p.p);
   visit("predicts", p.predicts);
   visit("sentence", p.sentence);
+  visit("points", p.points);
 }
 
 template <class Visit, SameAs<PredictiveCurve> T>
@@ -292,9 +323,9 @@ void visit_fields(Visit&& visit, T& v) {
   visit("material", v.material);
   visit("output", v.output);
   visit("unit", v.unit);
-  visit("label", v.label);
-  visit("predicted", v.predicted);
-  visit("predicted_sd", v.predicted_sd);
+  visit("point", v.label);
+  visit("surrogate", v.predicted);
+  visit("surrogate_sd", v.predicted_sd);
   visit("simulated", v.simulated);
   visit("standard_error", v.standard_error);
   visit("z", v.z);
@@ -311,54 +342,6 @@ void visit_fields(Visit&& visit, T& v) {
   visit("agrees", v.agrees);
   visit("sentence", v.sentence);
   visit("values", v.values);
-}
-
-template <class Visit, SameAs<CaseReport> T>
-void visit_fields(Visit&& visit, T& c) {
-  visit("name", c.name);
-  visit("observed_sets", c.observed_sets);
-  visit("observed_notes", c.observed_notes);
-  visit("chi2", c.chi2);
-  visit("dof", c.dof);
-  visit("ppp", c.ppp);
-  visit("fits", c.fits);
-  visit("converged", c.converged);
-  visit("parameters", c.parameters);
-  visit("correlation", c.correlation);
-  visit("log_evidence", c.log_evidence);
-  visit("log_evidence_error", c.log_evidence_error);
-  visit("comparisons", c.comparisons);
-  visit("divergences", c.divergences);
-  visit("chains", c.chains);
-  visit("draws", c.draws);
-  visit("grid_difference", c.grid_difference);
-  visit("fisher_condition", c.fisher_condition);
-  visit("collinearity", c.collinearity);
-  visit("traded", c.traded);
-  visit("predictive", c.predictive);
-  visit("curves", c.curves);
-  visit("draws_for_plot", c.draws_for_plot);
-  visit("linked", c.linked);
-  visit("finding", c.finding);
-  visit("consequence", c.consequence);
-  visit("remedy", c.remedy);
-  visit("warnings", c.warnings);
-  visit("nuisances", c.nuisances);
-  visit("discrepancies", c.discrepancies);
-  visit("cuts", c.cuts);
-  visit("sampler", c.sampler);
-  visit("search", c.search);
-  visit("energy_fraction", c.energy_fraction);
-  visit("support", c.support);
-  visit("without", c.without);
-  visit("doubt", c.doubt);
-  visit("unusable", c.unusable);
-  visit("surrogate_to_measurement", c.surrogate_to_measurement);
-  visit("modes", c.modes);
-  visit("modes_parted_by", c.modes_parted_by);
-  visit("verification", c.verification);
-  visit("plan", c.plan);
-  visit("predictions", c.predictions);
 }
 
 template <class Visit, SameAs<PlannedParameter> T>
@@ -432,11 +415,79 @@ void visit_fields(Visit&& visit, T& p) {
   visit("notes", p.notes);
 }
 
+/// A parameter as its case shows it: one that does not fit overrules the parameter's own word.
+template <class Visit, SameAs<ParameterReport> T>
+void visit_shown(Visit&& visit, const CaseReport& of, T& p) {
+  visit_fields(visit, p);
+  visit.shown("verdict", [&] { return shown_verdict(of, p); });
+  visit.shown("reason", [&] { return shown_verdict(of, p) == p.verdict ? p.reason : std::optional<Reason>(); });
+  visit.shown("sentence", [&] { return shown_sentence(of, p); });
+  visit.shown("usable", [&] { return of.doubt.empty() && of.fits; });
+}
+
+template <class Visit, SameAs<CaseReport> T>
+void visit_fields(Visit&& visit, T& c) {
+  visit("name", c.name);
+  visit.shown("headline", [&] { return headline(c, Typography::ascii); });
+  visit.table("fit", [&](auto& fit) {
+    fit("chi2", c.chi2);
+    fit("dof", c.dof);
+    fit("ppp", c.ppp);
+    fit("fits", c.fits);
+  });
+  visit.each("parameters", c.parameters, [&](auto& one, auto& parameter) { visit_shown(one, c, parameter); });
+  visit("correlation", c.correlation);
+  visit("log_evidence", c.log_evidence);
+  visit("log_evidence_error", c.log_evidence_error);
+  visit("comparisons", c.comparisons);
+  visit("divergences", c.divergences);
+  visit("traded", c.traded);
+  visit("predictive", c.predictive);
+  visit("finding", c.finding);
+  visit("consequence", c.consequence);
+  visit("remedy", c.remedy);
+  visit("converged", c.converged);
+  visit("chains", c.chains);
+  visit("draws", c.draws);
+  visit("grid_difference", c.grid_difference);
+  visit("fisher_condition", c.fisher_condition);
+  visit("collinearity", c.collinearity);
+  visit("observed_sets", c.observed_sets);
+  visit("observed_notes", c.observed_notes);
+  visit("linked", c.linked);
+  visit("warnings", c.warnings);
+  visit("nuisances", c.nuisances);
+  visit("discrepancies", c.discrepancies);
+  visit("cuts", c.cuts);
+  visit("sampler", c.sampler);
+  visit("search", c.search);
+  visit("energy_fraction", c.energy_fraction);
+  visit("support", c.support);
+  visit("without", c.without);
+  visit.text("doubt", c.doubt);
+  visit("unusable", c.unusable);
+  visit("surrogate_to_measurement", c.surrogate_to_measurement);
+  visit("modes", c.modes);
+  visit("modes_parted_by", c.modes_parted_by);
+  visit("predictions", c.predictions);
+  visit("verification", c.verification);
+  visit("curves", c.curves);
+  visit("plotted_draws", c.draws_for_plot);
+}
+
 template <class Visit, SameAs<ErrorScan> T>
 void visit_fields(Visit&& visit, T& e) {
-  visit("case_name", e.case_name);
+  visit("case", e.case_name);
   visit("relative_error", e.relative_error);
-  visit("parameters", e.parameters);
+  visit.columns(e.parameters, Column{"parameters", &ParameterAgain::name}, Column{"words", &ParameterAgain::verdict},
+                Column{"reasons", &ParameterAgain::reason}, Column{"borderline", &ParameterAgain::borderline},
+                Column{"mean", &ParameterAgain::mean}, Column{"sd", &ParameterAgain::sd});
+  visit.shown("verdicts", [&] {
+    std::vector<std::string> said;
+    for (const ParameterAgain& one : e.parameters)
+      said.push_back(format_verdict(one.verdict, one.reason, one.borderline));
+    return said;
+  });
   visit("ppp", e.ppp);
 }
 
@@ -452,20 +503,26 @@ void visit_fields(Visit&& visit, T& d) {
 
 template <class Visit, SameAs<CalibrationReport> T>
 void visit_fields(Visit&& visit, T& r) {
-  visit("study_name", r.study_name);
+  visit.shown("demcal", [&] { return program_version(r); });
+  visit.shown("status", [&] { return std::string(has_warning(r) ? "warning" : "ok"); });
+  visit("study", r.study_name);
   visit("study_description", r.study_description);
   visit("study_file", r.study_file);
-  visit("warning", r.warning);
-  visit("warnings", r.warnings);
+  visit.shown("warnings", [&] { return first_lines(r); });
+  visit("cautions", r.cautions);
   visit("surrogates", r.surrogates);
-  visit("designs", r.designs);
   visit("cases", r.cases);
+  visit.gathered("plan", r.cases, "case", &CaseReport::name, &CaseReport::plan);
   visit("error_scan", r.error_scan);
   visit("thresholds", r.thresholds);
   visit("provenance", r.provenance);
   visit("notes", r.notes);
   visit("findings", r.findings);
-  visit("cautions", r.cautions);
+  visit("designs", r.designs);
+  visit.table("of_no_case", [&](auto& whole) {  // of the warnings above
+    whole("warning", r.warning);
+    whole("warnings", r.warnings);
+  });
 }
 
 }  // namespace uq

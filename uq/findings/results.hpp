@@ -1,5 +1,5 @@
 #pragma once
-// What a calibration found, as plain data: made by uq/calibrate/calibrate.cpp, written by uq/report/json.cpp, uq/report/html.cpp.
+// What a calibration found, as plain data: made by uq/calibrate/calibrate.cpp, kept by report_file.hpp, shown by uq/report.
 // Values of parameters, controls and outputs are in the study's units (Parameter::unit and so on), not SI: this is the
 // reader's side of the border.
 #include <limits>
@@ -52,8 +52,9 @@ struct SurrogateReport {
   std::vector<std::string> notes;      ///< hyper-parameter on its bound, jitter, multi-start outcomes
   bool converged = true;               ///< the maximisation of the likelihood
   int low_runs = 0;                    ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
-  double rho = 0.0, rho_sd = 0.0;      ///< this level's output per the cheaper one's
-  std::vector<OutlyingRun> outlying;   ///< runs that the others contradict
+  /// This level's output per the cheaper one's.
+  double rho = std::numeric_limits<double>::quiet_NaN(), rho_sd = std::numeric_limits<double>::quiet_NaN();
+  std::vector<OutlyingRun> outlying;  ///< runs that the others contradict
 };
 
 /// One connected part of a parameter's 95 % profile interval, with the posterior inside it.
@@ -290,16 +291,20 @@ struct VerificationReport {
   std::vector<VerifiedValue> values;
 };
 
+struct PredictedPoint {
+  PredictivePoint point;
+  double z = 0.0;  ///< measured minus predicted, over the predictive standard deviation
+};
+
 /// Data that a case has not used, beside what it predicts of them (uq/posterior/unused_data.hpp).
 struct PredictionReport {
   std::string name;
   std::vector<std::string> observed_sets;
-  std::vector<PredictivePoint> points;
-  std::vector<double> z;  ///< of each point: measured minus predicted, over the predictive standard deviation
-  int inside = 0;         ///< points inside their 90 % intervals
-  double chi2 = 0.0;      ///< of all together
-  double p = 1.0;         ///< that a prediction is as far off
-  bool predicts = true;   ///< p is above its threshold
+  std::vector<PredictedPoint> points;
+  int inside = 0;        ///< points inside their 90 % intervals
+  double chi2 = 0.0;     ///< of all together
+  double p = 1.0;        ///< that a prediction is as far off
+  bool predicts = true;  ///< p is above its threshold
   std::string sentence;
 };
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "data/error.hpp"
+#include "uq/posterior/control_reach.hpp"
 #include "uq/posterior/more_data.hpp"
 #include "uq/posterior/posterior.hpp"
 
@@ -145,7 +146,8 @@ class Usual {
       const auto [low, high] = range_of(study_, emulator, c);
       for (int i = 0; i < count; ++i) {
         std::vector<double> controls = centre;
-        const double value = low + (high - low) * i / (count - 1.0);
+        const data::Axis covered{low, high, study_.controls[c].scale};
+        const double value = covered.from_unit(i / (count - 1.0));
         controls[c] =
             std::clamp(rounded(value, study_.controls[c].unit), study_.controls[c].low, study_.controls[c].high);
         if (known && near_observed(observed, controls)) continue;
@@ -159,7 +161,9 @@ class Usual {
   bool near_observed(const std::set<std::vector<double>>& observed, const std::vector<double>& controls) const {
     return std::any_of(observed.begin(), observed.end(), [&](const std::vector<double>& other) {
       for (std::size_t c = 0; c < controls.size(); ++c)
-        if (std::abs(other[c] - controls[c]) > 0.01 * (study_.controls[c].high - study_.controls[c].low)) return false;
+        if (const data::Axis axis = study_.controls[c].axis();
+            std::abs(axis.to_unit(other[c]) - axis.to_unit(controls[c])) > 0.01)
+          return false;
       return true;
     });
   }
@@ -266,14 +270,13 @@ class Entry {
       }
       if (emulator != nullptr) {
         const auto [low, high] = range_of(study_, *emulator, c);
-        const double slack = 0.1 * (study_.controls[c].high - study_.controls[c].low);
         const data::Unit& unit = study_.controls[c].unit;
         for (const double value : values)
-          if (value < low - slack || value > high + slack)
+          if (!within_reach(study_.controls[c], value, {low, high}))
             problem(fmt::format("{} {:g} {} is outside the runs of this material, which reach from {:g} to {:g} {}",
                                 study_.controls[c].name, unit.from_si(value), unit.symbol, unit.from_si(low),
                                 unit.from_si(high), unit.symbol),
-                    "choose a setting inside, or train in a wider range");
+                    "choose a setting inside, or make runs there");
       }
       std::vector<std::vector<double>> next;
       for (const auto& point : points)

@@ -9,6 +9,7 @@
 #include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "uq/posterior/build_measurement.hpp"
+#include "uq/posterior/control_reach.hpp"
 #include "uq/posterior/distinct.hpp"
 #include "uq/posterior/linked_cases.hpp"
 
@@ -144,6 +145,7 @@ class Builder {
                               .unit = control.unit,
                               .low = control.low,
                               .high = control.high,
+                              .scale = control.scale,
                               .place = error.place};
     parameter.prior = {.kind = data::PriorKind::normal,
                        .low = control.low,
@@ -254,17 +256,14 @@ class Builder {
     const auto range = emulator.control_range.find(index);
     const auto [low, high] =
         range == emulator.control_range.end() ? std::pair{control.low, control.high} : range->second;
-    // A scrambled design of a few dozen runs stops several percent short of its range's ends, and the surrogate's
-    // variance covers that; further out it extrapolates.
-    const double slack = 0.1 * (control.high - control.low);
     for (std::size_t i = 0; i < set.points.size(); ++i) {
       const double value = set.points[i].controls[index];
-      if (value < low - slack || value > high + slack)
+      if (!within_reach(control, value, {low, high}))
         problem(fmt::format("{}:{}", set.file, set.points[i].line),
                 fmt::format("{} is {:g} {}, but the runs of this material reach from {:g} to {:g} {}", control.name,
                             control.unit.from_si(value), control.unit.symbol, control.unit.from_si(low),
                             control.unit.from_si(high), control.unit.symbol),
-                "leave the point out, or train in a wider range");
+                "leave the point out, or make runs there (of ours: demcal train STUDY --until posterior)");
       group.base(before + static_cast<Eigen::Index>(i), k) = control.axis().to_unit(value);
       group.slot(before + static_cast<Eigen::Index>(i), k) = -1;
     }

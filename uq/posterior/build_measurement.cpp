@@ -25,7 +25,8 @@ SettingShift shift_of(const data::Control& control, const data::ObservationSet& 
   SettingShift shift{.column = column, .error = Eigen::VectorXd(rows)};
   for (Eigen::Index i = 0; i < rows; ++i) {
     const double value = set.points[static_cast<std::size_t>(i)].controls[error.control];
-    shift.error[i] = std::hypot(error.spread.absolute, error.spread.relative * value) / control.axis().slope(0.0);
+    const data::Axis axis = control.axis();
+    shift.error[i] = std::hypot(error.spread.absolute, error.spread.relative * value) / axis.slope(axis.to_unit(value));
     shift.common = shift.common && value == set.points.front().controls[error.control];
   }
   return shift;

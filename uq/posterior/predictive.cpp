@@ -37,7 +37,9 @@ CurveRows curve_rows(const data::Study& study, const RowGroup& group, std::size_
   }
   CurveRows rows{.base = group.base.row(static_cast<Eigen::Index>(row)).replicate(points, 1),
                  .slot = group.slot.row(static_cast<Eigen::Index>(row)).transpose(),
-                 .x = Eigen::VectorXd::LinSpaced(points, low, high)};
+                 .x = Eigen::VectorXd::LinSpaced(points, 0.0, 1.0).unaryExpr([&](double u) {
+                   return data::Axis{low, high, control.scale}.from_unit(u);
+                 })};
   rows.base.col(static_cast<Eigen::Index>(control_column)) =
       rows.x.unaryExpr([axis = control.axis()](double x) { return axis.to_unit(x); });
   return rows;

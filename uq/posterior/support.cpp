@@ -192,7 +192,7 @@ Shown shown(const data::Study& study, const EmulatorInput& input, double u) {
     return {p.name, p.unit, p.unit.from_si(p.axis().from_unit(u))};
   }
   const data::Control& c = study.controls[input.index];
-  return {c.name, c.unit, c.unit.from_si(c.low + u * (c.high - c.low))};
+  return {c.name, c.unit, c.unit.from_si(c.axis().from_unit(u))};
 }
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }

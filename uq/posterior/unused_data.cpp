@@ -89,12 +89,13 @@ std::string sentence_of(const PredictionReport& report) {
       report.name, report.inside, n, report.chi2, n, report.p, report.predicts ? "predicts" : "does not predict");
   if (report.predicts || n == 0) return text;
   const auto farthest =
-      std::max_element(report.z.begin(), report.z.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  const PredictivePoint& point = report.points[static_cast<std::size_t>(farthest - report.z.begin())];
+      std::max_element(report.points.begin(), report.points.end(),
+                       [](const PredictedPoint& a, const PredictedPoint& b) { return std::abs(a.z) < std::abs(b.z); });
+  const PredictivePoint& point = farthest->point;
   std::string at;
   for (const auto& [name, value] : point.controls)
     at += fmt::format("{}{} {:.4g}", at.empty() ? " at " : ", ", name, value);
-  return text + fmt::format(" Farthest off is {}{}, by {:.2g} standard deviations.", point.output, at, *farthest);
+  return text + fmt::format(" Farthest off is {}{}, by {:.2g} standard deviations.", point.output, at, farthest->z);
 }
 
 }  // namespace
@@ -117,7 +118,7 @@ PredictionReport predict_unused(const data::Study& study, const std::vector<Emul
 
   const Mixture all = mixture_of(model, thinned(draws, draws_used), rows, measured);
   const VectorXd away = observed(model)(rows) - all.centre;
-  PredictionReport report{.name = wanted.name, .observed_sets = wanted.observe, .points = {}, .z = {}, .sentence = {}};
+  PredictionReport report{.name = wanted.name, .observed_sets = wanted.observe, .points = {}, .sentence = {}};
   for (Index i = 0; i < away.size(); ++i) {
     PredictivePoint point = point_of(wider, from[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])]);
     const data::Unit& unit =
@@ -126,8 +127,7 @@ PredictionReport predict_unused(const data::Study& study, const std::vector<Emul
     point.q05 = unit.from_si(quantile_of(all, i, 0.05));
     point.q95 = unit.from_si(quantile_of(all, i, 0.95));
     report.inside += point.observed >= point.q05 && point.observed <= point.q95 ? 1 : 0;
-    report.z.push_back(away[i] / std::sqrt(all.covariance(i, i)));
-    report.points.push_back(std::move(point));
+    report.points.push_back({.point = std::move(point), .z = away[i] / std::sqrt(all.covariance(i, i))});
   }
   report.chi2 = away.dot(all.covariance.ldlt().solve(away));
   report.p = away.size() > 0 ? gsl_cdf_chisq_Q(report.chi2, static_cast<double>(away.size())) : 1.0;

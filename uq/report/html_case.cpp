@@ -202,8 +202,7 @@ std::string prediction_part(const CaseReport& result) {
                          number("Predicted, 90\u00a0%"),
                          number("z")},
                 .rows = {}};
-    for (std::size_t i = 0; i < prediction.points.size(); ++i) {
-      const PredictivePoint& point = prediction.points[i];
+    for (const auto& [point, z] : prediction.points) {
       const Rounding rounding = rounding_of(point.observed, point.standard_error);
       std::string at;
       for (const auto& [name, value] : point.controls)
@@ -212,7 +211,7 @@ std::string prediction_part(const CaseReport& result) {
                             {text(name_in_unit(point.output, point.unit))},
                             number(format_with_error(point.observed, point.standard_error, "", pretty)),
                             number(format_interval(point.q05, point.q95, rounding, "", pretty)),
-                            number(format_value(prediction.z[i], {.exponent = 0, .decimals = 1}, "", pretty))});
+                            number(format_value(z, {.exponent = 0, .decimals = 1}, "", pretty))});
     }
     out += fmt::format("<h3>Prediction: {}</h3>\n<p>{}</p>\n", text(prediction.name), text(prediction.sentence)) +
            html(table);

@@ -98,6 +98,12 @@ WordFacts facts_of(const ParameterReport& report, const Profile& profile, const 
               profile.parts.size() > 1 ? 1.0 - within / (report.prior_sd * report.prior_sd) : report.contraction};
 }
 
+/// The data narrow it and end its interval, the surrogate's error counted in: it acts, even where the surrogate cannot
+/// tell by how much over the whole range.
+bool limited(const WordFacts& facts, const VerdictThresholds& thresholds) {
+  return facts.contraction >= thresholds.contraction_weak && !(facts.open_low && facts.open_high);
+}
+
 /// Of the posterior.
 Eigen::VectorXd mode_of(const CaseModel& model, const Eigen::MatrixXd& guiding, const Eigen::VectorXd& level,
                         const Eigen::VectorXd& best) {
@@ -180,7 +186,7 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
                           .high_pinned_by = report.high_pinned_by};
     if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
     one.surrogate_share = surrogate.shares[k];
-    one.facts.influences = all.influence[k].some;
+    one.facts.influences = all.influence[k].some || limited(one.facts, thresholds);
     one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);
     words.push_back(word_of(one.facts, thresholds));
     facts.push_back({one.facts, &found.profiles[k]});

@@ -271,6 +271,7 @@ std::string because(Reason reason, const ParameterEvidence& parameter) {
                  : "; the surrogate's error leaves open whether a better measurement would help";
     case Reason::one_sided:
     case Reason::bound:
+    case Reason::unsupported:  // its sentence says why by itself
       return "";
     case Reason::no_influence:
       break;

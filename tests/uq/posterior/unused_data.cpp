@@ -93,10 +93,10 @@ TEST_CASE(
     }
     mean /= total;
     const double exact_sd = std::sqrt(square / total - mean * mean);
-    INFO("at " << unused[j] << ": " << found.points[j].mean << " for " << mean << ", sd " << exact_sd);
-    CHECK(std::abs(found.points[j].mean - mean) < 0.03 * exact_sd);
-    CHECK(std::abs(found.points[j].q95 - found.points[j].q05 - 2.0 * 1.6449 * exact_sd) < 0.1 * exact_sd);
-    CHECK(found.z[j] == Approx((found.points[j].observed - mean) / exact_sd).margin(0.1));
+    INFO("at " << unused[j] << ": " << found.points[j].point.mean << " for " << mean << ", sd " << exact_sd);
+    CHECK(std::abs(found.points[j].point.mean - mean) < 0.03 * exact_sd);
+    CHECK(std::abs(found.points[j].point.q95 - found.points[j].point.q05 - 2.0 * 1.6449 * exact_sd) < 0.1 * exact_sd);
+    CHECK(found.points[j].z == Approx((found.points[j].point.observed - mean) / exact_sd).margin(0.1));
   }
 }
 

@@ -1,0 +1,20 @@
+#pragma once
+#include <utility>
+
+#include "data/study.hpp"
+
+namespace uq {
+
+/// How far beyond the runs of a material, as a share of a control's range, a reading may lie. A scrambled design of a few
+/// dozen runs stops several percent short of its range's ends, and the surrogate's variance covers that; further out it
+/// extrapolates.
+inline constexpr double control_reach = 0.1;
+
+/// Whether a value is no further from runs that span `runs` [SI].
+inline bool within_reach(const data::Control& control, double value, const std::pair<double, double>& runs) {
+  const data::Axis axis = control.axis();
+  const double u = axis.to_unit(value);
+  return u >= axis.to_unit(runs.first) - control_reach && u <= axis.to_unit(runs.second) + control_reach;
+}
+
+}  // namespace uq
