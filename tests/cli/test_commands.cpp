@@ -144,14 +144,11 @@ TEST_CASE("shipped rows of the steady flow and an observed point come out again"
     CHECK(torque == row.number("torque"));
   }
   // An observed point is the same DEM plus noise: within three of its standard errors, run and noise together.
-  const std::vector<Row> observed =
-      read_rows(fs::path(DEMCAL_SOURCE_DIR) / "data" / "quick" / "observed" / "noise-3" / "bench.csv");
+  const std::vector<Row> observed = read_rows(study / "observed" / "noise-3" / "zirconia-800.csv");
   const Row& point = observed.back();
-  const auto outcome =
-      folder.demcal({"simulate", DEMCAL_SOURCE_DIR "/data/quick", "--out", "observed", "--json", "--quiet", "--at",
-                     "friction=0.4,hamaker=1.5e-18,rpm=" + point.field.at("rpm"), "--seed", "40911", "--set",
-                     "training.standard_error=0.04", "--set", "run.longest=\"8 s\""});
-  const nlohmann::json run = nlohmann::json::parse(outcome.out);
+  const nlohmann::json run = simulate(
+      folder,
+      {"--material", "zirconia-800", "--at", "friction=0.4,hamaker=0,rpm=" + point.field.at("rpm"), "--seed", "40911"});
   CHECK(run["state"] == "steady");
   CHECK(std::abs(run["outputs"]["torque"]["mean"].get<double>() - point.number("torque")) <
         3.0 * point.number("torque_se"));
