@@ -129,8 +129,8 @@ std::string no_output_because(const Case& c, std::string_view name) {
   const auto& seen = camera_outputs();
   const Rig& rig = c.rig;
   if (std::any_of(seen.begin(), seen.end(), [&](const CameraOutput& o) { return o.name == name; })) {
-    if (std::string_view(rig_kind(c)) == "machine")
-      return "is measured on the picture along one axis, and the machine has two";
+    if (channels_of(c).exist())
+      return "is measured on the picture along one axis, and the bodies of this rig turn about two";
     return has_picture(rig) ? ""
                             : "is measured on the picture along a horizontal axis, but this rig's axis is vertical, or "
                               "its box repeats across it";

@@ -208,6 +208,7 @@ speed_ratio = 1
   CHECK(channels.of({0.0, 2.1e-3, 0.0}) == 1);
   CHECK_FALSE(dem::channels_of(one).exist());
   CHECK(dem::no_output_because(both, "second_flow").empty());
+  CHECK_THAT(dem::no_output_because(both, "silhouette_x"), Catch::Contains("turn about two"));
   CHECK_THAT(dem::no_output_because(one, "second_flow"), Catch::Contains("side by side"));
   const dem::BuiltRig built = dem::build_rig(both, 1);
   REQUIRE(built.sensor.driven.size() == 2);

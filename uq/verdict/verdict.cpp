@@ -103,8 +103,8 @@ std::vector<std::pair<std::string, std::string>> describe(const VerdictThreshold
       {"profile likelihood interval", fmt::format("deviance up to {:.4g} (95 %)", thresholds.profile_drop)},
       {"no influence",
        fmt::format("its whole range changes the predictions by less than {:g} of the surrogate's sds, or the deviance "
-                   "by less than {:g}",
-                   thresholds.told_apart_sd, thresholds.silent_deviance)},
+                   "by less than {:g}; contraction below {:g}, or an interval open on both sides",
+                   thresholds.told_apart_sd, thresholds.silent_deviance, thresholds.contraction_weak)},
       {"interval open for another parameter's range",
        fmt::format("deviance at its end at least {:g} times as large with that parameter in the middle of its own "
                    "interval",
