@@ -138,3 +138,16 @@ TEST_CASE("each output has its own surrogate, a run without one output trains th
   CHECK_THAT(fitted[1]["notes"].dump(), Contains("length scale of friction is on its upper bound"));
   CHECK_THAT(outcome.err, Contains("length scale of friction is on its upper bound, 50: the output hardly depends"));
 }
+
+TEST_CASE(
+    "a parameter that the data narrow to an upper limit is not said to have no influence, however noisy the runs") {
+  const Folder folder;
+  const auto outcome = folder.demcal({"calibrate", DEMCAL_SOURCE_DIR "/tests/cli/cases/upper-limit-noisy-runs", "--out",
+                                      "out", "--json", "--quiet", "--no-scan"});
+  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  const nlohmann::json& cohesion = report["cases"][0]["parameters"][1];
+  CHECK(cohesion["contraction"].get<double>() > 0.5);
+  CHECK(cohesion["verdict"] == "weakly identified");
+  CHECK(cohesion["reason"] == "bound");
+  CHECK(cohesion["profile95"][1].get<double>() > 2.0);  // the truth
+}
