@@ -151,3 +151,23 @@ TEST_CASE(
   CHECK(cohesion["reason"] == "bound");
   CHECK(cohesion["profile95"][1].get<double>() > 2.0);  // the truth
 }
+
+TEST_CASE("speeds over a decade are learnt on a log scale, and a report that cannot fit them on a linear one says so") {
+  const Folder folder;
+  const auto calibrated = [&](const std::string& scale) {
+    const auto outcome =
+        folder.demcal({"calibrate", DEMCAL_SOURCE_DIR "/tests/cli/cases/speeds-over-a-decade", "--out", scale, "--json",
+                       "--quiet", "--no-scan", "--set", "controls.speed.scale=" + scale});
+    return nlohmann::json::parse(outcome.out);
+  };
+  const nlohmann::json linear = calibrated("linear"), log = calibrated("log");
+  CHECK(linear["status"] == "warning");
+  CHECK_THAT(linear["surrogates"][0]["remedy"].get<std::string>(), Contains("[controls.speed] scale = \"log\""));
+  CHECK(log["status"] == "ok");
+  const double truth[] = {0.35, 6.5};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const nlohmann::json& parameter = log["cases"][0]["parameters"][k];
+    CHECK(parameter["verdict"] == "identified");
+    CHECK(std::abs(parameter["mean"].get<double>() - truth[k]) < 2.5 * parameter["sd"].get<double>());
+  }
+}
