@@ -181,7 +181,7 @@ double take_ramps(const data::TorqueLog& log, std::vector<data::Plateau>& platea
   return seconds;
 }
 
-/// Where less than half of the turning belongs to a plateau: by how much, and the remedy.
+/// Where less than two thirds of the turning belong to a plateau: by how much, and the remedy.
 std::string left_over(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
                       const data::PlateauOptions& options, double ramps) {
   double fastest = 0.0, turning = 0.0, held = 0.0;
@@ -191,7 +191,7 @@ std::string left_over(const data::TorqueLog& log, const std::vector<data::Platea
       turning += log.time[i] - log.time[i - 1];
   for (const data::Plateau& plateau : plateaus)
     held += log.time[plateau.first + plateau.count - 1] - log.time[plateau.first];
-  if (turning - ramps < 2.0 * held) return {};
+  if (turning - ramps < 1.5 * held) return {};
   return fmt::format(
       "{:.3g} s of {:.3g} s of turning belong to no speed that stays within {:g} %: where the tachometer scatters by "
       "more, "

@@ -145,6 +145,17 @@ std::string shown_default(const std::optional<double>& fallback) {
   return fallback && std::isfinite(*fallback) ? fmt::format("{:.10g}", *fallback) : "";
 }
 
+/// The value at `key`, or the fallback; what is missing or wrong is recorded.
+double read_one(const Node& node, std::string_view key, std::string_view si_unit, std::optional<double> fallback,
+                const Expected& expected) {
+  node.note(key, {"quantity", std::string(si_unit), expected.range, shown_default(fallback), {}});
+  const std::string example =
+      fmt::format("\"1 {}\"", expected.default_unit != nullptr ? expected.default_unit->symbol : si_unit);
+  const toml::node* value = fallback ? node.ask(key) : node.demand(key, convertible(si_unit, "1") ? "0.5" : example);
+  if (value == nullptr) return missing_value(expected.range, fallback);
+  return read_quantity(node, key, *value, si_unit, expected).value_or(missing_value(expected.range, fallback));
+}
+
 Section open_section(const Node& parent, const toml::table* table, std::string name, std::size_t line) {
   if (table != nullptr) parent.state->opened.insert(table);
   return Section(std::make_shared<Node>(Node{parent.state, table, std::move(name), line > 0 ? line : parent.line}));
@@ -200,20 +211,6 @@ std::int64_t Section::integer(std::string_view key, Range range, std::optional<s
   const double inside = check_range(*node_, key, value, range, {show(*node), Display{}});
   return inside == value ? whole->get() : static_cast<std::int64_t>(inside);
 }
-
-namespace {
-
-double read_one(const Node& node, std::string_view key, std::string_view si_unit, std::optional<double> fallback,
-                const Expected& expected) {
-  node.note(key, {"quantity", std::string(si_unit), expected.range, shown_default(fallback), {}});
-  const std::string example =
-      fmt::format("\"1 {}\"", expected.default_unit != nullptr ? expected.default_unit->symbol : si_unit);
-  const toml::node* value = fallback ? node.ask(key) : node.demand(key, convertible(si_unit, "1") ? "0.5" : example);
-  if (value == nullptr) return missing_value(expected.range, fallback);
-  return read_quantity(node, key, *value, si_unit, expected).value_or(missing_value(expected.range, fallback));
-}
-
-}  // namespace
 
 double Section::quantity(std::string_view key, std::string_view si_unit, Range range, std::optional<double> fallback,
                          const Unit* default_unit) const {

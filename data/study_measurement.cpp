@@ -64,7 +64,7 @@ Parameter read_unknown(const Section& section, const std::string& name, const Un
   if (!section.has("kind") || section.text("kind") == "normal") {
     prior.kind = PriorKind::normal;
     prior.mean = section.quantity("mean", unit.si_symbol, any_number, usual.mean, bare_unit(unit));
-    prior.sd = section.quantity("sd", unit.si_symbol, positive, {}, bare_unit(difference));
+    prior.sd = section.difference("sd", unit.si_symbol, positive, {}, bare_unit(difference));
     prior.place = section.place();
     find_range(section, parameter, usual);
     prior.low = parameter.low;

@@ -62,7 +62,7 @@ void read_limits(const Section& section, Prior& prior, const Parameter& paramete
 void read_mean_and_sd(const Section& section, Prior& prior, const Parameter& parameter) {
   prior.mean = read_value(section, "mean", parameter.unit);
   const Unit difference = parameter.unit.differences();
-  prior.sd = section.quantity("sd", parameter.unit.si_symbol, positive, {}, bare_unit(difference));
+  prior.sd = section.difference("sd", parameter.unit.si_symbol, positive, {}, bare_unit(difference));
   const bool given = section.has("mean") && section.has("sd") && prior.sd > 0.0;
   if (given && (prior.mean < prior.low - 3.0 * prior.sd || prior.mean > prior.high + 3.0 * prior.sd)) {
     section.problem(

@@ -23,8 +23,8 @@
 //   first_flow, second_flow
 //                       kg/s, of two channels side by side, as of the machine: sum of m v along the channel / its
 //                       length, between the openings. Both are positive where the powder goes round, out along the
-//                       first and back along the second. The machine's axial_flow is their mean, and the powder's mass
-//                       over it the time of a lap.
+//                       first and back along the second; of an STL rig, out along the first mesh's axis. The machine's
+//                       axial_flow is their mean, and the powder's mass over it the time of a lap.
 //   silhouette_x, silhouette_z, silhouette_area, upper_angle, lower_angle
 //                       m, m, m2, rad, rad: of the silhouette that a camera sees along the axis
 //                       (dem/run/silhouette.hpp). The time-averaged projection is of RunControl::window, and each

@@ -63,6 +63,22 @@ TEST_CASE("an idle torque given as one value is an error common to all rows, and
   CHECK_THAT(csv.comments.at(3), Contains("common_error = \"0.1 mN m\""));
 }
 
+TEST_CASE("a log of which much belongs to no speed says so, with the option for a noisy tachometer") {
+  const Folder folder;
+  data::RandomStream random(4, data::Purpose::test);
+  std::string noisy = "time [s],torque [mN m],rpm\n";
+  for (int i = 0; i < 600; ++i)
+    noisy += fmt::format("{:.1f},{:.4f},{:.3f}\n", 0.1 * i, 2.5 + 0.05 * random.normal(),
+                         (i < 300 ? 50.0 : 100.0) * (1.0 + 0.03 * random.normal()));
+  write(folder, "noisy.csv", noisy);
+  CHECK_THAT(folder.demcal({"observe", "noisy.csv", "--shortest", "3"}).err,
+             Contains("s of turning belong to no speed") && Contains("--tolerance 10"));
+  const auto wide = folder.demcal({"observe", "noisy.csv", "--tolerance", "12", "--out", "wide.csv"});
+  CHECK(wide.status == 0);
+  CHECK(wide.err.find("belong to no speed") == std::string::npos);
+  CHECK(data::read_csv((folder.path / "wide.csv").string()).rows.size() == 2);
+}
+
 TEST_CASE("a log that cannot be used is refused with what to do, and is never overwritten") {
   const Folder folder;
   write(folder, "log.csv", log_text(2.0, 0.0, 4));
