@@ -3,8 +3,11 @@
 // first choice, a candidate at random, and the best of what was measured already once more. It prints, per study,
 //   width    mean posterior sd after the reading over the mean forecast
 //   words    mean forecast probability of "identified", and how often it came; Brier score beside that of the base rate
+//   redone   the same probability by REDONE calibrations of readings drawn from the posterior, instead of the forecast:
+//            its mean, its sd over the loops (what there is to forecast), and the rms difference of the forecast from it,
+//            both without the sampling error of REDONE
 //   choice   mean sd after each of the three readings, over that before
-// Usage: plan_loops [LOOPS] [FIRST SEED]
+// Usage: plan_loops [LOOPS] [FIRST SEED] [REDONE] [STUDY]
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -52,11 +55,44 @@ After calibrated(const data::Study& study, const formula::Pair& formulas, std::s
   return {found.parameters[about].sd, found.parameters[about].verdict == uq::Verdict::identified};
 }
 
-void run(const char* name, const formula::Pair& formulas, int loops, std::uint64_t seed) {
+/// Share of "identified" over `count` readings of a candidate at draws of the posterior, each calibrated.
+double identified_by_calibrations(const data::Study& study, const formula::Pair& formulas,
+                                  const uq::PlanCandidate& candidate, const Eigen::MatrixXd& draws, int count,
+                                  data::RandomStream& random) {
+  int identified = 0;
+  for (int i = 0; i < count; ++i) {
+    const auto row = static_cast<Eigen::Index>(random.uniform() * static_cast<double>(draws.rows()));
+    const data::Study more = with_reading(study, formulas, candidate, draws(row, 0), draws(row, 1), random);
+    identified += calibrated(more, formulas, 0).identified ? 1 : 0;
+  }
+  return static_cast<double>(identified) / count;
+}
+
+/// Of loops' forecast probabilities and those by `count` calibrations each.
+struct Redone {
+  std::vector<double> forecast, share;
+
+  std::string text(int count) const {
+    if (share.empty()) return "";
+    const auto n = static_cast<double>(share.size());
+    double mean = 0.0, sampling = 0.0, spread = 0.0, difference = 0.0;
+    for (const double p : share) mean += p / n;
+    for (std::size_t i = 0; i < share.size(); ++i) {
+      sampling += share[i] * (1.0 - share[i]) / (count - 1) / n;
+      spread += std::pow(share[i] - mean, 2) / n;
+      difference += std::pow(share[i] - forecast[i], 2) / n;
+    }
+    const auto sd = [&](double square) { return std::sqrt(std::max(square - sampling, 0.0)); };
+    return fmt::format("{:.2f} / {:.2f} / {:.2f}", mean, sd(spread), sd(difference));
+  }
+};
+
+void run(const char* name, const formula::Pair& formulas, int loops, std::uint64_t seed, int redone_count) {
   double before = 0.0, forecast = 0.0, chosen = 0.0, at_random = 0.0, again = 0.0, chance = 0.0, came = 0.0,
          brier = 0.0;
   int used = 0, refused = 0, again_used = 0;
   double again_before = 0.0;
+  Redone redone;
   for (int loop = 0; loop < loops; ++loop) {
     data::RandomStream random(seed, data::Purpose::test, static_cast<std::uint32_t>(loop));
     const double a = random.uniform(), b = random.uniform();
@@ -92,15 +128,21 @@ void run(const char* name, const formula::Pair& formulas, int loops, std::uint64
       again_before += first.parameters[0].sd_now;
       ++again_used;
     }
+    if (redone_count > 1) {
+      data::RandomStream others(seed, data::Purpose::test, static_cast<std::uint32_t>(loops + loop));
+      redone.forecast.push_back(p);
+      redone.share.push_back(
+          identified_by_calibrations(study, formulas, first, sampled.draws.pooled(), redone_count, others));
+    }
     chance += p;
     came += best.identified ? 1.0 : 0.0;
     brier += std::pow(p - (best.identified ? 1.0 : 0.0), 2);
     ++used;
   }
   const double n = used, rate = came / n;
-  fmt::print("| {} | {} | {:.3f} | {:.2f} / {:.2f} | {:.3f} / {:.3f} | {:.2f} / {:.2f} / {:.2f} | {} |\n", name, used,
-             chosen / forecast, chance / n, rate, brier / n, rate * (1.0 - rate), chosen / before, at_random / before,
-             again_used > 0 ? again / again_before : 0.0, refused);
+  fmt::print("| {} | {} | {:.3f} | {:.2f} / {:.2f} | {:.3f} / {:.3f} | {} | {:.2f} / {:.2f} / {:.2f} | {} |\n", name,
+             used, chosen / forecast, chance / n, rate, brier / n, rate * (1.0 - rate), redone.text(redone_count),
+             chosen / before, at_random / before, again_used > 0 ? again / again_before : 0.0, refused);
   std::fflush(stdout);
 }
 
@@ -109,16 +151,20 @@ void run(const char* name, const formula::Pair& formulas, int loops, std::uint64
 int main(int count, char** words) {
   const int loops = count > 1 ? std::atoi(words[1]) : 200;
   const std::uint64_t seed = count > 2 ? std::strtoull(words[2], nullptr, 10) : 1;
+  const int redone = count > 3 ? std::atoi(words[3]) : 0;
+  const std::string only = count > 4 ? words[4] : "";
+  const auto study = [&](const char* name, const formula::Pair& formulas) {
+    if (only.empty() || only == name) run(name, formulas, loops, seed, redone);
+  };
   fmt::print(
-      "| study | loops | sd found over forecast | identified: forecast / came | Brier: forecast / base rate | sd over "
-      "before: chosen / random / again | refused |\n|---|---|---|---|---|---|---|\n");
-  run("sum", {formula::torque, formula::angle}, loops, seed);
-  run("product",
-      {[](double a, double b, double x) { return 4.0 + 12.0 * (0.2 + a) * (0.2 + b) + 0.2 * x * a; }, formula::angle},
-      loops, seed);
-  run("saturating",
-      {[](double a, double b, double x) { return 6.0 + 6.0 * a / (a + 0.3) + 2.0 * b * (1.0 - 0.5 * x); },
-       [](double a, double b, double x) { return 8.0 + 4.0 * a * a - 2.0 * b + x; }},
-      loops, seed);
+      "| study | loops | sd found over forecast | identified: forecast / came | Brier: forecast / base rate | redone: "
+      "mean / sd / rms difference | sd over "
+      "before: chosen / random / again | refused |\n|---|---|---|---|---|---|---|---|\n");
+  study("sum", {formula::torque, formula::angle});
+  study("product", {[](double a, double b, double x) { return 4.0 + 12.0 * (0.2 + a) * (0.2 + b) + 0.2 * x * a; },
+                    formula::angle});
+  study("saturating",
+        {[](double a, double b, double x) { return 6.0 + 6.0 * a / (a + 0.3) + 2.0 * b * (1.0 - 0.5 * x); },
+         [](double a, double b, double x) { return 8.0 + 4.0 * a * a - 2.0 * b + x; }});
   return 0;
 }

@@ -1,6 +1,8 @@
 """Sequential training on PUQ's test functions, ours beside PUQ's own code: driver of tests/bench/sequential.sh.
 
-sequential.py BENCH_PROGRAM [--repeats 30] [--noise 0.5] [--puq FOLDER --puq-repeats N] [--keep FILE]
+sequential.py BENCH_PROGRAM [--repeats 30] [--noise 0.5] [--puq FOLDER --puq-repeats N] [--puq-rows FILE]
+
+The rows of PUQ's runs are appended to FILE as they come. Called again, the benchmark goes on where it was.
 
 PUQ's loop is that of its SEQCAL with one simulation at a time: its emulator (PCGP), its posterior, its acquisition
 (eivar, 100 candidates, the 50 x 50 grid as the integral's points), called here in turn, without libEnsemble, which would
@@ -14,6 +16,7 @@ import io
 import os
 import subprocess
 import sys
+import time
 import types
 
 FUNCTIONS = ["unimodal", "banana", "bimodal", "unidentifiable"]
@@ -99,6 +102,27 @@ def run_puq(name, repeat, evaluations, noise):
         theta, f = np.vstack((theta, new)), np.hstack((f, simulate(new)))
 
 
+def puq_rows(path, repeats):
+    """Rows of PUQ's repeats, read from `path` where they are there and appended to it as they are made."""
+    rows = []
+    if path and os.path.exists(path):
+        with open(path, newline="") as file:
+            rows = [(f, "PUQ", float(noise), int(repeat), int(runs), float(error), float(seconds))
+                    for f, _, noise, repeat, runs, error, seconds in csv.reader(file)]
+    for repeat in range(1, repeats + 1):
+        for function in FUNCTIONS:
+            if any(r[0] == function and r[3] == repeat for r in rows):
+                continue
+            start, new = time.process_time(), []
+            for runs, error in run_puq(function, repeat, 210, 0.0):
+                new.append((function, "PUQ", 0.0, repeat, runs, error, time.process_time() - start))
+            rows += new
+            if path:
+                with open(path, "a", newline="") as file:
+                    csv.writer(file).writerows(new)
+    return rows
+
+
 def quantile(values, share):
     values = sorted(values)
     at = share * (len(values) - 1)
@@ -154,7 +178,7 @@ def main():
     parser.add_argument("--noise", type=float, default=0.5)
     parser.add_argument("--puq", default="")
     parser.add_argument("--puq-repeats", type=int, default=30)
-    parser.add_argument("--keep", default="")
+    parser.add_argument("--puq-rows", default="", help="CSV file that keeps the rows of PUQ's runs")
     options = parser.parse_args()
     rows = []
     for noise in (0.0, options.noise):
@@ -162,13 +186,7 @@ def main():
                                            f"filling={options.filling}", f"noise={noise}"])
     if options.puq:
         load_puq(options.puq)
-        for repeat in range(1, options.puq_repeats + 1):
-            for function in FUNCTIONS:
-                for runs, error in run_puq(function, repeat, 210, 0.0):
-                    rows.append((function, "PUQ", 0.0, repeat, runs, error, 0.0))
-    if options.keep:
-        with open(options.keep, "w", newline="") as file:
-            csv.writer(file).writerows(rows)
+        rows += puq_rows(options.puq_rows, options.puq_repeats)
     for noise in (0.0, options.noise):
         table(rows, noise, options.runs, options.filling)
 

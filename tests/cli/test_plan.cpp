@@ -73,3 +73,26 @@ TEST_CASE("a plan refuses what cannot be planned, with place and remedy") {
     CHECK_THAT(outcome.err, Contains(what));
   }
 }
+
+TEST_CASE("another rig is a candidate as another material with runs of its own, and ranks by what it would part") {
+  const Folder folder;
+  const auto outcome = folder.demcal({"plan", DEMCAL_SOURCE_DIR "/tests/cli/cases/another-rig", "--out", "o", "--json"});
+  INFO(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const nlohmann::json plan = nlohmann::json::parse(outcome.out)["plans"][0];
+  REQUIRE(plan["candidates"].size() == 3);
+  const nlohmann::json& first = plan["candidates"][0];
+  CHECK(first["name"] == "drum");
+  CHECK(first["material"] == "drum");
+  for (const auto& candidate : plan["candidates"])
+    for (const auto& parameter : candidate["parameters"]) {
+      if (parameter["name"] != "friction") continue;
+      // The drum's torque hangs on friction almost alone; the slice's on a product with cohesion that is known already.
+      const bool drum = candidate["name"] == "drum";
+      CHECK((parameter["information"].get<double>() > 0.5) == drum);
+      // Where cohesion is 0 or 10 mJ/m2 its range, and no number of readings, ends what friction can be.
+      const std::string floor = parameter["floor"];
+      if (drum) CHECK_THAT(floor, Contains("probability") && Contains("end of its range"));
+      if (!drum) CHECK_THAT(floor, Contains("do not part"));
+    }
+}

@@ -32,6 +32,9 @@ const char* to_text(Floor floor) {
     case Floor::meter:
       return "what all readings share is the floor (the meter's common error, a setting's error, the model's "
              "discrepancy): another meter or a better calibration lowers it";
+    case Floor::range:
+      return "elsewhere another parameter comes to the end of its range, and that end closes the interval, not the "
+             "readings";
     case Floor::structural:
       return "readings of this kind do not part what is traded, however many there are";
   }
@@ -58,7 +61,7 @@ Forecast::Forecast(const ExtendedCase& extended, const CaseModel& judged, const 
 }
 
 std::vector<std::vector<Verdict>> Forecast::words_of_draws(const std::vector<Index>& rows, double readings,
-                                                           Uncertain uncertain) const {
+                                                           Uncertain uncertain, OthersEnds ends) const {
   const auto measured = static_cast<Index>(extended_.measured.size()), planned = static_cast<Index>(rows.size());
   std::vector<Index> both = extended_.measured;
   both.insert(both.end(), rows.begin(), rows.end());
@@ -99,8 +102,10 @@ std::vector<std::vector<Verdict>> Forecast::words_of_draws(const std::vector<Ind
     }
     for (std::size_t k = 0; k < paths_.size(); ++k) {
       WordFacts one = facts[k];
-      one.open_low = one.open_low || by_another[k].first;
-      one.open_high = one.open_high || by_another[k].second;
+      if (ends == OthersEnds::open) {
+        one.open_low = one.open_low || by_another[k].first;
+        one.open_high = one.open_high || by_another[k].second;
+      }
       words[k].push_back(word_of(one, thresholds_));
     }
   }
@@ -109,7 +114,7 @@ std::vector<std::vector<Verdict>> Forecast::words_of_draws(const std::vector<Ind
 
 std::vector<std::vector<WordProbability>> Forecast::words(const std::vector<Index>& rows, double readings) const {
   std::vector<std::vector<WordProbability>> found;
-  for (const std::vector<Verdict>& drawn : words_of_draws(rows, readings, Uncertain::all)) {
+  for (const std::vector<Verdict>& drawn : words_of_draws(rows, readings, Uncertain::all, OthersEnds::open)) {
     std::vector<WordProbability> words;
     for (const Verdict word : all_words)
       if (const auto count = std::count(drawn.begin(), drawn.end(), word); count > 0)
@@ -121,26 +126,35 @@ std::vector<std::vector<WordProbability>> Forecast::words(const std::vector<Inde
   return found;
 }
 
-double Forecast::identified(const std::vector<Index>& rows, double readings, int parameter, Uncertain uncertain) const {
-  const std::vector<Verdict> drawn = words_of_draws(rows, readings, uncertain)[static_cast<std::size_t>(parameter)];
+double Forecast::identified(const std::vector<Index>& rows, double readings, int parameter, Uncertain uncertain,
+                            OthersEnds ends) const {
+  const std::vector<Verdict> drawn =
+      words_of_draws(rows, readings, uncertain, ends)[static_cast<std::size_t>(parameter)];
   return static_cast<double>(std::count(drawn.begin(), drawn.end(), Verdict::identified)) /
          std::max(1.0, static_cast<double>(drawn.size()));
 }
 
 ReadingsNeeded Forecast::readings_needed(const std::vector<Index>& rows, int parameter) const {
-  if (identified(rows, readings_most, parameter, Uncertain::all) < sure) {
-    if (identified(rows, readings_most, parameter, Uncertain::not_surrogate) >= sure)
-      return {.count = {}, .floor = Floor::surrogate};
-    if (identified(rows, readings_most, parameter, Uncertain::nothing) >= sure)
-      return {.count = {}, .floor = Floor::meter};
-    return {.count = {}, .floor = Floor::structural};
+  const auto enough_with = [&](Uncertain uncertain, OthersEnds ends = OthersEnds::open) {
+    return identified(rows, readings_most, parameter, uncertain, ends) >= sure;
+  };
+  const double at_most = identified(rows, readings_most, parameter, Uncertain::all);
+  if (at_most < sure) {
+    Floor floor = Floor::structural;
+    if (enough_with(Uncertain::not_surrogate))
+      floor = Floor::surrogate;
+    else if (enough_with(Uncertain::nothing))
+      floor = Floor::meter;
+    else if (enough_with(Uncertain::nothing, OthersEnds::closed))
+      floor = Floor::range;
+    return {.count = {}, .at_most = at_most, .floor = floor};
   }
   int enough = readings_most, few = 0;
   while (enough > few + 1) {
     const int middle = few < enough / 4 ? std::max(few + 1, enough / 4) : (few + enough) / 2;
     (identified(rows, middle, parameter, Uncertain::all) >= sure ? enough : few) = middle;
   }
-  return {.count = enough, .floor = Floor::none};
+  return {.count = enough, .at_most = at_most, .floor = Floor::none};
 }
 
 }  // namespace uq::plan

@@ -17,12 +17,13 @@
 namespace uq::plan {
 
 /// Why no number of readings is enough.
-enum class Floor { none, surrogate, meter, structural };
+enum class Floor { none, surrogate, meter, range, structural };
 /// A clause for the user; empty for none.
 const char* to_text(Floor floor);
 
 struct ReadingsNeeded {
   std::optional<int> count;
+  double at_most = 1.0;  ///< probability of "identified" with as many readings as are ever asked for
   Floor floor = Floor::none;
 };
 
@@ -41,9 +42,12 @@ class Forecast {
  private:
   /// What is uncertain of the law of data, beside their noise.
   enum class Uncertain { all, not_surrogate, nothing };
+  /// Whether an interval that ends where another parameter's range ends is closed.
+  enum class OthersEnds { open, closed };
   std::vector<std::vector<Verdict>> words_of_draws(const std::vector<Eigen::Index>& rows, double readings,
-                                                   Uncertain uncertain) const;
-  double identified(const std::vector<Eigen::Index>& rows, double readings, int parameter, Uncertain uncertain) const;
+                                                   Uncertain uncertain, OthersEnds ends) const;
+  double identified(const std::vector<Eigen::Index>& rows, double readings, int parameter, Uncertain uncertain,
+                    OthersEnds ends = OthersEnds::open) const;
 
   const ExtendedCase& extended_;
   const Outlook& outlook_;

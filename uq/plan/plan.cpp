@@ -263,6 +263,9 @@ class Planner {
       PlannedParameter& parameter = all[which].parameters[static_cast<std::size_t>(about_)];
       parameter.repeats_needed = needed.count;
       parameter.floor = to_text(needed.floor);
+      if (!needed.count && needed.at_most >= 0.005)
+        parameter.floor =
+            fmt::format("at most with a probability of {:.0f} %: {}", 100.0 * needed.at_most, parameter.floor);
     });
   }
 
