@@ -60,6 +60,18 @@ void say_impacts(const Case& c, Forecast& f) {
   }
 }
 
+/// A tool that only skims the bed: measured on slices, the torque falls by a third and more while the bed settles under it,
+/// and may come to 0 (dem/STEADY.md).
+void say_immersion(Forecast& f, const std::string& tool, double lowest) {
+  constexpr double enough = 1.8;  // of the largest sphere
+  const double depth = *f.surface - lowest;
+  if (depth < 0.0 || depth >= enough * f.largest) return;
+  f.warnings.push_back(fmt::format(
+      "{} dips only {} mm into the bed, {:.2g} of the largest sphere: the bed settles below it, and the torque falls "
+      "for long (raise the fill until it dips {} mm)",
+      tool, mm(depth), depth / f.largest, mm(enough * f.largest)));
+}
+
 Forecast of_slice(const Case& c, Forecast f) {
   const Rig& rig = c.rig;
   const TroughFill fill = fill_of_slice(c);
@@ -71,6 +83,7 @@ Forecast of_slice(const Case& c, Forecast f) {
       fmt::format("mixer: turns about x at {:.4g} rpm; its torque is the output", rpm(rig.angular_velocity)));
   say_gap(f, "blade and trough", rig.trough_radius - rig.blade_radius);
   say_gap(f, "two flights of the blade", rig.pitch - rig.blade_thickness);
+  say_immersion(f, "the blade", -rig.blade_radius);
   if (fill.share > 1.0) {
     f.warnings.push_back(
         fmt::format("the powder will stand {} mm above the blade: {:.2g} times what fits below its top",
@@ -101,6 +114,7 @@ Forecast of_machine(const Case& c, Forecast f) {
                                    rpm(rig.angular_velocity)));
   say_gap(f, "blade and trough", rig.clearance());
   say_gap(f, "two flights of the blade", rig.pitch - rig.blade_thickness);
+  say_immersion(f, "each blade", -rig.blade_radius);
   if (fill.surface < rig.machine->sill)
     f.warnings.push_back(fmt::format(
         "the bed's surface will lie at {} mm, below the openings' sill at {} mm: the powder goes round only "
@@ -360,9 +374,12 @@ void check_powder(const Case& c, const BuiltRig& rig, Forecast& f) {
     const bool measured = is_measured(*c.rig.stl, k);
     if (!measured && !moves(rig.bodies[k].motion)) continue;
     const std::vector<Vec3> points = swept_points(rig, k, c.run);
-    if (reaches(room, loose.wet, points)) continue;
     double lowest_point = std::numeric_limits<double>::infinity();
     for (const Vec3 p : points) lowest_point = std::min(lowest_point, dot(up, p));
+    if (reaches(room, loose.wet, points)) {
+      if (measured) say_immersion(f, meshes[k].name, lowest_point);
+      continue;
+    }
     const std::string what =
         fmt::format("never touches the powder: it reaches down to {} mm, and the bed's surface will lie at {} mm ({})",
                     mm(lowest_point), mm(bed.surface), f.up);

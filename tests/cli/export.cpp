@@ -39,7 +39,7 @@ TEST_CASE("an exported bed has the spheres, masses and pairs of the study's run"
     largest_type = std::max(largest_type, type);
     ++spheres;
   }
-  CHECK(spheres == 420);
+  CHECK(spheres == 480);
   CHECK(largest_type == 3);  // its three sizes
   const auto told = nlohmann::json::parse(folder.demcal({"check", quick, "--json", "--quiet"}).out);
   CHECK(mass == Approx(told["materials"][0]["mass_kg"].get<double>()).epsilon(1e-9));

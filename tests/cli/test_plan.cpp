@@ -76,7 +76,8 @@ TEST_CASE("a plan refuses what cannot be planned, with place and remedy") {
 
 TEST_CASE("another rig is a candidate as another material with runs of its own, and ranks by what it would part") {
   const Folder folder;
-  const auto outcome = folder.demcal({"plan", DEMCAL_SOURCE_DIR "/tests/cli/cases/another-rig", "--out", "o", "--json"});
+  const auto outcome =
+      folder.demcal({"plan", DEMCAL_SOURCE_DIR "/tests/cli/cases/another-rig", "--out", "o", "--json"});
   INFO(outcome.err);
   REQUIRE(outcome.status == 0);
   const nlohmann::json plan = nlohmann::json::parse(outcome.out)["plans"][0];
