@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "uq/report/element.hpp"
+
 namespace uq::page {
 
 namespace {
