@@ -2,48 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "uq/report/figures.hpp"
 #include "uq/report/page.hpp"
-#include "uq/report/plot.hpp"
 
 namespace uq::page {
 namespace {
 
 constexpr Typography pretty = Typography::unicode;
-
-/// One output's values: simulated against predicted, with the identity line.
-Figure verification_figure(const VerificationReport& round, const VerifiedValue& like, const std::string& stem) {
-  std::vector<double> x, y, x_error, y_error;
-  plot::Extent both;
-  for (const VerifiedValue& value : round.values) {
-    if (value.output != like.output || value.material != like.material) continue;
-    x.push_back(value.predicted);
-    y.push_back(value.simulated);
-    x_error.push_back(value.predicted_sd);
-    y_error.push_back(std::isfinite(value.standard_error) ? value.standard_error : 0.0);
-    for (const double end :
-         {x.back() - x_error.back(), x.back() + x_error.back(), y.back() - y_error.back(), y.back() + y_error.back()})
-      both.include(end);
-  }
-  const plot::Extent range = both.padded(0.06);
-  const plot::Axis horizontal = plot::axis_for("surrogate's " + like.output, like.unit, both.largest());
-  const plot::Axis vertical = plot::axis_for("simulated " + like.output, like.unit, both.largest());
-  Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 410};
-  figure.data = plot::block("runs", {x, y, x_error, y_error});
-  figure.script =
-      plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
-      fmt::format("s = {:.0e}\nset size ratio 1\nset xrange [{:.10g}*s:{:.10g}*s]\nset yrange [{:.10g}*s:{:.10g}*s]\n",
-                  horizontal.scale, range.low, range.high, range.low, range.high) +
-      fmt::format(
-          "plot x with lines linecolor rgb '{0}' dashtype 2 title 'identity', \\\n"
-          "  '{1}.dat' index 'runs' using ($1*s):($2*s):($3*s):($4*s) with xyerrorbars linecolor rgb '{2}' "
-          "linewidth 1.2 pointtype 7 pointsize 0.4 title 'runs, ±1 sd'",
-          plot::grey, stem, plot::blue);
-  figure.alt = fmt::format("{} of {} runs against the surrogate's", like.output, x.size());
-  return figure;
-}
 
 std::string inputs_text(const VerifiedValue& value) {
   std::string at;
