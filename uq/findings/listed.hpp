@@ -4,9 +4,10 @@
 
 namespace uq {
 
-/// "a", "a and b", "a, b and c".
-inline std::string listed(const std::vector<std::string>& names) {
-  std::string text;
+/// "a", "a and b", "a, b and c"; of text, or of what text becomes (uq/report/element.hpp).
+template <class Text>
+Text listed(const std::vector<Text>& names) {
+  Text text;
   for (std::size_t i = 0; i < names.size(); ++i)
     text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
   return text;

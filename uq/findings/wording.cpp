@@ -184,37 +184,6 @@ std::string name_in_unit(std::string_view name, std::string_view unit) {
   return unit.empty() || unit == "1" || unit == name ? std::string(name) : fmt::format("{} ({})", name, unit);
 }
 
-std::string escape_html(std::string_view text) {
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      case '\'':
-        safe += "&#39;";
-        break;
-      default:
-        if (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f) {
-          safe += c;
-        } else if (c == '\n' || c == '\t') {
-          safe += ' ';
-        }
-    }
-  }
-  return safe;
-}
-
 std::string slug(std::string_view text) {
   std::string name;
   for (const char c : text) {

@@ -50,9 +50,6 @@ std::string significant(double value, int digits, Typography typography);
 /// "name (unit)" for a heading or an axis; the name alone when there is no unit or the name is the unit ("rpm").
 std::string name_in_unit(std::string_view name, std::string_view unit);
 
-/// Text from a file made safe between tags and inside quoted attributes; control characters are dropped.
-std::string escape_html(std::string_view text);
-
 /// A file name or HTML id made of a-z, 0-9 and '-' from any text.
 std::string slug(std::string_view text);
 

@@ -1,6 +1,7 @@
 #pragma once
 // The figures of the report as gnuplot scripts and data, made from plain results; drawn by gnuplot (gnuplot.hpp).
 // Colours are Okabe & Ito's, told apart by colour-blind readers, and every mark also differs in shape or place.
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,5 +57,15 @@ Figure leave_one_out_figure(const SurrogateReport& surrogate, const std::string&
 
 /// Standardised leave-one-out errors against the prediction, those beyond two marked.
 Figure standardised_figure(const SurrogateReport& surrogate, const std::string& stem);
+
+/// Runs at points of the posterior against what the surrogate said before, for the output and material of `like`.
+Figure verification_figure(const VerificationReport& round, const VerifiedValue& like, const std::string& stem);
+
+/// Information that single readings are expected to give, against their control; nothing where no control varies.
+std::optional<Figure> information_figure(const PlanReport& plan, const std::string& stem);
+
+/// Arrows from the origin: what each candidate's reading does when either of two parameters changes, the one asked for
+/// and the first other; nothing where there is no other or no candidate has an arrow.
+std::optional<Figure> arrow_figure(const PlanReport& plan, const std::string& stem);
 
 }  // namespace uq

@@ -11,7 +11,7 @@
 #include "data/error.hpp"
 #include "data/file_name.hpp"
 #include "data/program.hpp"
-#include "uq/findings/wording.hpp"
+#include "uq/report/element.hpp"
 
 namespace uq {
 namespace {
@@ -56,7 +56,7 @@ std::string inline_svg(std::string_view svg, std::string_view prefix, std::strin
     replace_all(text, fmt::format("href={}#", quote), fmt::format("href={}#{}", quote, id));
   }
   replace_all(text, "url(#", "url(#" + id);
-  text.insert(4, fmt::format(" role=\"img\" aria-label=\"{}\"", escape_html(alt)));
+  text.insert(4, fmt::format(" role=\"img\" aria-label=\"{}\"", page::escape_html(alt)));
   return text;
 }
 

@@ -1,7 +1,5 @@
 #include "uq/report/html.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,94 +12,57 @@
 #include "uq/report/style.hpp"
 
 namespace uq {
+namespace page {
 namespace {
 
-using page::Cell;
-using page::number;
-using page::Table;
-using page::text;
-
-constexpr Typography pretty = Typography::unicode;
-
-std::string warnings_box(const CalibrationReport& report) {
+Markup warnings_box(const CalibrationReport& report) {
+  if (!has_warning(report)) return {};
   const auto lines = first_lines(report);
-  if (lines.empty()) {
-    return report.warning ? "<div class=\"warnings\" role=\"alert\"><p>! This result carries a warning.</p></div>\n"
-                          : "";
-  }
-  std::string out =
-      fmt::format("<div class=\"warnings\" role=\"alert\"><p>! Warning{}</p>\n<ul>\n", lines.size() > 1 ? "s" : "");
-  for (const std::string& line : lines) out += "<li>" + text(line) + "</li>\n";
-  return out + "</ul></div>\n";
+  const char* const words = lines.empty()      ? "! This result carries a warning."
+                            : lines.size() > 1 ? "! Warnings"
+                                               : "! Warning";
+  return tag::div.is("warnings").with("role", "alert")(tag::p(words), tag::ul.unless_empty(each(lines, tag::li)));
 }
 
-std::string cautions_list(const CalibrationReport& report) {
-  if (report.cautions.empty()) return {};
-  std::string out = "<ul class=\"note\">\n";
-  for (const std::string& line : report.cautions) out += "<li>" + text(line) + "</li>\n";
-  return out + "</ul>\n";
+Markup title_block(const CalibrationReport& report) {
+  const auto line = [](const char* kind, const char* what, const std::string& words) {
+    return words.empty() ? Markup() : tag::p.is(kind)(what, words);
+  };
+  return tag::header(tag::h1("Calibration report: ", report.study_name), line("lead", "", report.study_description),
+                     line("note", "Study: ", report.study_file),
+                     line("note", "Set on the command line: ", changes_of(report)));
 }
 
-std::string findings_section(const CalibrationReport& report) {
-  if (report.findings.empty()) return {};
-  Table table{.caption = {}, .head = {{"Kind"}, {"Where"}, {"What"}, {"What to do"}}, .rows = {}};
-  for (const DataFinding& finding : report.findings)
-    table.rows.push_back(
-        {{text(finding.kind)}, {text(finding.place)}, {text(finding.what), "long"}, {text(finding.remedy), "long"}});
-  return "<section id=\"data\">\n<h2>Runs and observations</h2>\n<p>What is odd in the data, found before anything was "
-         "fitted.</p>\n" +
-         page::html(table) + "</section>\n";
-}
-
-std::string glance(const CalibrationReport& report) {
-  if (report.cases.empty()) return "<p>No case was calibrated.</p>\n";
-  const bool all_synthetic = std::all_of(report.cases.begin(), report.cases.end(), is_synthetic);
-  std::string answers = "<dl class=\"answers\">\n";
-  for (std::size_t i = 0; i < report.cases.size(); ++i)
-    answers += fmt::format("<dt><a href=\"#{}\">{}</a></dt><dd>{}{}</dd>\n", page::case_id(i, report.cases[i]),
-                           text(report.cases[i].name), text(headline(report.cases[i], pretty)),
-                           is_synthetic(report.cases[i]) && !all_synthetic ? " (Its data are synthetic.)" : "");
-  answers += "</dl>\n";
-  if (all_synthetic) answers += "<p class=\"soft\">The data are synthetic, not measured.</p>\n";
-  Table table{.caption = {}, .head = {{"Case"}, {"Parameter"}, {"Posterior mean \u00b1 sd"}, {"Verdict"}}, .rows = {}};
-  for (std::size_t i = 0; i < report.cases.size(); ++i) {
-    const CaseReport& result = report.cases[i];
-    bool first = true;
-    for (const ParameterReport& parameter : result.parameters) {
-      const std::string link =
-          first ? fmt::format("<a href=\"#{}\">{}</a>", page::case_id(i, result), text(result.name)) : "";
-      table.rows.push_back(
-          {{link},
-           {text(parameter.name)},
-           {text(shown_value(result, parameter, pretty)), parameter.intervals.size() > 1 ? "" : "nowrap"},
-           {page::badge(shown_verdict(result, parameter))}});
-      first = false;
-    }
+Markup glance(const std::vector<CaseReport>& cases) {
+  if (cases.empty()) return tag::p("No case was calibrated.");
+  const bool all_synthetic = std::all_of(cases.begin(), cases.end(), is_synthetic);
+  Markup answers;
+  Table table{.columns = {{"Case"}, {"Parameter"}, {"Posterior mean \u00b1 sd", nowrap}, {"Verdict"}}};
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const CaseReport& result = cases[i];
+    const Markup name = link(case_id(i, result), result.name);
+    answers += tag::dt(name) + tag::dd(headline(result, pretty),
+                                       is_synthetic(result) && !all_synthetic ? " (Its data are synthetic.)" : "");
+    for (const ParameterReport& parameter : result.parameters)
+      table.rows.push_back({&parameter == &result.parameters.front() ? name : Markup(),
+                            parameter.name,
+                            {shown_value(result, parameter, pretty), parameter.intervals.size() > 1 ? plain : nowrap},
+                            badge(shown_verdict(result, parameter))});
     for (const TradedPair& traded : result.traded)
       if (std::isfinite(traded.value))
-        table.rows.push_back({{""},
-                              {text(traded.combination)},
-                              {text(format_with_error(traded.value, traded.error, traded.unit, pretty)), "nowrap"},
-                              {"<span class=\"soft\">known together</span>"}});
+        table.rows.push_back({"", traded.combination, with_error(traded.value, traded.error, traded.unit),
+                              tag::span.is("soft")("known together")});
   }
-  return answers + page::html(table);
+  return tag::dl.is("answers")(answers) +
+         (all_synthetic ? tag::p.is("soft")("The data are synthetic, not measured.") : Markup()) + table;
 }
 
-/// The sections in their order: id and heading.
-std::string contents(const std::vector<std::pair<std::string, std::string>>& sections) {
-  std::string out = "<nav aria-label=\"Contents\"><h3>Contents</h3>\n<ol>\n";
-  for (const auto& [id, heading] : sections) out += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, text(heading));
-  return out + "</ol></nav>\n";
-}
-
-std::string percent(double share) { return fmt::format("{:.4g}\u00a0%", 100.0 * share); }
-
-std::string error_scan_section(const CalibrationReport& report) {
+Markup error_scan_section(const CalibrationReport& report) {
   if (report.error_scan.empty()) return {};
   std::set<double> errors;
   for (const ErrorScan& scan : report.error_scan) errors.insert(scan.relative_error);
-  Table table{.caption = {}, .head = {{"Case"}, {"Parameter"}}, .rows = {}};
-  for (const double error : errors) table.head.push_back({percent(error)});
+  Table table{.columns = {{"Case"}, {"Parameter"}}};
+  for (const double error : errors) table.columns.push_back({fmt::format("{:.4g}\u00a0%", 100.0 * error)});
   const auto unit_of = [&report](const std::string& case_name, const std::string& parameter_name) {
     for (const CaseReport& result : report.cases) {
       for (const ParameterReport& parameter : result.parameters) {
@@ -112,158 +73,100 @@ std::string error_scan_section(const CalibrationReport& report) {
   };
   // One row per case and parameter, in the order in which they come.
   std::vector<std::pair<std::string, std::string>> rows;
-  std::map<std::pair<std::string, std::string>, std::map<double, std::string>> cells;
+  std::map<std::pair<std::string, std::string>, std::map<double, Markup>> cells;
   for (const ErrorScan& scan : report.error_scan) {
     for (const ParameterAgain& parameter : scan.parameters) {
       const std::pair key{scan.case_name, parameter.name};
       if (std::find(rows.begin(), rows.end(), key) == rows.end()) rows.push_back(key);
-      cells[key][scan.relative_error] =
-          text(format_verdict(parameter.verdict, parameter.reason, parameter.borderline)) +
-          "<br><span class=\"soft\">" +
-          text(format_with_error(parameter.mean, parameter.sd, unit_of(scan.case_name, parameter.name), pretty)) +
-          "</span>";
+      const std::string unit = unit_of(scan.case_name, parameter.name);
+      cells[key][scan.relative_error] = format_verdict(parameter.verdict, parameter.reason, parameter.borderline) +
+                                        tag::br() +
+                                        tag::span.is("soft")(with_error(parameter.mean, parameter.sd, unit));
     }
   }
   std::string previous;
   for (const auto& key : rows) {
-    std::vector<Cell> row{{key.first == previous ? "" : text(key.first)}, {text(key.second)}};
-    for (const double error : errors) row.push_back({cells[key].contains(error) ? cells[key][error] : ""});
-    table.rows.push_back(std::move(row));
+    table.rows.push_back({key.first == previous ? "" : key.first, key.second});
+    for (const double error : errors) table.rows.back().push_back(cells[key][error]);
     previous = key.first;
   }
-  return "<section id=\"error-scan\">\n<h2>If the measurement were better or worse</h2>\n<p>The verdicts for "
-         "made-up data of the same kind: what the posterior predicts, with noise of another share of the value.</p>\n" +
-         page::html(table) + "</section>\n";
+  return tag::p(
+             "The verdicts for made-up data of the same kind: what the posterior predicts, with noise of another share "
+             "of the value.") +
+         table;
 }
 
-std::string sampler_section(const CalibrationReport& report, const page::Context& context) {
-  if (report.cases.empty()) return {};
-  Table cases{.caption = "By case.",
-              .head = {{"Case"},
-                       number("Chains \u00d7 draws"),
-                       {"Converged"},
-                       {"Sampler"},
-                       number("Divergences"),
-                       number("E-BFMI"),
-                       number("Difference to quadrature")},
-              .rows = {}};
-  Table shape{.caption = "Evidence, and how nearly the parameters' effects are the same.",
-              .head = {{"Case"}, number("Log evidence"), number("Collinearity"), number("Fisher condition")},
-              .rows = {}};
-  Table parameters{.caption = "By parameter.",
-                   .head = {{"Case"},
-                            {"Parameter"},
-                            number("R\u0302"),
-                            number("ESS, bulk"),
-                            number("ESS, tail"),
-                            number("MCSE of the mean"),
-                            number("MCSE / sd")},
-                   .rows = {}};
-  std::string chains;
-  for (std::size_t i = 0; i < report.cases.size(); ++i)
-    chains += page::chains_part(report.cases[i], page::case_id(i, report.cases[i]), context);
-  for (const CaseReport& result : report.cases) {
-    const std::string difference =
-        result.grid_difference ? significant(*result.grid_difference, 2, pretty) + "\u00a0sd" : "\u2013";
-    cases.rows.push_back(
-        {{text(result.name)},
-         number(fmt::format("{}\u00a0\u00d7\u00a0{}", result.chains, result.draws)),
-         {result.converged ? "yes" : "<strong>no</strong>"},
-         {text(result.sampler)},
-         number(std::to_string(result.divergences)),
-         number(std::isfinite(result.energy_fraction) ? significant(result.energy_fraction, 2, pretty) : "\u2013"),
-         number(difference)});
-    shape.rows.push_back({{text(result.name)},
-                          number(std::isfinite(result.log_evidence)
-                                     ? format_with_error(result.log_evidence, result.log_evidence_error, "", pretty)
-                                     : "\u2013"),
-                          number(significant(result.collinearity, 3, pretty)),
-                          number(significant(result.fisher_condition, 3, pretty))});
-    bool first = true;
-    for (const ParameterReport& parameter : result.parameters) {
-      const auto count = [](double ess) { return std::isfinite(ess) ? fmt::format("{:.0f}", ess) : "not available"; };
-      parameters.rows.push_back(
-          {{first ? text(result.name) : ""},
-           {text(parameter.name)},
-           number(format_value(parameter.rhat, {.exponent = 0, .decimals = 3}, "", pretty)),
-           number(count(parameter.ess_bulk)),
-           number(count(parameter.ess_tail)),
-           number(text(significant(parameter.mcse, 2, pretty) +
-                       (parameter.unit.empty() ? "" : "\u00a0" + parameter.unit))),
-           number(significant(parameter.sd > 0.0 ? parameter.mcse / parameter.sd : NAN, 2, pretty))});
-      first = false;
-    }
-  }
-  return "<section id=\"sampler\">\n<h2>Sampler diagnostics</h2>\n<p>R\u0302 near 1 says that independent chains "
-         "agree; the "
-         "effective sample sizes (ESS) say how many independent draws the chains are worth; MCSE is the sampler's own "
-         "error "
-         "of the mean. The difference to quadrature is the largest in mean or sd, in posterior sd, where a grid is "
-         "feasible.</p>\n" +
-         page::html(parameters) + page::html(cases) + page::html(shape) + chains + "</section>\n";
+Markup findings_section(const std::vector<DataFinding>& findings) {
+  if (findings.empty()) return {};
+  Table table{.columns = {{"Kind"}, {"Where"}, {"What", lengthy}, {"What to do", lengthy}}};
+  for (const DataFinding& one : findings) table.rows.push_back({one.kind, one.place, one.what, one.remedy});
+  return tag::p("What is odd in the data, found before anything was fitted.") + table;
 }
 
-std::string pairs_section(const std::string& id, const char* heading, const char* lead,
-                          const std::vector<std::pair<std::string, std::string>>& entries) {
+Markup notes_section(const std::vector<std::string>& notes) {
+  if (notes.empty()) return {};
+  return tag::p("Numbers in this report depend on them.") + tag::ul(each(notes, tag::li));
+}
+
+Markup pairs_section(const std::vector<std::pair<std::string, std::string>>& entries) {
   if (entries.empty()) return {};
-  Table table{.caption = {}, .head = {}, .rows = {}};
-  for (const auto& [name, value] : entries) table.rows.push_back({{text(name)}, {text(value), "long"}});
-  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}{}</section>\n", id, heading, lead, page::html(table));
+  Table table{.columns = {{""}, {"", lengthy}}};
+  for (const auto& [name, value] : entries) table.rows.push_back({name, value});
+  return table;
 }
 
-std::string notes_section(const CalibrationReport& report) {
-  if (report.notes.empty()) return {};
-  std::string out =
-      "<section id=\"notes\">\n<h2>Choices that the source does not give</h2>\n<p>Numbers in this report depend on "
-      "them.</p>\n<ul>\n";
-  for (const std::string& note : report.notes) out += "<li>" + text(note) + "</li>\n";
-  return out + "</ul>\n</section>\n";
+struct Section {
+  std::string id, heading;
+  Markup content;
+};
+
+std::vector<Section> sections_of(const CalibrationReport& report, const Context& context) {
+  std::vector<Section> sections;
+  for (std::size_t i = 0; i < report.cases.size(); ++i) {
+    const std::string id = case_id(i, report.cases[i]);
+    sections.push_back({id, "Case " + report.cases[i].name, case_section(report.cases[i], id, context)});
+  }
+  for (const Section& section : {
+           Section{"error-scan", "If the measurement were better or worse", error_scan_section(report)},
+           Section{"data", "Runs and observations", findings_section(report.findings)},
+           Section{"design", "Where the runs lie", design_section(report.designs, context)},
+           Section{"surrogates", "Surrogate validation", surrogate_section(report.surrogates, context)},
+           Section{"sampler", "Sampler diagnostics", sampler_section(report.cases, context)},
+           Section{"glossary", "Words", glossary_section()},
+           Section{"thresholds", "Thresholds behind the verdicts", pairs_section(report.thresholds)},
+           Section{"notes", "Choices that the source does not give", notes_section(report.notes)},
+           Section{"provenance", "Provenance", pairs_section(report.provenance)},
+       })
+    if (!section.content.empty()) sections.push_back(section);
+  return sections;
+}
+
+Markup page_of(const CalibrationReport& report, const Context& context) {
+  const std::vector<Section> sections = sections_of(report, context);
+  return Raw("<!DOCTYPE html>\n") +
+         tag::html.with("lang", "en")(
+             tag::head(tag::meta.with("charset", "utf-8")(),
+                       tag::meta.with("name", "viewport").with("content", "width=device-width, initial-scale=1")(),
+                       tag::meta.with("name", "generator").with("content", "demcal " + program_version(report))(),
+                       tag::title("Calibration report: ", report.study_name), tag::style(Raw(report_style))),
+             tag::body(
+                 warnings_box(report), title_block(report), glance(report.cases),
+                 tag::ul.is("note").unless_empty(each(report.cautions, tag::li)),
+                 tag::nav.with("aria-label", "Contents")(
+                     tag::h3("Contents"),
+                     tag::ol(each(sections, [](const Section& one) { return tag::li(link(one.id, one.heading)); }))),
+                 tag::main(each(sections, [](const Section& one) {
+                   return tag::section.with("id", one.id)(tag::h2(one.heading), one.content);
+                 }))));
 }
 
 }  // namespace
+}  // namespace page
 
 void write_report_html(const CalibrationReport& report, const std::string& folder, const HtmlOptions& options) {
   namespace fs = std::filesystem;
   const page::Context context{.options = options, .figures = (fs::path(folder) / "figures").string()};
-  std::vector<std::pair<std::string, std::string>> sections;
-  std::string body;
-  for (std::size_t i = 0; i < report.cases.size(); ++i) {
-    sections.emplace_back(page::case_id(i, report.cases[i]), "Case " + report.cases[i].name);
-    body += page::case_section(report.cases[i], i, context);
-  }
-  const auto add = [&](const char* id, const char* heading, const std::string& section) {
-    if (section.empty()) return;
-    sections.emplace_back(id, heading);
-    body += section;
-  };
-  add("error-scan", "If the measurement were better or worse", error_scan_section(report));
-  add("data", "Runs and observations", findings_section(report));
-  add("design", "Where the runs lie", page::design_section(report.designs, context));
-  add("surrogates", "Surrogate validation", page::surrogate_section(report.surrogates, context));
-  add("sampler", "Sampler diagnostics", sampler_section(report, context));
-  add("glossary", "Words", page::glossary_section());
-  add("thresholds", "Thresholds behind the verdicts",
-      pairs_section("thresholds", "Thresholds behind the verdicts", "", report.thresholds));
-  add("notes", "Choices that the source does not give", notes_section(report));
-  add("provenance", "Provenance", pairs_section("provenance", "Provenance", "", report.provenance));
-
-  const std::string name = text(report.study_name);
-  std::string head = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"generator\" content=\"demcal {}\">\n<title>Calibration report: "
-      "{}</title>\n<style>{}</style>\n</head>\n"
-      "<body>\n",
-      text(program_version(report)), name, report_style);
-  head += warnings_box(report);
-  head += fmt::format("<header>\n<h1>Calibration report: {}</h1>\n", name);
-  if (!report.study_description.empty()) head += "<p class=\"lead\">" + text(report.study_description) + "</p>\n";
-  if (!report.study_file.empty()) head += "<p class=\"note\">Study: " + text(report.study_file) + "</p>\n";
-  if (const std::string changes = changes_of(report); !changes.empty())
-    head += "<p class=\"note\">Set on the command line: " + text(changes) + "</p>\n";
-  head += "</header>\n" + glance(report) + cautions_list(report) + contents(sections);
-  data::write_atomically((fs::path(folder) / "report.html").string(),
-                         head + "<main>\n" + body + "</main>\n</body>\n</html>\n");
+  data::write_atomically((fs::path(folder) / "report.html").string(), page::page_of(report, context).html());
 }
 
 }  // namespace uq

@@ -1,6 +1,4 @@
 // The words of the page, for a reader who meets them for the first time.
-#include <fmt/format.h>
-
 #include <array>
 #include <utility>
 
@@ -8,7 +6,7 @@
 
 namespace uq::page {
 
-std::string glossary_section() {
+Markup glossary_section() {
   static constexpr std::array<std::pair<const char*, const char*>, 15> words{{
       {"identified",
        "The data limit the parameter on both sides, to a small part of what was thought possible before."},
@@ -36,9 +34,8 @@ std::string glossary_section() {
        "than the best of all. It does not depend on the prior."},
       {"surrogate's error", "What is not known of the simulation between its runs. It enters every likelihood."},
   }};
-  std::string out = "<section id=\"glossary\">\n<h2>Words</h2>\n<dl class=\"glossary\">\n";
-  for (const auto& [word, meaning] : words) out += fmt::format("<dt>{}</dt><dd>{}</dd>\n", word, meaning);
-  return out + "</dl>\n</section>\n";
+  return tag::dl.is("glossary")(
+      each(words, [](const auto& word) { return tag::dt(word.first) + tag::dd(word.second); }));
 }
 
 }  // namespace uq::page

@@ -1,89 +1,96 @@
 #include "uq/report/page.hpp"
 
-#include <fmt/format.h>
+#include <algorithm>
 
 namespace uq::page {
 
 namespace {
 
-/// Ready HTML without its tags.
-std::string without_tags(const std::string& html) {
-  std::string plain;
-  bool inside = false;
-  for (const char c : html) {
-    if (c == '<') inside = true;
-    if (!inside) plain += c;
-    if (c == '>') inside = false;
+const char* class_of(CellKind kind) {
+  switch (kind) {
+    case number:
+      return "number";
+    case nowrap:
+      return "nowrap";
+    case lengthy:
+      return "long";
+    case plain:
+      break;
   }
-  return plain;
+  return "";
+}
+
+Markup badge(const std::string& colour, const char* sign, const char* word) {
+  return tag::span.is("badge " + colour)(sign, " ", word);
 }
 
 }  // namespace
 
-std::string text(std::string_view raw) {
-  std::string safe = escape_html(raw);
-  for (std::size_t at = safe.find("+-"); at != std::string::npos; at = safe.find("+-", at))
-    safe.replace(at, 2, "\u00b1");
-  return safe;
-}
-
-Cell number(std::string html) { return {std::move(html), "number"}; }
-
-std::string html(const Table& table) {
-  const auto cell = [](const char* tag, const char* scope, const Cell& content) {
-    const std::string kind = *content.kind ? fmt::format(" class=\"{}\"", content.kind) : "";
-    return fmt::format("<{0}{1}{2}>{3}</{0}>", tag, scope, kind, content.html);
-  };
-  std::string out = "<div class=\"wide\"><table>";
-  if (!table.caption.empty()) out += "<caption>" + table.caption + "</caption>";
-  if (!table.head.empty()) {
-    out += "<thead><tr>";
-    for (const Cell& content : table.head) out += cell("th", " scope=\"col\"", content);
-    out += "</tr></thead>";
-  }
-  out += "<tbody>\n";
-  for (const auto& row : table.rows) {
-    out += "<tr>";
+Table::operator Markup() const {
+  const Column none;
+  const auto column_of = [&](std::size_t i) -> const Column& { return i < columns.size() ? columns[i] : none; };
+  const bool headed = std::any_of(columns.begin(), columns.end(), [](const Column& one) { return !one.name.empty(); });
+  const Markup names = each(columns, [](const Column& one) {
+    return tag::th.with("scope", "col").is(class_of(one.kind == number ? number : plain))(one.name);
+  });
+  const Markup body = each(rows, [&](const std::vector<Cell>& row) {
+    Markup cells;
     for (std::size_t i = 0; i < row.size(); ++i) {
       // On a narrow screen each row is a card, and its cells say what they are (style.hpp).
-      const std::string label = i < table.head.size() ? without_tags(table.head[i].html) : "";
-      out += i == 0          ? cell("th", " scope=\"row\"", row[i])
-             : label.empty() ? cell("td", "", row[i])
-                             : cell("td", fmt::format(" data-label=\"{}\"", label).c_str(), row[i]);
+      const Element cell = i == 0 ? tag::th.with("scope", "row") : tag::td.with("data-label", column_of(i).name);
+      cells += cell.is(class_of(row[i].kind.value_or(column_of(i).kind)))(row[i].content);
     }
-    out += "</tr>\n";
-  }
-  return out + "</tbody></table></div>\n";
+    return tag::tr(cells);
+  });
+  return tag::div.is("wide")(
+      tag::table(tag::caption.unless_empty(caption), headed ? tag::thead(tag::tr(names)) : Markup(), tag::tbody(body)));
 }
 
-std::string figure(const Figure& drawing, const std::string& caption, const Context& context) {
-  return fmt::format(
-      "<figure>\n{0}\n<figcaption>{1} <span class=\"files\">Data and script: <a href=\"figures/{2}.dat\">{2}.dat</a>, "
-      "<a href=\"figures/{2}.gp\">.gp</a></span></figcaption>\n</figure>\n",
-      draw(drawing, context.figures, context.options.gnuplot), caption, drawing.stem);
+Markup behind_figure(const Table& table, const Context& context) {
+  if (table.rows.size() <= context.options.rows_shown_openly) return table;
+  return tag::details(tag::summary("The numbers behind the figure"), table);
 }
 
-std::string badge(Verdict verdict) {
+Markup figure(const Figure& drawing, const Markup& caption, const Context& context) {
+  const auto file = [&](const char* ending, const std::string& words) {
+    return tag::a.with("href", "figures/" + drawing.stem + ending)(words);
+  };
+  return tag::figure(Raw(draw(drawing, context.figures, context.options.gnuplot)),
+                     tag::figcaption(caption, " ",
+                                     tag::span.is("files")("Data and script: ", file(".dat", drawing.stem + ".dat"),
+                                                           ", ", file(".gp", ".gp"))));
+}
+
+Markup side_by_side(const Markup& figures) { return tag::div.is("pair").unless_empty(figures); }
+
+Markup badge(Verdict verdict) {
+  const char* const word = to_text(verdict);
   switch (verdict) {
     case Verdict::identified:
-      return "<span class=\"badge good\">\u2713 identified</span>";
+      return badge("good", "\u2713", word);
     case Verdict::weakly_identified:
-      return "<span class=\"badge fair\">\u223c weakly identified</span>";
+      return badge("fair", "\u223c", word);
     case Verdict::several_values:
-      return "<span class=\"badge fair\">\u2016 several values</span>";
+      return badge("fair", "\u2016", word);
     case Verdict::not_identified:
-      return "<span class=\"badge poor\">\u2717 not identified</span>";
+      return badge("poor", "\u2717", word);
     case Verdict::does_not_fit:
       break;
   }
-  return "<span class=\"badge fail\">! model does not fit</span>";
+  return badge("fail", "!", word);
 }
 
-std::string badge(SurrogateWord word) {
+Markup badge(SurrogateWord word) {
   const bool good = word == SurrogateWord::good, caution = word == SurrogateWord::caution;
-  return fmt::format("<span class=\"badge {}\">{} {}</span>", good ? "good" : (caution ? "fair" : "fail"),
-                     good ? "\u2713" : (caution ? "\u223c" : "!"), to_text(word));
+  return badge(good ? "good" : (caution ? "fair" : "fail"), good ? "\u2713" : (caution ? "\u223c" : "!"),
+               to_text(word));
 }
+
+Markup entry(const char* heading, const std::string& words) {
+  return words.empty() ? Markup() : tag::dt(heading) + tag::dd(words);
+}
+
+Markup link(const std::string& id, const std::string& words) { return tag::a.with("href", "#" + id)(words); }
 
 std::string case_id(std::size_t index, const CaseReport& result) {
   return fmt::format("case-{}-{}", index + 1, slug(result.name));

@@ -1,12 +1,12 @@
 #pragma once
-// Pieces of report.html, for html*.cpp alone. Every piece of text that a file or a user
-// supplied goes through text().
+// Pieces of report.html, for html*.cpp alone. A part or section of which nothing is known is empty markup.
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "uq/findings/wording.hpp"
+#include "uq/report/element.hpp"
 #include "uq/report/html.hpp"
+#include "uq/report/numbers.hpp"
 
 namespace uq::page {
 
@@ -16,45 +16,62 @@ struct Context {
   std::string figures;  ///< folder
 };
 
-/// Words from outside made safe, with a plus-minus sign where they write "+-".
-std::string text(std::string_view raw);
+/// How a cell is set: a number to the right, lengthy words broken anywhere.
+enum class CellKind { plain, number, nowrap, lengthy };
+using enum CellKind;
 
-/// A table's cell: ready HTML and its class ("number", "nowrap", "long" or "").
-struct Cell {
-  std::string html;
-  const char* kind = "";
+struct Column {
+  std::string name;
+  CellKind kind = plain;  ///< of its cells; the heading of numbers is set like them
 };
-Cell number(std::string html);
+
+struct Cell {
+  template <std::convertible_to<Markup> Content>
+  Cell(const Content& shown, std::optional<CellKind> other_kind = {}) : content(shown), kind(other_kind) {}
+  Markup content;
+  std::optional<CellKind> kind;  ///< where it is not its column's
+};
 
 struct Table {
-  std::string caption;  ///< ready HTML; may be empty
-  std::vector<Cell> head;
+  std::string caption;
+  std::vector<Column> columns;          ///< without names they have no heading
   std::vector<std::vector<Cell>> rows;  ///< the first cell of a row is its heading
+  operator Markup() const;
 };
-std::string html(const Table& table);
+/// A long table of numbers that a figure shows, folded away.
+Markup behind_figure(const Table& table, const Context& context);
 
-/// Draws the figure and sets it with its caption (ready HTML).
-std::string figure(const Figure& figure, const std::string& caption, const Context& context);
+/// Draws the figure and sets it with its caption.
+Markup figure(const Figure& figure, const Markup& caption, const Context& context);
+/// Figures side by side.
+Markup side_by_side(const Markup& figures);
 
-std::string badge(Verdict verdict);
-std::string badge(SurrogateWord word);
+Markup badge(Verdict verdict);
+Markup badge(SurrogateWord word);
+/// "Finding" and what it is, as an entry of a list of definitions; nothing without words.
+Markup entry(const char* heading, const std::string& words);
+/// A link to a place of the page.
+Markup link(const std::string& id, const std::string& words);
 
 /// A case's place in the page: "case-2-carrier". The index keeps two names with one slug apart.
 std::string case_id(std::size_t index, const CaseReport& result);
 
-/// Of a case: its parameters' joint posterior and what is traded; `id` as in case_id.
-std::string joint_part(const CaseReport& result, const std::string& id, const Context& context);
-/// Runs of the simulation at points of the posterior beside the surrogate; nothing where there are none.
-std::string verification_part(const CaseReport& result, const std::string& id, const Context& context);
-/// What to measure next; nothing where no plan was made.
-std::string plan_part(const CaseReport& result, const std::string& id, const Context& context);
-/// Traces and ranks of its chains, folded away.
-std::string chains_part(const CaseReport& result, const std::string& id, const Context& context);
-std::string case_section(const CaseReport& result, std::size_t index, const Context& context);
+// Of a case, `id` as in case_id.
+/// What is measured beside the model: fit, predictions, discrepancy.
+Markup data_part(const CaseReport& result, const std::string& id, const Context& context);
+/// Its parameters' joint posterior and what is traded.
+Markup joint_part(const CaseReport& result, const std::string& id, const Context& context);
+/// Runs of the simulation at points of the posterior beside the surrogate.
+Markup verification_part(const CaseReport& result, const std::string& id, const Context& context);
+/// What to measure next.
+Markup plan_part(const CaseReport& result, const std::string& id, const Context& context);
+Markup case_section(const CaseReport& result, const std::string& id, const Context& context);
+
 /// The terms of the page.
-std::string glossary_section();
+Markup glossary_section();
 /// Where the runs lie; nothing where no material varies two inputs.
-std::string design_section(const std::vector<DesignReport>& designs, const Context& context);
-std::string surrogate_section(const std::vector<SurrogateReport>& surrogates, const Context& context);
+Markup design_section(const std::vector<DesignReport>& designs, const Context& context);
+Markup surrogate_section(const std::vector<SurrogateReport>& surrogates, const Context& context);
+Markup sampler_section(const std::vector<CaseReport>& cases, const Context& context);
 
 }  // namespace uq::page
