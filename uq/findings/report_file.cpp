@@ -22,7 +22,13 @@ using Texts = std::vector<std::pair<std::string, std::string>>;
 // ---- writing
 
 // What a value becomes. The overloads call each other, so all are declared first.
-Json save(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+// JSON has no infinities.
+constexpr const char *infinite = "infinity", *minus_infinite = "-infinity";
+
+Json save(double value) {
+  if (std::isinf(value)) return value > 0.0 ? infinite : minus_infinite;
+  return std::isnan(value) ? Json(nullptr) : Json(value);
+}
 Json save(int value) { return value; }
 Json save(bool value) { return value; }
 Json save(const std::string& value) { return value; }
@@ -177,8 +183,14 @@ requires std::is_aggregate_v<T>
 void load(const Json& json, const std::string& where, T& value);
 
 void load(const Json& json, const std::string& where, double& value) {
-  if (!json.is_number() && !json.is_null()) throw Misfit{where, "is not a number"};
-  value = json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+  if (json == infinite || json == minus_infinite)
+    value = (json == infinite ? 1.0 : -1.0) * std::numeric_limits<double>::infinity();
+  else if (json.is_null())
+    value = std::numeric_limits<double>::quiet_NaN();
+  else if (json.is_number())
+    value = json.get<double>();
+  else
+    throw Misfit{where, "is not a number"};
 }
 
 void load(const Json& json, const std::string& where, int& value) {
