@@ -23,11 +23,11 @@ struct LogColumn {
 };
 
 struct LogColumns {
-  LogColumn time{
-      .name = "time",
-      .unit = "",
-      .usual = "s",
-      .also = {"timestamp", "time stamp", "datetime", "date time", "elapsed time", "zeit", "zeitstempel", "t"}};
+  LogColumn time{.name = "time",
+                 .unit = "",
+                 .usual = "s",
+                 .also = {"timestamp", "x_value", "time stamp", "datetime", "date time", "elapsed time", "zeit",
+                          "zeitstempel", "t"}};
   /// No usual unit: it must be said somewhere.
   LogColumn torque{.name = "torque", .unit = "", .usual = "", .also = {"drehmoment", "moment", "m"}};
   LogColumn speed{.name = "rpm", .unit = "", .usual = "rpm", .also = {"speed", "rotational speed", "drehzahl", "n"}};
