@@ -267,16 +267,23 @@ data::ExitStatus observe(Options options) {
     json["rows"].push_back({{options.control, log.speed_unit.from_si(plateau.speed)},
                             {options.output, mean},
                             {options.output + "_se", error},
-                            {"unit", unit.symbol}});
+                            {"unit", unit.symbol},
+                            {"from_s", log.time[plateau.used_from]},
+                            {"left_out_s", log.time[plateau.used_from] - log.time[plateau.first]}});
   }
   for (std::string& warning : warnings_of(log, plateaus)) warnings.push_back(std::move(warning));
-  if (const std::string note = left_over(log, plateaus, options.plateaus, ramps); !note.empty())
-    say(options.common, "note: " + note);
+  std::vector<std::string> notes;
+  for (const data::Plateau& plateau : plateaus)
+    for (std::string& note : data::plateau_notes(log, plateau)) notes.push_back(std::move(note));
+  if (std::string note = left_over(log, plateaus, options.plateaus, ramps); !note.empty())
+    notes.push_back(std::move(note));
+  for (const std::string& note : notes) say(options.common, "note: " + note);
   for (const std::string& warning : warnings) say(options.common, "warning: " + warning);
   answer(options.common,
          fmt::format("{} observation{}: {} (picture: {})", plateaus.size(), plateaus.size() == 1 ? "" : "s",
                      out.string(), observe_pictures(out).front().string()));
   json["warnings"] = warnings;
+  json["notes"] = notes;
   print_json(options.common, json);
   return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
 }
@@ -352,6 +359,9 @@ Action add_observe(CLI::App& program) {
           "--tolerance", [options](double percent) { options->plateaus.tolerance = percent / 100.0; },
           "percent by which a constant speed may vary (default: 2)")
       ->check(number_in(0.01, 50.0, "a number from 0.01 to 50"));
+  command->add_flag_callback(
+      "--without-spikes", [options] { options->plateaus.spikes_count = false; },
+      "samples far from those around them are no torque: they hold the median of these instead");
   command->add_flag("--quiet", options->common.quiet, "no summary");
   command->add_flag("--json", options->common.json, "the result as JSON on stdout, and nothing else there");
   return [options] { return observe(*options); };

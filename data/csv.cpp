@@ -14,6 +14,7 @@
 #include "data/csv_records.hpp"
 #include "data/edit_distance.hpp"
 #include "data/error.hpp"
+#include "data/lvm.hpp"
 #include "data/number_text.hpp"
 #include "data/text_encoding.hpp"
 #include "data/time_text.hpp"
@@ -368,6 +369,13 @@ Csv parse_csv(const std::string& bytes, const std::string& file) {
   DecodedText decoded = decode_text(bytes, file);
   if (!decoded.took.empty()) table.csv.took.push_back(decoded.took);
   const std::string text = without_zero_tail(std::move(decoded.text), table);
+  if (is_lvm(text)) {
+    Csv read = read_lvm(text, file);
+    read.took.insert(read.took.begin(), table.csv.took.begin(), table.csv.took.end());
+    table.csv = std::move(read);
+    read_columns(table);
+    return std::move(table.csv);
+  }
   table.dialect = find_dialect(text);
   if (const std::string name = separator_name(table.dialect.separator); !name.empty())
     table.csv.took.push_back("separated by " + name);

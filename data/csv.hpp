@@ -9,6 +9,7 @@
 //   missing    empty, nan, N/A, -, #N/A, NULL, 1.#QNAN, ****
 //   heading    behind any preamble, or in a comment; a unit in it, in a row below it, or in a line "# units: a [m]"
 //   comments   lines that begin with '#', '%' or "//"
+//   LabVIEW    measurement files (.lvm) by their headers (lvm.hpp)
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,6 +32,7 @@ struct Csv {
   std::vector<std::string> units;     ///< "" where none is given
   int header_line = 0;
   std::vector<CsvRow> rows;
+  std::string no_time;            ///< why there is no column of times, where the file's form has one
   std::vector<std::string> took;  ///< how the table was read, where it is not plain CSV: "separated by semicolons"
 
   /// By name, with or without its unit.

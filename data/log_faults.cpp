@@ -84,6 +84,24 @@ std::size_t mark_drop_outs(const TorqueLog& log, std::vector<bool>& out) {
   return found;
 }
 
+/// "100 rpm at 12.5 s".
+std::string place_of(const TorqueLog& log, const Plateau& plateau) {
+  return fmt::format("{:.4g} {} at {:.4g} s", log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol,
+                     log.time[plateau.first]);
+}
+
+/// "2 spikes, the largest 40 mN m at 17.3 s", of the samples used at `spikes`, each away from what it stands in.
+std::string spikes_in_words(const TorqueLog& log, const Plateau& plateau, const std::vector<std::size_t>& spikes,
+                            double usual) {
+  std::size_t farthest = spikes.front();
+  const auto away = [&](std::size_t i) { return std::abs(log.torque[plateau.used_from + i] - usual); };
+  for (const std::size_t i : spikes)
+    if (away(i) > away(farthest)) farthest = i;
+  return fmt::format("{} spike{} {:.4g} {} at {:.5g} s", spikes.size(), spikes.size() == 1 ? "," : "s, the largest",
+                     log.torque_unit.from_si(log.torque[plateau.used_from + farthest]), log.torque_unit.symbol,
+                     log.time[plateau.used_from + farthest]);
+}
+
 std::vector<double> used_torques(const TorqueLog& log, const Plateau& plateau) {
   const double* const torque = log.torque.data();
   return {torque + plateau.used_from, torque + plateau.first + plateau.count};
@@ -172,9 +190,9 @@ std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau,
 std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau) {
   std::vector<std::string> words;
   const Unit& unit = log.torque_unit;
-  const std::string at = fmt::format("{:.4g} {} at {:.4g} s", log.speed_unit.from_si(plateau.speed),
-                                     log.speed_unit.symbol, log.time[plateau.first]);
-  const std::vector<double> values = used_torques(log, plateau);
+  const std::string at = place_of(log, plateau);
+  std::vector<double> values = used_torques(log, plateau);
+  if (plateau.torque.spikes_out > 0) values = without_spikes(values).series;
   if (values.size() < 20) return words;
   const std::map<double, std::size_t> levels = levels_of(values);
   const auto count = static_cast<double>(values.size());
@@ -200,24 +218,59 @@ std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& pla
           "{:.2g} {} beyond its error",
           at, levels.size(), step / unit.factor, unit.symbol, 0.5 * step / unit.factor, unit.symbol));
   }
-  std::size_t spikes = 0;
-  double sum = 0.0, farthest = spread.median;
-  for (const double value : values) {
-    const bool spike = spread.sd > 0.0 && std::abs(value - spread.median) > 8.0 * spread.sd;
-    if (spike) ++spikes;
-    if (spike && std::abs(value - spread.median) > std::abs(farthest - spread.median)) farthest = value;
-    if (!spike) sum += value;
+  std::vector<std::size_t> spikes;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool spike = spread.sd > 0.0 && std::abs(values[i] - spread.median) > 8.0 * spread.sd;
+    if (spike) spikes.push_back(i);
+    if (!spike) sum += values[i];
   }
-  if (spikes > 0 && static_cast<double>(spikes) < 0.2 * count)
-    words.push_back(
-        fmt::format("{}: {} spikes, the largest {:.4g} {}, count in the mean {:.4g}, which is {:.4g} without them", at,
-                    spikes, unit.from_si(farthest), unit.symbol, unit.from_si(plateau.torque.mean),
-                    unit.from_si(sum / (count - static_cast<double>(spikes)))));
-  if (const double change = drift(values); spikes == 0 && std::abs(change) > 2.0 * plateau.torque.standard_error)
+  if (const auto number = static_cast<double>(spikes.size()); number > 0.0 && number < 0.2 * count) {
+    const bool one = spikes.size() == 1;
+    words.push_back(fmt::format(
+        "{}: {}, count{} in the mean {:.4g}, which is {:.4g} without {}: if {} no torque, leave {} out "
+        "(--without-spikes)",
+        at, spikes_in_words(log, plateau, spikes, spread.median), one ? "s" : "", unit.from_si(plateau.torque.mean),
+        unit.from_si(sum / (count - number)), one ? "it" : "them", one ? "it is" : "they are", one ? "it" : "them"));
+  }
+  if (const double change = drift(values); spikes.empty() && std::abs(change) > 2.0 * plateau.torque.standard_error)
     words.push_back(
         fmt::format("{}: the torque drifts by {:.3g} {} from the beginning of what is used to its end: the error does "
                     "not cover that",
                     at, change / unit.factor, unit.symbol));
+  return words;
+}
+
+std::vector<std::string> plateau_notes(const TorqueLog& log, const Plateau& plateau) {
+  std::vector<std::string> words;
+  const Unit& unit = log.torque_unit;
+  const std::vector<double> values = used_torques(log, plateau);
+  if (plateau.torque.spikes_out > 0) {
+    const std::vector<std::size_t> spikes = without_spikes(values).spikes;
+    double mean = 0.0;
+    for (const double value : values) mean += value / static_cast<double>(values.size());
+    if (!spikes.empty())
+      words.push_back(fmt::format("{}: {}, left out of the mean {:.4g}, which is {:.4g} with {}",
+                                  place_of(log, plateau), spikes_in_words(log, plateau, spikes, median_of(values)),
+                                  unit.from_si(plateau.torque.mean), unit.from_si(mean),
+                                  spikes.size() == 1 ? "it" : "them"));
+  }
+  const std::size_t from = plateau.used_from - plateau.torque.dropped;  // behind the dead time
+  const double hold = log.time[plateau.first + plateau.count - 1] - log.time[plateau.first];
+  const double out = log.time[plateau.used_from] - log.time[from];
+  if (out > long_start_up * hold) {
+    double head = 0.0;
+    for (std::size_t i = from; i < plateau.used_from; ++i)
+      head += log.torque[i] / static_cast<double>(plateau.torque.dropped);
+    const bool differs = std::abs(head - plateau.torque.mean) > 3.0 * plateau.torque.standard_error;
+    words.push_back(
+        fmt::format("{}: the first {:.3g} s of {:.3g} s are left out as start-up, as {}; if it is none, cut out "
+                    "what is right with --window",
+                    place_of(log, plateau), out, hold,
+                    differs ? fmt::format("the torque is {:.4g} {} there and {:.4g} after", unit.from_si(head),
+                                          unit.symbol, unit.from_si(plateau.torque.mean))
+                            : "the torque scatters more there"));
+  }
   return words;
 }
 

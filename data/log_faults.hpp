@@ -21,4 +21,8 @@ std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau,
 /// drift.
 std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau);
 
+/// What was left out of a plateau, in words: spikes, and a start-up longer than `long_start_up` of it.
+inline constexpr double long_start_up = 0.2;
+std::vector<std::string> plateau_notes(const TorqueLog& log, const Plateau& plateau);
+
 }  // namespace data

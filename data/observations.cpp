@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "data/copies.hpp"
 #include "data/csv.hpp"
@@ -21,7 +23,8 @@ double measured(const Csv& csv, const CsvRow& row, std::size_t column) {
   return value;
 }
 
-/// Takes copies out of the points and notes them.
+}  // namespace
+
 void count_copies_once(ObservationSet& set, const Study& study) {
   std::vector<RepeatableRow> rows;
   for (const Observation& point : set.points) {
@@ -44,17 +47,16 @@ void count_copies_once(ObservationSet& set, const Study& study) {
   set.points = std::move(kept);
 }
 
-}  // namespace
-
 ObservationSet read_observations(const std::string& path, const Study& study,
-                                 const std::map<std::string, double>& settings) {
+                                 const std::map<std::string, double>& settings, MissingErrors missing) {
   const Csv csv = read_csv(path);
   ObservationSet set;
   set.file = path;
   set.header = csv.comments;
 
   std::vector<std::optional<std::size_t>> control_columns;  // none: a setting of the whole set
-  std::vector<std::size_t> value_columns, error_columns;
+  std::vector<std::size_t> value_columns;
+  std::vector<std::optional<std::size_t>> error_columns;  // none: MissingErrors::nan
   for (const Control& control : study.controls) {
     const bool set_once = settings.contains(control.name);
     if (set_once && csv.find(control.name))
@@ -68,7 +70,8 @@ ObservationSet read_observations(const std::string& path, const Study& study,
     if (!csv.find(name) && !csv.find(name + "_se")) continue;
     set.outputs.push_back(i);
     value_columns.push_back(csv.column(name));
-    error_columns.push_back(csv.column(name + "_se"));
+    const bool without = missing == MissingErrors::nan && !csv.find(name + "_se");
+    error_columns.push_back(without ? std::nullopt : std::optional(csv.column(name + "_se")));
   }
   if (set.outputs.empty() && !study.outputs.empty()) csv.column(study.outputs.front().name);  // says what is missing
   if (csv.rows.empty()) {
@@ -81,7 +84,7 @@ ObservationSet read_observations(const std::string& path, const Study& study,
                                                : study.controls[i].unit);
   for (std::size_t i = 0; i < value_columns.size(); ++i) {
     value_units.push_back(csv.unit(value_columns[i], study.outputs[set.outputs[i]].unit));
-    error_units.push_back(csv.unit(error_columns[i], value_units.back()));
+    error_units.push_back(error_columns[i] ? csv.unit(*error_columns[i], value_units.back()) : value_units.back());
   }
 
   for (const CsvRow& row : csv.rows) {
@@ -100,18 +103,42 @@ ObservationSet read_observations(const std::string& path, const Study& study,
     }
     for (std::size_t i = 0; i < value_columns.size(); ++i) {
       point.values.push_back(value_units[i].to_si(measured(csv, row, value_columns[i])));
-      const double error = measured(csv, row, error_columns[i]);
+      if (!error_columns[i]) {
+        point.standard_errors.push_back(std::numeric_limits<double>::quiet_NaN());
+        continue;
+      }
+      const double error = measured(csv, row, *error_columns[i]);
       if (error <= 0.0) {
         throw InputError(ExitStatus::bad_data,
-                         Problem{csv.place(row, error_columns[i]), fmt::format("{} is not above 0", error),
+                         Problem{csv.place(row, *error_columns[i]), fmt::format("{} is not above 0", error),
                                  "give the standard error of the measured mean"});
       }
       point.standard_errors.push_back(error_units[i].factor * error);  // a difference: no offset
     }
     set.points.push_back(std::move(point));
   }
-  count_copies_once(set, study);
+  if (std::all_of(error_columns.begin(), error_columns.end(), [](const auto& one) { return one.has_value(); }))
+    count_copies_once(set, study);
   return set;
+}
+
+const Nuisance* noise_instead(const Study& study, const ObservationSet& set, std::size_t output) {
+  const Nuisance* instead = nullptr;
+  const auto reads = [&](const std::vector<std::string>& observe) {
+    return std::find(observe.begin(), observe.end(), set.name) != observe.end();
+  };
+  const auto stands_in = [&](const CalibrationCase& item) {
+    const auto noise = std::find_if(item.nuisances.begin(), item.nuisances.end(), [&](const Nuisance& one) {
+      return one.kind == NuisanceKind::noise_sd && one.output.value_or(output) == output;
+    });
+    if (noise != item.nuisances.end() && instead == nullptr) instead = &*noise;
+    return noise != item.nuisances.end();
+  };
+  for (const CalibrationCase& item : study.cases)
+    if (reads(item.observe) && !stands_in(item)) return nullptr;
+  for (const Prediction& wanted : study.predictions)
+    if (reads(wanted.observe) && !stands_in(study.cases.at(wanted.case_index))) return nullptr;
+  return instead;
 }
 
 }  // namespace data

@@ -8,10 +8,21 @@
 
 namespace data {
 
+/// Whether a file may lack the column OUTPUT_se of an output: its standard errors are NaN then, and copies are left in.
+enum class MissingErrors { refused, nan };
+
 /// Reads the points of `path`; `settings` (SI) gives the controls that it has no column of. Name, material and place
 /// are the caller's. Throws InputError: 66 missing; 65 missing column, no rows, text or nothing for a number, a
 /// standard error that is not above 0.
 ObservationSet read_observations(const std::string& path, const Study& study,
-                                 const std::map<std::string, double>& settings = {});
+                                 const std::map<std::string, double>& settings = {},
+                                 MissingErrors missing = MissingErrors::refused);
+
+/// Takes rows that copy each other out of the points and notes them.
+void count_copies_once(ObservationSet& set, const Study& study);
+
+/// The noise that stands in the place of an output's standard errors (NuisanceKind::noise_sd), where all that reads the
+/// set has one, cases and predictions; else nullptr.
+const Nuisance* noise_instead(const Study& study, const ObservationSet& set, std::size_t output);
 
 }  // namespace data

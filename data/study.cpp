@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -82,18 +83,21 @@ std::string observed_material(const Section& section, const Study& study) {
   return section.choice("material", names);
 }
 
-/// Reads each observation file; what is wrong with the files is returned, with the exit status of the first.
-struct FileProblems {
+/// What is wrong with the observation files, with the exit status of the first problem; and each set's settings.
+struct ObservationFiles {
   ExitStatus status = ExitStatus::done;
   std::vector<Problem> problems;
+  std::vector<std::map<std::string, double>> settings;
+
+  void add(ExitStatus of_these, const std::vector<Problem>& these) {
+    if (problems.empty()) status = of_these;
+    problems.insert(problems.end(), these.begin(), these.end());
+  }
 };
 
-FileProblems read_observation_sets(const Section& root, Study& study) {
-  FileProblems found;
-  const auto add = [&](ExitStatus status, const std::vector<Problem>& problems) {
-    if (found.problems.empty()) found.status = status;
-    found.problems.insert(found.problems.end(), problems.begin(), problems.end());
-  };
+/// Reads each observation file; whether one may lack its standard errors is known with the cases alone.
+ObservationFiles read_observation_sets(const Section& root, Study& study) {
+  ObservationFiles found;
   for (const Section& section : root.array("observe")) {
     const std::string name = section.text("name");
     check_file_name(section, name);
@@ -108,14 +112,14 @@ FileProblems read_observation_sets(const Section& root, Study& study) {
       section.problem("file", "is empty", "name the CSV with the measured points");
     std::error_code unseen;
     if (!file.empty() && !fs::exists(set.file, unseen)) {
-      add(ExitStatus::missing_input,
-          {{section.place("file"), fmt::format("there is no file '{}'", shown_path(set.file)),
-            "paths start at the study's folder"}});
+      found.add(ExitStatus::missing_input,
+                {{section.place("file"), fmt::format("there is no file '{}'", shown_path(set.file)),
+                  "paths start at the study's folder"}});
     } else if (!file.empty()) {
       try {
-        set = read_observations(set.file, study, settings);
+        set = read_observations(set.file, study, settings, MissingErrors::nan);
       } catch (const InputError& error) {
-        add(error.status, error.problems);
+        found.add(error.status, error.problems);
       }
     }
     set.name = name;
@@ -123,8 +127,41 @@ FileProblems read_observation_sets(const Section& root, Study& study) {
     set.place = section.place();
     read_measurement(root, section, study, set);
     study.observations.push_back(std::move(set));
+    found.settings.push_back(settings);
   }
   return found;
+}
+
+/// The middle of a noise's prior: what stands for an error that is unknown wherever one number is shown.
+double middle_of(const Prior& prior) {
+  if (prior.kind == PriorKind::normal || prior.kind == PriorKind::truncated_normal ||
+      prior.kind == PriorKind::log_normal)
+    return prior.mean > 0.0 ? prior.mean : prior.mean + prior.sd;
+  return 0.5 * (prior.low + prior.high);
+}
+
+/// Standard errors that a file lacks: the middle of the noise that stands in their place, or the file's problem.
+void replace_missing_errors(Study& study, ObservationFiles& files) {
+  for (std::size_t index = 0; index < study.observations.size(); ++index) {
+    ObservationSet& set = study.observations[index];
+    bool replaced = false;
+    for (std::size_t k = 0; !set.points.empty() && k < set.outputs.size(); ++k) {
+      if (!std::isnan(set.points.front().standard_errors[k])) continue;
+      const Nuisance* noise = noise_instead(study, set, set.outputs[k]);
+      if (noise == nullptr) {
+        try {
+          read_observations(set.file, study, files.settings[index]);
+        } catch (const InputError& error) {
+          files.add(error.status, error.problems);
+        }
+        replaced = false;
+        break;
+      }
+      for (Observation& point : set.points) point.standard_errors[k] = middle_of(noise->parameter.prior);
+      replaced = true;
+    }
+    if (replaced) count_copies_once(set, study);
+  }
 }
 
 }  // namespace
@@ -183,9 +220,10 @@ Study read_study(const StudyFile& file) {
   read_materials(root, study);
   read_training(root, study);
   read_rig_scale(root, study);
-  const FileProblems files = read_observation_sets(root, study);
+  ObservationFiles files = read_observation_sets(root, study);
   read_cases(root, study);
   read_predictions(root, study);
+  replace_missing_errors(study, files);
   for (const Section& section : root.array("calibrate")) check_file_name(section, section.text("name"));
 
   if (!files.problems.empty()) {

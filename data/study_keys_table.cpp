@@ -368,7 +368,7 @@ const std::vector<StudyKey>& study_keys() {
        "themselves",
        "\"unknown\""},
       {"calibrate.noise.absolute", "true or false", "", "", "false",
-       "true: the prior is of the standard error itself, not of a factor", "true"},
+       "true: the prior is of the standard error itself, not of a factor; the files need no OUTPUT_se then", "true"},
       {"calibrate.noise.output", "choice", "", "NAME7", "", "the output that it acts on", "\"torque\""},
       {"calibrate.discrepancy", "table or true or false", "", "", "",
        "true, or a table: a smooth error of the model over the controls is estimated, too", "true"},

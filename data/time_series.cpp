@@ -8,6 +8,15 @@
 // errors, or, for a start-up whose mean happens to agree, when their variance is that of another process (over four
 // times the rest's); otherwise everything is kept.
 //
+// Spikes. One sample S standard deviations away would have the batches before it dropped, as long as they are fewer
+// than S^2 / 3 samples, and hide a true start-up behind the variance that it adds. So the start is chosen in the series
+// without its spikes, by Hampel's rule (F. R. Hampel, J. Am. Stat. Assoc. 69 (1974) 383; as a filter L. Davies,
+// U. Gather, ibid. 88 (1993) 782): with m_i the median of the 2 h + 1 samples around i, x_i is a spike and
+// replaced by m_i where
+//   |x_i - m_i| > 8 max(s_i, s),  s_i = 1.4826 median |x - m_i| of these samples,  s = 1.4826 median_i |x_i - m_i|
+// h is 10 samples, in a long series 1/200 of it and at most 100: a spike has up to h samples, a start-up more. Spikes
+// that a series begins with are its start-up. In a coarse logger's series, where s is 0, the step takes its place.
+//
 // Error. var(mean) = sd^2 tau / n with tau = 1 + 2 sum_{t=1..M} rho(t), rho the autocorrelation function.
 // A. Sokal, "Monte Carlo methods in statistical mechanics" (1996), section 3: M is the smallest with M >= c tau_int(M),
 // in his convention tau_int = tau / 2. U. Wolff, Comput. Phys. Commun. 156 (2004) 143, eq. (49): subtracting the
@@ -17,6 +26,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -25,6 +35,8 @@ namespace {
 
 constexpr std::size_t batch = 5;
 constexpr double start_up_significance = 3.0;
+constexpr double spike_distance = 8.0;  // robust standard deviations
+constexpr double to_sd = 1.4826;        // of a median absolute deviation, of a normal distribution
 
 double mean_of(std::span<const double> x) {
   double sum = 0.0;
@@ -73,6 +85,44 @@ SeriesMean stationary(std::span<const double> x, const SeriesOptions& options) {
   return result;
 }
 
+/// The sorted window of 2 h + 1 samples around each, at the ends the first or last ones; calls use(i, window).
+template <class Use>
+void sorted_windows(std::span<const double> x, std::size_t half, Use use) {
+  const std::size_t width = std::min(x.size(), 2 * half + 1);
+  std::vector<double> window(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(width));
+  std::sort(window.begin(), window.end());
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (i > first + half && first + width < x.size()) {
+      window.erase(std::lower_bound(window.begin(), window.end(), x[first]));
+      const double next = x[first + width];
+      window.insert(std::upper_bound(window.begin(), window.end(), next), next);
+      ++first;
+    }
+    use(i, window);
+  }
+}
+
+/// The median absolute deviation of sorted values from their median: outwards from the middle, half of them.
+double median_deviation(const std::vector<double>& sorted) {
+  const std::size_t n = sorted.size(), middle = n / 2;
+  std::size_t low = middle, high = middle + 1;  // of values[low ...high) all are seen
+  double farthest = 0.0;
+  while (high - low <= n / 2) {
+    const double below = low > 0 ? sorted[middle] - sorted[low - 1] : std::numeric_limits<double>::infinity();
+    const double above = high < n ? sorted[high] - sorted[middle] : std::numeric_limits<double>::infinity();
+    farthest = std::min(below, above);
+    below <= above ? static_cast<void>(--low) : static_cast<void>(++high);
+  }
+  return farthest;
+}
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// Number of batches that MSER drops, at most `most`.
 std::size_t mser(const std::vector<double>& z, std::size_t most) {
   const double centre = mean_of(z);
@@ -105,7 +155,34 @@ bool is_start_up(std::span<const double> series, std::size_t d, const SeriesMean
   return independent >= 10.0 && squares / static_cast<double>(d) > 4.0 * rest.sd * rest.sd;
 }
 
+/// The least scale of a spike's neighbourhood, from the distances of all samples from their medians.
+double least_scale(const std::vector<double>& away) {
+  if (const double usual = median_of(away); usual > 0.0) return to_sd * usual;
+  std::vector<double> steps;
+  std::copy_if(away.begin(), away.end(), std::back_inserter(steps), [](double one) { return one > 0.0; });
+  return 100 * steps.size() < away.size() ? 0.0 : median_of(steps);  // a constant but for single samples, or coarse
+}
+
 }  // namespace
+
+Despiked without_spikes(std::span<const double> series) {
+  Despiked clean{{series.begin(), series.end()}, {}};
+  if (series.size() < 4) return clean;
+  const std::size_t half = std::clamp<std::size_t>(series.size() / 200, 10, 100);
+  std::vector<double> median(series.size()), scale(series.size()), away(series.size());
+  sorted_windows(series, half, [&](std::size_t i, const std::vector<double>& window) {
+    median[i] = window[window.size() / 2];
+    scale[i] = to_sd * median_deviation(window);
+    away[i] = std::abs(series[i] - median[i]);
+  });
+  const double least = least_scale(away);
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (away[i] == 0.0 || away[i] <= spike_distance * std::max(scale[i], least)) continue;
+    clean.series[i] = median[i];
+    clean.spikes.push_back(i);
+  }
+  return clean;
+}
 
 SeriesMean mean_with_error(std::span<const double> series, const SeriesOptions& options) {
   if (series.empty()) {
@@ -113,21 +190,33 @@ SeriesMean mean_with_error(std::span<const double> series, const SeriesOptions& 
             .standard_error = std::numeric_limits<double>::infinity(),
             .reliable = false};
   }
-  const SeriesMean all = stationary(series, options);
+  const SeriesMean whole = stationary(series, options);
   const std::size_t batches = series.size() / batch;
-  if (batches < 4 || all.sd == 0.0) return all;
-
-  std::vector<double> z(batches);
-  for (std::size_t j = 0; j < batches; ++j) z[j] = mean_of(series.subspan(j * batch, batch));
   const double fraction = std::clamp(options.start_up_fraction_max, 0.0, 0.9);
-  const auto most = static_cast<std::size_t>(fraction * static_cast<double>(batches));
-  const std::size_t dropped = mser(z, most) * batch;
-  if (dropped == 0) return all;
+  if (batches < 4 || whole.sd == 0.0 || (fraction == 0.0 && options.spikes_count)) return whole;
 
-  SeriesMean rest = stationary(series.subspan(dropped), options);
-  if (!is_start_up(series, dropped, rest)) return all;
-  rest.dropped = dropped;
-  if (dropped == most * batch) rest.reliable = false;  // the start-up may not have ended within the part that may go
+  const Despiked clean = without_spikes(series);
+  const std::span<const double> despiked = clean.series;
+  const auto from = [&](std::size_t first) {
+    SeriesMean rest = stationary((options.spikes_count ? series : despiked).subspan(first), options);
+    rest.dropped = first;
+    if (!options.spikes_count)
+      rest.spikes_out = static_cast<std::size_t>(clean.spikes.end() -
+                                                 std::lower_bound(clean.spikes.begin(), clean.spikes.end(), first));
+    return rest;
+  };
+  std::size_t front = 0;  // spikes with which the series begins
+  while (fraction > 0.0 && front < clean.spikes.size() && clean.spikes[front] == front) ++front;
+  std::vector<double> z((series.size() - front) / batch);
+  for (std::size_t j = 0; j < z.size(); ++j) z[j] = mean_of(despiked.subspan(front + j * batch, batch));
+  const auto most = static_cast<std::size_t>(fraction * static_cast<double>(z.size()));
+  const std::size_t dropped = front + mser(z, most) * batch;
+  if (dropped == front || !is_start_up(despiked, dropped, stationary(despiked.subspan(dropped), options)))
+    return front == 0 && clean.spikes.empty() ? whole : from(front);
+
+  SeriesMean rest = from(dropped);
+  // The start-up may not have ended within the part that may go.
+  if (dropped == front + most * batch) rest.reliable = false;
   return rest;
 }
 

@@ -71,7 +71,8 @@ Plateau reduce(const TorqueLog& log, std::size_t first, std::size_t count, doubl
   while (plateau.used_from < first + count && log.time[plateau.used_from] - log.time[first] < options.dead_time)
     ++plateau.used_from;
   const std::size_t left = first + count - plateau.used_from;
-  plateau.torque = mean_with_error({log.torque.data() + plateau.used_from, left});
+  plateau.torque =
+      mean_with_error({log.torque.data() + plateau.used_from, left}, {.spikes_count = options.spikes_count});
   plateau.used_from += plateau.torque.dropped;
   // Dropouts count in neither the speed nor its sd.
   double sum = 0.0, squares = 0.0, members = 0.0;

@@ -23,11 +23,11 @@ struct LogColumn {
 };
 
 struct LogColumns {
-  LogColumn time{
-      .name = "time",
-      .unit = "",
-      .usual = "s",
-      .also = {"timestamp", "time stamp", "datetime", "date time", "elapsed time", "zeit", "zeitstempel", "t"}};
+  LogColumn time{.name = "time",
+                 .unit = "",
+                 .usual = "s",
+                 .also = {"timestamp", "x_value", "time stamp", "datetime", "date time", "elapsed time", "zeit",
+                          "zeitstempel", "t"}};
   /// No usual unit: it must be said somewhere.
   LogColumn torque{.name = "torque", .unit = "", .usual = "", .also = {"drehmoment", "moment", "m"}};
   LogColumn speed{.name = "rpm", .unit = "", .usual = "rpm", .also = {"speed", "rotational speed", "drehzahl", "n"}};
@@ -54,11 +54,12 @@ struct TorqueLog {
 TorqueLog read_torque_log(const std::string& path, const LogColumns& columns = {});
 
 struct PlateauOptions {
-  double tolerance = 0.02;  ///< of the speed: how far a sample may lie from its plateau's speed
-  double shortest = 5.0;    ///< s; shorter stretches are ramps
-  double dead_time = 0.0;   ///< s dropped at the front of each plateau, before start-up is looked for
-  double from = -INFINITY;  ///< s, the part of the log that is used
-  double to = INFINITY;     ///< s
+  double tolerance = 0.02;   ///< of the speed: how far a sample may lie from its plateau's speed
+  double shortest = 5.0;     ///< s; shorter stretches are ramps
+  double dead_time = 0.0;    ///< s dropped at the front of each plateau, before start-up is looked for
+  double from = -INFINITY;   ///< s, the part of the log that is used
+  double to = INFINITY;      ///< s
+  bool spikes_count = true;  ///< in mean and error (SeriesOptions)
 };
 
 struct Plateau {

@@ -45,6 +45,8 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::stri
          fmt::format("both '{}' and '{}' may be the column '{}'", csv.headings[found[0]], csv.headings[found[1]],
                      wanted.name),
          fmt::format("say which with --{}", option));
+  if (option == "time" && !csv.no_time.empty())
+    fail(csv.file, csv.no_time, "give the samples per second with --rate, if they are even all through");
   std::string remedy = fmt::format("name it with --{}", option);
   if (csv.columns.size() == 1)
     remedy = "its columns are not parted by commas, semicolons, tabs or blanks, or it has one column only";

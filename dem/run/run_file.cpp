@@ -331,8 +331,13 @@ SavedRun read_run(const std::string& path) {
     if (k == saved.outputs.size())
       r.summary.mean.push_back({.mean = unknown, .standard_error = unknown, .reliable = false});
     else
-      r.summary.mean.push_back(
-          {mean[k], error[k], sd[k], time[k], samples[k], static_cast<std::size_t>(dropped[k]), reliable[k] != 0.0});
+      r.summary.mean.push_back({.mean = mean[k],
+                                .standard_error = error[k],
+                                .sd = sd[k],
+                                .integrated_time = time[k],
+                                .effective_samples = samples[k],
+                                .dropped = static_cast<std::size_t>(dropped[k]),
+                                .reliable = reliable[k] != 0.0});
   }
   read_state(summary, r.summary);
   r.checkpoint = read_checkpoint(file.group("checkpoint"));

@@ -79,6 +79,24 @@ TEST_CASE("a log of which much belongs to no speed says so, with the option for 
   CHECK(data::read_csv((folder.path / "wide.csv").string()).rows.size() == 2);
 }
 
+TEST_CASE("what is left out of a hold stands in the words and in the JSON") {
+  const Folder folder;
+  data::RandomStream random(6, data::Purpose::test);
+  std::string text = "time [s],torque [mN m],rpm\n";
+  for (int i = 0; i < 2000; ++i)
+    text += fmt::format("{:.2f},{:.5f},100\n", 0.01 * i,
+                        (i < 800 ? 2.5 : 2.0) + (i == 1200 ? 30.0 : 0.0) + 0.05 * random.normal());
+  write(folder, "log.csv", text);
+  const auto outcome = folder.demcal({"observe", "log.csv", "--without-spikes", "--json"});
+  CHECK(outcome.status == 0);
+  CHECK_THAT(outcome.err, Contains("note: ") && Contains("are left out as start-up") &&
+                              Contains("mN m at 12 s, left out of the mean"));
+  const nlohmann::json json = nlohmann::json::parse(outcome.out);
+  CHECK(json["notes"].size() == 2);
+  CHECK(json["rows"][0]["left_out_s"].get<double>() == Approx(8.0).margin(0.2));
+  CHECK(json["rows"][0]["torque"].get<double>() == Approx(2.0).epsilon(0.005));
+}
+
 TEST_CASE("a log that cannot be used is refused with what to do, and is never overwritten") {
   const Folder folder;
   write(folder, "log.csv", log_text(2.0, 0.0, 4));

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "data/random.hpp"
 #include "tests/cli/program.hpp"
 
 using Catch::Contains;
@@ -170,4 +171,41 @@ TEST_CASE("speeds over a decade are learnt on a log scale, and a report that can
     CHECK(parameter["verdict"] == "identified");
     CHECK(std::abs(parameter["mean"].get<double>() - truth[k]) < 2.5 * parameter["sd"].get<double>());
   }
+}
+
+TEST_CASE("good runs that a surrogate accuses where it does not bend are said to lie together, with the scale to try") {
+  // T = 2 + 8 friction + 60 (20 rpm / speed)^1.5 mN m over two decades of speed, which no stationary process follows.
+  const Folder folder;
+  const auto torque = [](double friction, double speed) {
+    return 2.0 + 8.0 * friction + 60.0 * std::pow(20.0 / speed, 1.5);
+  };
+  const auto radical = [](int i, int base) {  // van der Corput
+    double x = 0.0;
+    for (double part = 1.0 / base; i > 0; i /= base, part /= base) x += part * (i % base);
+    return x;
+  };
+  data::RandomStream random(8, data::Purpose::test);
+  std::string runs = "friction,speed,torque,torque_se\n", bench = "speed,torque,torque_se\n";
+  for (int i = 1; i <= 60; ++i) {
+    const double friction = 0.1 + 0.7 * radical(i, 2), speed = 10.0 + 990.0 * radical(i, 3);
+    const double truth = torque(friction, speed);
+    runs += line({friction, speed, truth * (1.0 + 0.003 * random.normal()), 0.003 * truth});
+  }
+  for (const double speed : {100.0, 500.0, 900.0}) bench += line({speed, torque(0.4, speed), 0.1});
+  fs::create_directories(folder.path / "study");
+  std::string text = study("table = \"runs.csv\"\n");
+  text.replace(text.find("low = 50\nhigh = 300"), 19, "low = 10\nhigh = 1000");
+  folder.write("study/study.toml", text);
+  folder.write("study/runs.csv", runs);
+  folder.write("study/bench.csv", bench);
+
+  const auto linear = folder.demcal({"fit", "study", "--out", "linear"});
+  CHECK(linear.status == 2);
+  CHECK_THAT(linear.err,
+             Contains("They lie together at low speed (rank-sum test, p ") &&
+                 Contains("Try [controls.speed] scale = \"log\" first. If they are wrong, leave them out:") &&
+                 !Contains("Correct them"));
+  const auto log = folder.demcal({"fit", "study", "--out", "log", "--set", "controls.speed.scale=log"});
+  CHECK(log.status == 0);
+  CHECK(log.err.find("contradict") == std::string::npos);
 }

@@ -86,6 +86,39 @@ TEST_CASE("unknown noise is a scale on the standard errors, or an absolute one i
   CHECK(absolute.output == std::optional<std::size_t>(0));
 }
 
+TEST_CASE("a noise that stands in the place of the standard errors needs none in the files, a scale on them does") {
+  const std::string without = "speed,torque\n50,8.1\n300,9.3\n", missing = "the column 'torque_se' is missing";
+  const std::string absolute = "noise = { absolute = true, kind = \"log_normal\", mean = \"300 uN m\", sd = 0.5 }\n";
+  const data::Study study = study_with(head + observe + powder + absolute, without);
+  REQUIRE(study.observations.at(0).points.size() == 2);
+  CHECK(study.observations[0].points[1].values.at(0) == Approx(9.3e-3));
+  CHECK(study.observations[0].points[1].standard_errors.at(0) == Approx(3e-4));  // what the prior says of it
+
+  for (const std::string noise :
+       {"", "noise = \"unknown\"\n", "noise = { kind = \"log_normal\", mean = 1, sd = 0.5 }\n"})
+    says(problem(head + observe + powder + noise, without), missing);
+  // Of another output; of one of two cases that read the set; of no case.
+  const std::string of_flow =
+      "noise = { absolute = true, output = \"flow\", kind = \"log_normal\", mean = \"1 g/s\", sd = 0.5 }\n";
+  says(problem(head + observe + powder + of_flow, "speed,torque,flow,flow_se\n50,8.1,1,0.1\n300,9.3,2,0.1\n"), missing);
+  const std::string second = "[[calibrate]]\nname = \"second\"\nobserve = [\"bench\"]\nfree = [\"friction\"]\n";
+  says(problem(head + observe + powder + absolute + second, without), missing);
+  CHECK(study_with(head + observe + powder + absolute + second + absolute, without).cases.size() == 2);
+  says(problem(head + observe, without), missing);
+}
+
+TEST_CASE(
+    "data that a case with a noise of its own predicts need no standard errors, and equal readings are not copies") {
+  const std::string absolute = "noise = { absolute = true, kind = \"log_normal\", mean = \"300 uN m\", sd = 0.5 }\n";
+  const TemporaryFolder folder;
+  folder.write("more.csv", "speed,torque\n100,8.4\n100,8.4\n100,8.5\n");
+  const data::Study study =
+      read(folder, head + observe + "[[observe]]\nname = \"more\"\nfile = \"more.csv\"\n" + powder + absolute +
+                       "[[predict]]\nname = \"held-out\"\nobserve = [\"more\"]\n");
+  CHECK(study.observations.at(1).points.size() == 3);
+  CHECK(study.observations[0].points[0].standard_errors.at(0) == Approx(2e-4));  // the file's own stay
+}
+
 TEST_CASE("a discrepancy has a scale and a length, stated or the usual ones") {
   const auto usual = case_with("discrepancy = true\n").nuisances;
   REQUIRE(usual.size() == 2);

@@ -73,6 +73,55 @@ TEST_CASE("a short start-up does not cost a large part of the series") {
   CHECK(found.dropped <= 200);
 }
 
+TEST_CASE("a spike does not decide where a series begins, nor hides where it does") {
+  for (const double phi : {0.0, 0.9})
+    for (const double transient : {0.0, -8.0})
+      for (const std::size_t at : {3u, 20u, 100u, 700u, 1500u})
+        for (const double size : {5.0, 30.0, 1000.0}) {
+          std::vector<double> x = autoregressive(phi, 2000, 42);
+          for (std::size_t t = 0; t < x.size(); ++t) x[t] += transient * std::exp(-static_cast<double>(t) / 40.0);
+          const std::size_t without = data::mean_with_error(x).dropped;
+          x[at] += size;
+          const data::SeriesMean with = data::mean_with_error(x);
+          INFO("phi " << phi << ", start-up " << transient << ", " << size << " sd at " << at << ", dropped "
+                      << with.dropped << " and " << without << " without the spike");
+          CHECK(std::abs(static_cast<double>(with.dropped) - static_cast<double>(without)) <= 100.0);
+          // One sample of 1000 sd moves the mean by half a sd; the error covers that.
+          if (size > 100.0 && transient == 0.0) CHECK(std::abs(with.mean) < 2.0 * with.standard_error);
+        }
+}
+
+TEST_CASE("without its spikes, single ones and short bursts, a series has the mean that it had before them") {
+  std::vector<double> x = autoregressive(0.8, 3000, 43);
+  const data::SeriesMean before = data::mean_with_error(x);
+  for (std::size_t t = 200; t < 206; ++t) x[t] = 60.0;
+  x[1000] = -500.0;
+  CHECK(data::without_spikes(x).spikes == std::vector<std::size_t>{200, 201, 202, 203, 204, 205, 1000});
+  const data::SeriesMean after = data::mean_with_error(x, {.spikes_count = false});
+  CHECK(after.dropped == before.dropped);
+  CHECK(after.spikes_out == 7);
+  CHECK(after.mean == Approx(before.mean).margin(0.1 * before.standard_error));
+  CHECK(after.standard_error == Approx(before.standard_error).epsilon(0.05));
+}
+
+TEST_CASE("spikes that a series begins with are its start-up, whatever else it does") {
+  std::vector<double> x = autoregressive(0.0, 2000, 44);
+  for (std::size_t t = 0; t < 3; ++t) x[t] = 300.0;
+  const data::SeriesMean found = data::mean_with_error(x);
+  CHECK(found.dropped >= 3);
+  CHECK(found.dropped <= 20);
+  CHECK(found.sd == Approx(1.0).epsilon(0.1));
+}
+
+TEST_CASE("a correlated, a coarse and a drifting series have no spikes") {
+  CHECK(data::without_spikes(autoregressive(0.97, 20000, 45)).spikes.empty());
+  std::vector<double> coarse = autoregressive(0.5, 5000, 46), drifting = autoregressive(0.0, 5000, 47);
+  for (double& value : coarse) value = std::round(0.6 * value);
+  for (std::size_t t = 0; t < drifting.size(); ++t) drifting[t] += 0.5 * static_cast<double>(t);
+  CHECK(data::without_spikes(coarse).spikes.empty());
+  CHECK(data::without_spikes(drifting).spikes.empty());
+}
+
 TEST_CASE("a constant series has its value as mean and no error") {
   const std::vector<double> x(100, 0.1);
   const data::SeriesMean found = data::mean_with_error(x);

@@ -108,6 +108,31 @@ TEST_CASE("a good log has no faults, and each fault is named") {
   CHECK(negative.time.size() == 594);
 }
 
+TEST_CASE("an early spike is named and leaves nothing else out, and what is left out at length is said") {
+  const data::TorqueLog spiked = made([](int i, double torque) { return i == 150 ? 15.0 : torque; });
+  const std::vector<data::Plateau> plateaus = data::find_plateaus(spiked);
+  REQUIRE(plateaus.size() == 1);
+  CHECK(plateaus[0].used_from == 0);
+  CHECK(data::plateau_notes(spiked, plateaus[0]).empty());
+  const std::vector<std::string> faults = data::plateau_faults(spiked, plateaus[0]);
+  REQUIRE(faults.size() == 1);
+  CHECK(faults[0].find("1 spike, 15 mN m at 15 s, counts in the mean 3.0") != std::string::npos);
+  CHECK(faults[0].find("--without-spikes") != std::string::npos);
+
+  const std::vector<data::Plateau> without = data::find_plateaus(spiked, {.spikes_count = false});
+  CHECK(without[0].torque.mean == Approx(3e-3).epsilon(0.003));
+  CHECK(data::plateau_faults(spiked, without[0]).empty());
+  REQUIRE(data::plateau_notes(spiked, without[0]).size() == 1);
+  CHECK(data::plateau_notes(spiked, without[0])[0].find("1 spike, 15 mN m at 15 s, left out of the mean") !=
+        std::string::npos);
+
+  const data::TorqueLog slow = made([](int i, double torque) { return i < 200 ? torque + 0.5 : torque; });
+  const std::vector<std::string> notes = data::plateau_notes(slow, data::find_plateaus(slow)[0]);
+  REQUIRE(notes.size() == 1);
+  INFO(notes[0]);
+  CHECK(notes[0].find("s of 59.9 s are left out as start-up, as the torque is 3.") != std::string::npos);
+}
+
 TEST_CASE("a torque that is truly 9999 or zero stays") {
   data::TorqueLog log = log_of("time,torque [uN m],rpm\n0,9990,50\n1,9999,50\n2,10010,50\n3,9995,50\n4,0,0\n5,0,0\n");
   CHECK(data::remove_no_values(log).empty());

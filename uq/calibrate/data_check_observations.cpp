@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "data/error.hpp"
+#include "data/observations.hpp"
 #include "uq/calibrate/data_columns.hpp"
 #include "uq/emulate/surrogates.hpp"
 #include "uq/posterior/case_model.hpp"
@@ -195,6 +196,7 @@ bool follows(const Eigen::ArrayXd& error, const Eigen::ArrayXd& value) {
 void check_errors(const data::Study& study, const data::ObservationSet& set, const DataCheckThresholds& t,
                   std::vector<Finding>& findings) {
   for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    if (data::noise_instead(study, set, set.outputs[column]) != nullptr) continue;  // nothing reads them
     const auto points = static_cast<Eigen::Index>(set.points.size());
     const auto found = residuals2(study, set, column, terms_of(points));
     const auto bent = residuals2(study, set, column, terms_of(points) + 1);

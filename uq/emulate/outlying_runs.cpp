@@ -181,4 +181,33 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
   return found;
 }
 
+std::optional<OneEnd> at_one_end(const Eigen::MatrixXd& x, const std::vector<int>& runs) {
+  const auto n = static_cast<double>(x.rows()), m = static_cast<double>(runs.size());
+  if (runs.size() < one_end_least || !(m < n)) return {};
+  std::optional<OneEnd> found;
+  for (Index k = 0; k < x.cols(); ++k) {
+    std::map<double, double> count;
+    for (Index i = 0; i < x.rows(); ++i) count[x(i, k)] += 1.0;
+    std::map<double, double> rank;
+    double below = 0.0, ties = 0.0;
+    for (const auto& [value, times] : count) {
+      rank[value] = below + 0.5 * (times + 1.0);
+      below += times;
+      ties += times * times * times - times;
+    }
+    double sum = 0.0;
+    std::vector<double> ranks;
+    for (const int i : runs) ranks.push_back(rank.at(x(i, k)));
+    for (const double one : ranks) sum += one;
+    const double variance = m * (n - m) / 12.0 * (n + 1.0 - ties / (n * (n - 1.0)));
+    if (!(variance > 0.0)) continue;
+    const double z = (sum - 0.5 * m * (n + 1.0)) / std::sqrt(variance);
+    const double p = std::min(1.0, std::erfc(std::abs(z) / std::sqrt(2.0)) * static_cast<double>(x.cols()));
+    const double middle = z < 0.0 ? median(ranks) : n + 1.0 - median(ranks);
+    if (p <= one_end_p && middle <= 0.25 * (n + 1.0) && (!found || p < found->p))
+      found = OneEnd{.input = static_cast<int>(k), .low = z < 0.0, .p = p};
+  }
+  return found;
+}
+
 }  // namespace uq

@@ -16,6 +16,14 @@
 // part of the spread of all runs), the difference is a part of that spread that could spoil a result, and the suspects
 // together do harm: with them the leave-one-out errors of all other runs are larger than without. A lone run on a peak
 // surprises the others, too, but helps to predict them.
+//
+// Runs that went wrong lie anywhere. Where a process does not bend as the model does, good runs are accused, and these
+// lie together at an end of the input. Whether they do is asked by the rank-sum test of each input (F. Wilcoxon,
+// Biometrics Bull. 1 (1945) 80): with R the sum of the ranks of the m accused among n runs, tied ones sharing their
+// mean rank,
+//   z = (R - m (n + 1) / 2) / sqrt(m (n - m) / 12 (n + 1 - sum over ties (t^3 - t) / (n (n - 1))))
+// is about normal. The smallest two-sided p counts once for each input (Bonferroni).
+#include <optional>
 #include <vector>
 
 #include "surrogate/fit.hpp"
@@ -38,6 +46,17 @@ struct OutlyingRuns {
   double harm = 1.0;                         ///< what OutlierOptions::harm is compared with
   double scatter = 1.0;                      ///< 1.4826 median |e / s| of the runs kept: below 1, errors are overstated
 };
+
+/// That accused runs lie at one end of an input.
+struct OneEnd {
+  int input = 0;    ///< column of x
+  bool low = true;  ///< the end
+  double p = 1.0;   ///< of runs chosen at random, in any of the inputs
+};
+inline constexpr std::size_t one_end_least = 4;  ///< accused runs
+inline constexpr double one_end_p = 0.01;        ///< at most
+/// None for fewer runs, a larger p, or a middle run of the accused that is not in the outer quarter.
+std::optional<OneEnd> at_one_end(const Eigen::MatrixXd& x, const std::vector<int>& runs);
 
 /// Never throws for odd runs; none are found where the process cannot be fitted without the suspects.
 OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surrogate::GaussianProcess& process,

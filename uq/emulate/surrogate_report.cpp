@@ -45,7 +45,8 @@ void add_levels(SurrogateReport& report, const FittedSurrogate& fitted, const da
 
 /// Runs that the others contradict, and whether the runs' errors say what they scatter.
 void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const surrogate::FitOptions& options,
-                  const data::Output& output) {
+                  const data::Study& study) {
+  const data::Output& output = study.outputs[fitted.rows.output];
   const TrainingRows& rows = fitted.rows;
   const OutlyingRuns found = find_outlying(rows.set, *fitted.process, options);
   for (std::size_t i = 0; i < found.runs.size(); ++i) {
@@ -57,12 +58,26 @@ void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const 
                                .expected = output.unit.from_si(found.expected[i]),
                                .deviations = found.deviations[i]});
   }
-  if (!report.outlying.empty())
+  if (const auto end = at_one_end(rows.set.x, found.runs)) {
+    const EmulatorInput& input = rows.inputs[static_cast<std::size_t>(end->input)];
+    std::pair<double, double> covered;
+    if (input.kind == InputKind::control)
+      covered = rows.control_range.at(input.index);
+    else
+      covered = {study.parameters[input.index].low, study.parameters[input.index].high};
+    report.outlying_together = fmt::format(
+        "They lie together at {} {} (rank-sum test, p {:.1g}), as good runs do where the surrogate does not bend. {}",
+        end->low ? "low" : "high", input_name(study, input), end->p, bend_hint(study, input, covered, end->low));
+    report.remedy = fmt::format("All others contradict {} runs. {} If they are wrong, leave them out: {}. ",
+                                report.outlying.size(), report.outlying_together, leave_out_key(report.outlying)) +
+                    report.remedy;
+  } else if (!report.outlying.empty()) {
     report.remedy = fmt::format("Correct {} or leave {} out first: {}. ",
                                 report.outlying.size() == 1 ? "the run that all others contradict"
                                                             : "the runs that all others contradict",
                                 report.outlying.size() == 1 ? "it" : "them", leave_out_key(report.outlying)) +
                     report.remedy;
+  }
   std::vector<double> relative;
   for (Eigen::Index i = 0; i < rows.set.y.size(); ++i)
     if (rows.set.y[i] != 0.0) relative.push_back(std::sqrt(rows.set.noise_variance[i]) / std::abs(rows.set.y[i]));
@@ -198,9 +213,10 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   if (fitted.two_level)
     add_levels(report, fitted, output);
   else
-    add_outlying(report, fitted, fit_options, output);
+    add_outlying(report, fitted, fit_options, study);
   if (const std::string hint = scale_hint(study, rows.control_range);
-      !hint.empty() && (report.verdict != SurrogateWord::good || !report.outlying.empty()))
+      !hint.empty() && (report.verdict != SurrogateWord::good || !report.outlying.empty()) &&
+      report.outlying_together.find(" scale = ") == std::string::npos)  // which has named one already
     report.remedy += " " + hint;
   name_inputs(report);
   return report;

@@ -135,6 +135,7 @@ void visit_fields(Visit&& visit, T& s) {
   visit("rho", s.rho);
   visit("rho_sd", s.rho_sd);
   visit("outlying_runs", s.outlying);
+  visit("outlying_together", s.outlying_together);
 }
 
 template <class Visit, SameAs<ValueRange> T>

@@ -55,6 +55,7 @@ struct SurrogateReport {
   /// This level's output per the cheaper one's.
   double rho = std::numeric_limits<double>::quiet_NaN(), rho_sd = std::numeric_limits<double>::quiet_NaN();
   std::vector<OutlyingRun> outlying;  ///< runs that the others contradict
+  std::string outlying_together;      ///< that these lie at one end of an input, and what to try; empty: they do not
 };
 
 /// One connected part of a parameter's 95 % profile interval, with the posterior inside it.

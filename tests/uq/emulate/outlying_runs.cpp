@@ -75,6 +75,30 @@ TEST_CASE("the run is told with what the others say there, and how far it is off
   CHECK(found.scatter == Approx(1.0).margin(0.4));
 }
 
+TEST_CASE("accused runs that lie together at an end of an input are told from those that lie anywhere", "[uq]") {
+  // 60 runs; in the first column run i has rank i + 1, in the second they come in an order that has nothing to do with it.
+  Eigen::MatrixXd x(60, 2);
+  for (int i = 0; i < 60; ++i) x.row(i) << i / 60.0, (37 * i % 60) / 60.0;
+  const auto low = at_one_end(x, {0, 1, 2, 3});
+  REQUIRE(low);
+  CHECK(low->input == 0);
+  CHECK(low->low);
+  // z = (10 - 122) / sqrt(4 * 56 * 61 / 12) = -3.3190, two-sided p 9.03e-4 by tables of the normal law, for two inputs.
+  CHECK(low->p == Approx(2.0 * 9.03e-4).epsilon(0.005));
+  const auto high = at_one_end(x, {55, 57, 58, 59, 54});
+  REQUIRE(high);
+  CHECK_FALSE(high->low);
+  CHECK_FALSE(at_one_end(x, {0, 1, 2}));                // too few to say
+  CHECK_FALSE(at_one_end(x, {2, 11, 23, 24, 40, 59}));  // anywhere
+  CHECK(at_one_end(x, {0, 1, 2, 3, 4, 5, 6, 7}));
+  CHECK_FALSE(at_one_end(x, {16, 17, 18, 19, 20, 21, 22, 23}));  // together, but at no end
+  // Three speeds, 20 runs each: ranks are tied, 10.5 for the lowest. sum of t^3 - t = 3 (8000 - 20), so that
+  // z = (42 - 122) / sqrt(4 * 56 / 12 * (61 - 23940 / 3540)) = -2.5147, p 0.01191.
+  for (int i = 0; i < 60; ++i) x(i, 0) = i / 20;
+  CHECK_FALSE(at_one_end(x.leftCols(1), {0, 5, 10, 15}));
+  CHECK(at_one_end(x.leftCols(1), {0, 5, 10, 15, 19}));
+}
+
 TEST_CASE("clean tables have no outlying run: smooth, kinked, peaked, steep, with noise and without", "[uq][slow]") {
   for (const Function f : {saturating, kinked, peaked, linear, steep})
     for (const double scatter : {0.0, 0.005, 0.03})
