@@ -127,7 +127,8 @@ RunProgress progress_of(const Series& s, const Plan& plan) {
   now.fraction = done / static_cast<double>(plan.rule.longest);
   now.simulated = s.time.empty() ? 0.0 : s.time.back();
   if (s.time.size() <= plan.rule.start_up) return now;
-  const data::SeriesMean mean = data::mean_with_error(std::span(s.torque).subspan(plan.rule.start_up));
+  const data::SeriesMean mean =
+      data::mean_with_error(std::span(s.torque).subspan(plan.rule.start_up), {.start_up_fraction_max = 0.0});
   now.torque = mean.mean;
   now.relative_error = mean.standard_error / std::abs(mean.mean);
   return now;
