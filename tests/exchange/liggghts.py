@@ -31,7 +31,7 @@ def run(words, status=0, where=folder):
 run([program, "export", study, "case", "--to", "liggghts", "--quiet", *point])
 # Two ranks, the box cut along its axis: meshes and spheres pass from one to the other, and through the periodic end.
 run(["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", "2", "liggghts", "-in", "in.liggghts", "-var", "px", "2",
-     "-var", "nrun", "260000"], where=folder / "case")
+     "-var", "nrun", "360000"], where=folder / "case")
 theirs = json.loads(run([program, "export", study, "case", "--collect", "--json", "--quiet", "--out", "back"]).stdout)
 ours = json.loads(run([program, "simulate", study, "--out", "ours", "--json", "--quiet", *point], status=(0, 2)).stdout)
 mean, error = theirs["torque"]["mean"], theirs["torque"]["standard_error"]
