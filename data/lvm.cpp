@@ -189,11 +189,6 @@ void read_file_header(Reader& reader, std::string_view text) {
   }
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
-  return text;
-}
-
 }  // namespace
 
 bool is_lvm(std::string_view text) { return trimmed(text.substr(0, 64)).starts_with(magic); }
@@ -205,7 +200,7 @@ Csv read_lvm(std::string_view text, const std::string& file) {
   csv.took.emplace_back("a LabVIEW measurement file");
   read_file_header(reader, text);
 
-  const bool computed = lower(reader.tag(reader.file_tags, "X_Columns")) == "no";
+  const bool computed = lower_case(reader.tag(reader.file_tags, "X_Columns")) == "no";
   std::vector<double> times;
   std::optional<Segment> first, segment;
   std::size_t segments = 0, in_segment = 0, comments = 0;
@@ -264,7 +259,8 @@ Csv read_lvm(std::string_view text, const std::string& file) {
   }
   if (!first) throw InputError(ExitStatus::bad_data, Problem{file, "has no segment with samples", "export it again"});
 
-  if (const std::string x = reader.tag(first->tags, "X_Dimension", first->y.front()); !x.empty() && lower(x) != "time")
+  if (const std::string x = reader.tag(first->tags, "X_Dimension", first->y.front());
+      !x.empty() && lower_case(x) != "time")
     csv.no_time = fmt::format("its X values are '{}', no time", x);
   if (computed && !first->step) csv.no_time = "X_Columns is No, and its header has no Delta_X";
   csv.header_line = first->line;

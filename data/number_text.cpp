@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 
 namespace data {
@@ -109,12 +108,18 @@ std::optional<std::string> plain_number(std::string_view given, DecimalMark mark
   return reads_as_number(text) ? std::optional(text) : std::nullopt;
 }
 
+std::string lower_case(std::string_view text) {
+  std::string small(text);
+  for (char& c : small)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return small;
+}
+
 bool is_missing(std::string_view given) {
   const std::string_view text = trimmed(given);
   if (text.find_first_not_of('*') == std::string_view::npos || text.find_first_not_of('-') == std::string_view::npos)
     return true;  // also when it is empty
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::string lower = lower_case(text);
   if (lower.front() == '-' || lower.front() == '+') lower.erase(0, 1);
   static constexpr std::array known{
       "nan",     "n/a",    "na",     "#n/a",     "#na",          "#nv",          "#value!", "#wert!",  "#div/0!",

@@ -29,4 +29,7 @@ Evidence decimal_evidence(std::string_view text);
 /// Without blanks, hard ones too, at both ends.
 std::string_view trimmed(std::string_view text);
 
+/// Letters of ASCII made small; all other bytes as they are.
+std::string lower_case(std::string_view text);
+
 }  // namespace data

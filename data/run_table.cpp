@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "data/number_text.hpp"
 #include "data/run_table_files.hpp"
 
 namespace data {
@@ -60,8 +61,7 @@ std::size_t used_rows(const RunTable& table) {
 }
 
 TableRead read_table(const std::string& path, const Study& study) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower_case(std::filesystem::path(path).extension().string());
   TableRead read = ending == ".h5" || ending == ".hdf5" ? read_table_hdf5(path, study) : read_table_csv(path, study);
   mark_rows(read, path, study);
   return read;

@@ -8,16 +8,11 @@
 #include <filesystem>
 
 #include "data/copies.hpp"
+#include "data/number_text.hpp"
 #include "data/run_table_files.hpp"
 
 namespace data {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string plain(text);
-  std::transform(plain.begin(), plain.end(), plain.begin(), [](unsigned char c) { return std::tolower(c); });
-  return plain;
-}
 
 template <std::size_t N>
 bool one_of(const std::string& text, const std::array<const char*, N>& words) {
@@ -143,14 +138,14 @@ bool names_row(const std::string& label, const std::string& place) {
 }
 
 bool is_status_column(std::string_view name) {
-  const std::string plain = lower(name);
+  const std::string plain = lower_case(name);
   return one_of(plain, ended_well) || one_of(plain, ended_badly) || one_of(plain, told) || one_of(plain, wanted);
 }
 
-bool is_user_column(std::string_view name) { return one_of(lower(name), wanted); }
+bool is_user_column(std::string_view name) { return one_of(lower_case(name), wanted); }
 
 bool says_failed(std::string_view column, std::string_view field) {
-  const std::string name = lower(column), word = lower(field);
+  const std::string name = lower_case(column), word = lower_case(field);
   static constexpr std::array no{"0", "no", "false", "n", "none"};
   static constexpr std::array yes{"1", "yes", "true", "y", "x"};
   if (one_of(name, ended_well) || one_of(name, wanted)) return one_of(word, no) || word == "0.0";

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -17,11 +16,6 @@
 namespace data {
 namespace {
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 [[noreturn]] void fail(const std::string& place, const std::string& what, const std::string& remedy) {
   throw InputError(ExitStatus::bad_data, Problem{place, what, remedy});
 }
@@ -31,7 +25,7 @@ std::string heading_place(const Csv& csv) { return fmt::format("{}:{}", csv.file
 /// The column of a quantity, by its name or, where there is none, by one of the other names.
 std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::string& option) {
   const auto named = [&](std::size_t i, const std::string& name) {
-    return lower(csv.columns[i]) == lower(name) || lower(csv.headings[i]) == lower(name);
+    return lower_case(csv.columns[i]) == lower_case(name) || lower_case(csv.headings[i]) == lower_case(name);
   };
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < csv.columns.size(); ++i)

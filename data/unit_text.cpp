@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <stdexcept>
 #include <utility>
 
@@ -40,11 +39,6 @@ std::string normalised(std::string_view given) {
                                                                             {"*", " "}})
     replace_all(text, from, to);
   return std::string(trimmed(text));
-}
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
 }
 
 /// "mNm" -> "mN m", "kgfcm" -> "kgf cm", "in-lb" -> "lbf in": a force and a length in any order, with any sign or none
@@ -91,7 +85,7 @@ std::optional<Unit> unit_meant(std::string_view given, std::string_view dimensio
   if (const auto unit = known(torque_spelling(text), dimension)) return unit;
   if (text == "-" && convertible(dimension, "1")) return parse_unit("1");
   if (convertible(dimension, "rpm")) {
-    std::string word = lower(text);
+    std::string word = lower_case(text);
     word.erase(std::remove(word.begin(), word.end(), ' '), word.end());
     for (const char* per_minute :
          {"1/min", "min-1", "u/min", "r/min", "rev/min", "u./min", "umdr/min", "rpm", "upm", "r.p.m.", "/min", "cpm"})
@@ -101,8 +95,9 @@ std::optional<Unit> unit_meant(std::string_view given, std::string_view dimensio
   }
   if (convertible(dimension, "s"))
     for (const char* second : {"sec", "secs", "sec.", "sek", "sek.", "seconds"})
-      if (lower(text) == second) return parse_unit("s");
-  if (convertible(dimension, "s") && (lower(text) == "msec" || lower(text) == "millisec")) return parse_unit("ms");
+      if (lower_case(text) == second) return parse_unit("s");
+  if (convertible(dimension, "s") && (lower_case(text) == "msec" || lower_case(text) == "millisec"))
+    return parse_unit("ms");
   return {};
 }
 

@@ -44,6 +44,8 @@ TEST_CASE("the same rigs put right are not refused") {
   const auto fuller = check(folder, cases + "paddle-above-bed", {"rig.fill=3000"});
   INFO(fuller.err);
   CHECK((fuller.status == 0 || fuller.status == 2));
+  CHECK_THAT(fuller.err, !Contains("dips only"));
+  CHECK_THAT(check(folder, cases + "paddle-above-bed", {"rig.fill=1500"}).err, Contains("paddle dips only"));
   const auto turned = check(folder, cases + "axis-elsewhere", {R"(rig.mesh.paddle.point=["40 mm", "25 mm", "0 mm"])"});
   INFO(turned.err);
   CHECK_THAT(turned.err, !Contains("leaves the box"));

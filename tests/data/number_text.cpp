@@ -51,3 +51,9 @@ TEST_CASE("the words for no value are known, and numbers and names are none of t
     CHECK(data::is_missing(word));
   for (const std::string word : {"0", "-1", "powder", "n", "1.5", "x-", "inf"}) CHECK_FALSE(data::is_missing(word));
 }
+
+TEST_CASE("letters of ASCII are made small, and no byte of another letter changes") {
+  CHECK(data::lower_case("X_Columns NO 1.#QNAN") == "x_columns no 1.#qnan");
+  const std::string others = "\xc3\x84\xce\xa9 \xc4\xff@[`{";  // in UTF-8 and in Latin-1, and what borders on A to Z
+  CHECK(data::lower_case(others) == others);
+}

@@ -216,7 +216,7 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
     add_outlying(report, fitted, fit_options, study);
   if (const std::string hint = scale_hint(study, rows.control_range);
       !hint.empty() && (report.verdict != SurrogateWord::good || !report.outlying.empty()) &&
-      report.outlying_together.find(" scale = ") == std::string::npos)  // which has named one already
+      report.outlying_together.empty())  // else that says what to try
     report.remedy += " " + hint;
   name_inputs(report);
   return report;
