@@ -23,10 +23,6 @@
 namespace data {
 namespace {
 
-[[noreturn]] void fail(const std::string& place, std::string what, std::string remedy) {
-  throw InputError(ExitStatus::bad_data, Problem{place, std::move(what), std::move(remedy)});
-}
-
 bool is_number(const std::string& field, bool commas) {
   return plain_number(field, DecimalMark::point) || (commas && plain_number(field, DecimalMark::comma)) ||
          read_time(field);
@@ -59,9 +55,9 @@ std::string without_zero_tail(std::string text, Table& table) {
   const std::size_t zeros = text.size() - end;
   text.resize(end);
   if (const auto inside = text.find('\0'); inside != std::string::npos)
-    fail(fmt::format("{}:{}", table.csv.file,
-                     1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(inside), '\n')),
-         "holds zero bytes: it is no text, or was damaged", "save the table as CSV again");
+    refuse_data(fmt::format("{}:{}", table.csv.file,
+                            1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(inside), '\n')),
+                "holds zero bytes: it is no text, or was damaged", "save the table as CSV again");
   if (zeros == 0) return text;
   table.csv.took.push_back(fmt::format("{} zero bytes behind the end left out", zeros));
   if (!text.empty() && text.back() != '\n' && text.back() != '\r') {
@@ -176,8 +172,9 @@ void find_heading(Table& table) {
     return;
   }
   if (row_at == table.records.size())
-    fail(table.csv.file, "is empty: there is no header line", "the first line names the columns");
-  fail(table.line(*first_row), "there are numbers where the header line belongs", "the first line names the columns");
+    refuse_data(table.csv.file, "is empty: there is no header line", "the first line names the columns");
+  refuse_data(table.line(*first_row), "there are numbers where the header line belongs",
+              "the first line names the columns");
 }
 
 /// Which decimal mark the numbers have, by those that can be read in one way alone.
@@ -205,24 +202,25 @@ DecimalMark find_mark(const Table& table) {
     return comma.record != nullptr && point.record == nullptr ? DecimalMark::comma : DecimalMark::point;
   const char* const remedy = "write every number with a decimal point and without a mark for thousands";
   if (comma.record != nullptr && point.record != nullptr)
-    fail(table.line(*comma.record),
-         fmt::format("'{}' has a decimal comma, but '{}' in line {} a decimal point", comma.field, point.field,
-                     point.record->line),
-         remedy);
+    refuse_data(table.line(*comma.record),
+                fmt::format("'{}' has a decimal comma, but '{}' in line {} a decimal point", comma.field, point.field,
+                            point.record->line),
+                remedy);
   if (maybe_comma.record != nullptr && comma.record == nullptr)
-    fail(table.line(*maybe_comma.record),
-         fmt::format("'{}' may be {} or {}", maybe_comma.field,
-                     plain_number(maybe_comma.field, DecimalMark::comma).value_or("?"),
-                     plain_number(maybe_comma.field, DecimalMark::point).value_or("?")),
-         remedy);
+    refuse_data(table.line(*maybe_comma.record),
+                fmt::format("'{}' may be {} or {}", maybe_comma.field,
+                            plain_number(maybe_comma.field, DecimalMark::comma).value_or("?"),
+                            plain_number(maybe_comma.field, DecimalMark::point).value_or("?")),
+                remedy);
   if (comma.record == nullptr) return DecimalMark::point;
   for (std::size_t i = table.first_row; i < table.records.size(); ++i)
     for (const std::string& field : table.records[i].fields)
       if (!table.records[i].comment && decimal_evidence(field) == Evidence::maybe_point)
-        fail(table.line(table.records[i]),
-             fmt::format("'{}' may be a decimal number or thousands: other numbers of the table have a decimal comma",
-                         field),
-             remedy);
+        refuse_data(
+            table.line(table.records[i]),
+            fmt::format("'{}' may be a decimal number or thousands: other numbers of the table have a decimal comma",
+                        field),
+            remedy);
   return DecimalMark::comma;
 }
 
@@ -265,8 +263,9 @@ void read_rows(Table& table) {
       continue;
     }
     if (record.fields.size() != columns)
-      fail(table.line(record), fmt::format("has {} fields where the header has {}", record.fields.size(), columns),
-           wrong_count(table, record));
+      refuse_data(table.line(record),
+                  fmt::format("has {} fields where the header has {}", record.fields.size(), columns),
+                  wrong_count(table, record));
     for (std::string& field : record.fields)
       if (auto plain = plain_number(field, mark)) field = std::move(*plain);
     table.csv.rows.push_back({std::move(record.fields), record.line});
@@ -283,8 +282,8 @@ void read_columns(Table& table) {
   for (std::size_t i = 0; i < csv.headings.size(); ++i) {
     const std::string& heading = csv.headings[i];
     if (!heading.empty() && !whole.emplace(heading, i).second)
-      fail(fmt::format("{}:{}", csv.file, csv.header_line), fmt::format("the column '{}' is there twice", heading),
-           "rename or remove one");
+      refuse_data(fmt::format("{}:{}", csv.file, csv.header_line),
+                  fmt::format("the column '{}' is there twice", heading), "rename or remove one");
     Heading split = read_heading(heading);
     if (!split.unit.empty()) csv.units[i] = std::move(split.unit);
     csv.columns.push_back(std::move(split.name));
@@ -324,7 +323,7 @@ std::size_t Csv::column(std::string_view name) const {
       near && edit_distance(name, *near) <= 2 && !(of_error && near->ends_with("_sd"))) {
     remedy += fmt::format("; is '{}' meant?", *near);
   }
-  fail(fmt::format("{}:{}", file, header_line), fmt::format("the column '{}' is missing", name), remedy);
+  refuse_data(fmt::format("{}:{}", file, header_line), fmt::format("the column '{}' is missing", name), remedy);
 }
 
 std::string Csv::place(const CsvRow& row, std::size_t column) const {
@@ -338,12 +337,13 @@ double Csv::number(const CsvRow& row, std::size_t column) const {
   double value = 0.0;
   const auto [rest, error] = std::from_chars(begin, end, value);
   if (error == std::errc::result_out_of_range && rest == end) {
-    fail(place(row, column), fmt::format("'{}' is too large or too small for a double", field),
-         "write a number in range");
+    refuse_data(place(row, column), fmt::format("'{}' is too large or too small for a double", field),
+                "write a number in range");
   }
   if (error != std::errc{} || rest != end) {
     if (is_missing(field)) return std::numeric_limits<double>::quiet_NaN();
-    fail(place(row, column), fmt::format("'{}' is not a number", field), "write a plain number with a decimal point");
+    refuse_data(place(row, column), fmt::format("'{}' is not a number", field),
+                "write a plain number with a decimal point");
   }
   return value;
 }
@@ -354,9 +354,9 @@ Unit Csv::unit(std::size_t column, const Unit& wanted) const {
   if (given.empty() || given == symbol) return wanted;
   if (const auto meant = unit_meant(given, symbol))
     return meant->factor == wanted.factor && meant->offset == wanted.offset ? wanted : *meant;
-  fail(fmt::format("{}:{}: {}", file, header_line, columns.at(column)),
-       fmt::format("is in '{}', which does not measure what the study's '{}' does", given, symbol),
-       "correct the unit in the table or in the study");
+  refuse_data(fmt::format("{}:{}: {}", file, header_line, columns.at(column)),
+              fmt::format("is in '{}', which does not measure what the study's '{}' does", given, symbol),
+              "correct the unit in the table or in the study");
 }
 
 std::string Csv::took_line() const {

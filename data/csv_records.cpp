@@ -10,10 +10,6 @@
 namespace data {
 namespace {
 
-[[noreturn]] void fail(const std::string& place, std::string what, std::string remedy) {
-  throw InputError(ExitStatus::bad_data, Problem{place, std::move(what), std::move(remedy)});
-}
-
 /// Reads the text record by record; a quoted field may hold line ends.
 class Reader {
  public:
@@ -62,7 +58,8 @@ class Reader {
     const int opened = line_;
     std::string value;
     for (++at_;; ++at_) {
-      if (at_end()) fail(fmt::format("{}:{}", file_, opened), "a quoted field does not end", "add the closing quote");
+      if (at_end())
+        refuse_data(fmt::format("{}:{}", file_, opened), "a quoted field does not end", "add the closing quote");
       if (text_[at_] == '"') {
         if (at_ + 1 < text_.size() && text_[at_ + 1] == '"')
           ++at_;
@@ -75,8 +72,8 @@ class Reader {
     ++at_;
     skip_blanks();
     if (!at_end() && text_[at_] != separator_ && text_[at_] != '\r' && text_[at_] != '\n') {
-      fail(fmt::format("{}:{}", file_, line_), "text follows a closing quote",
-           "double a quote that is part of the field");
+      refuse_data(fmt::format("{}:{}", file_, line_), "text follows a closing quote",
+                  "double a quote that is part of the field");
     }
     return value;
   }

@@ -3,6 +3,7 @@
 // non-convergence is a field of a result and never an exception.
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace data {
@@ -40,5 +41,10 @@ class InputError : public std::runtime_error {
   ExitStatus status;
   std::vector<Problem> problems;
 };
+
+/// Throws the InputError of one problem in a file of data (status 65).
+[[noreturn]] inline void refuse_data(std::string place, std::string what, std::string remedy) {
+  throw InputError(ExitStatus::bad_data, Problem{std::move(place), std::move(what), std::move(remedy)});
+}
 
 }  // namespace data

@@ -28,7 +28,7 @@ using Fields = std::vector<std::string>;
 using Tags = std::map<std::string, Fields>;
 
 [[noreturn]] void fail(const std::string& file, int line, const std::string& what, const std::string& remedy) {
-  throw InputError(ExitStatus::bad_data, Problem{fmt::format("{}:{}", file, line), what, remedy});
+  refuse_data(fmt::format("{}:{}", file, line), what, remedy);
 }
 
 class Lines {

@@ -34,9 +34,7 @@ void write_column(const Hdf5Group& group, const Column& column, const std::vecto
 }
 
 [[noreturn]] void damaged(const std::string& place, std::string what) {
-  throw InputError(
-      ExitStatus::bad_data,
-      Problem{place, std::move(what), "the file is truncated or was not finished: remove it and train again"});
+  refuse_data(place, std::move(what), "the file is truncated or was not finished: remove it and train again");
 }
 
 template <class T>

@@ -161,8 +161,6 @@ Section open_section(const Node& parent, const toml::table* table, std::string n
   return Section(std::make_shared<Node>(Node{parent.state, table, std::move(name), line > 0 ? line : parent.line}));
 }
 
-std::size_t line_of(const toml::node& node) { return node.source().begin.line; }
-
 }  // namespace
 
 bool Section::exists() const { return node_->table != nullptr; }

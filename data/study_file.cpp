@@ -14,8 +14,6 @@ namespace {
 
 using Node = Section::Node;
 
-std::size_t line_of(const toml::node& node) { return node.source().begin.line; }
-
 /// Applies one --set text to the tree.
 void apply(StudyFile::State& state, const std::string& text) {
   const std::size_t equals = text.find('=');

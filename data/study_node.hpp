@@ -14,6 +14,9 @@
 
 namespace data {
 
+/// Of a value, in its file; 0 for one that no file holds.
+inline std::size_t line_of(const toml::node& node) { return node.source().begin.line; }
+
 struct StudyFile::State {
   struct Located {
     std::size_t line;

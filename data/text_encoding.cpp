@@ -14,7 +14,7 @@ namespace data {
 namespace {
 
 [[noreturn]] void refuse(const std::string& name, std::string what) {
-  throw InputError(ExitStatus::bad_data, Problem{name, std::move(what), "save the table as CSV in UTF-8"});
+  refuse_data(name, std::move(what), "save the table as CSV in UTF-8");
 }
 
 void append_utf8(std::string& text, std::uint32_t code) {

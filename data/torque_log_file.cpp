@@ -16,10 +16,6 @@
 namespace data {
 namespace {
 
-[[noreturn]] void fail(const std::string& place, const std::string& what, const std::string& remedy) {
-  throw InputError(ExitStatus::bad_data, Problem{place, what, remedy});
-}
-
 std::string heading_place(const Csv& csv) { return fmt::format("{}:{}", csv.file, csv.header_line); }
 
 /// The column of a quantity, by its name or, where there is none, by one of the other names.
@@ -35,18 +31,19 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::stri
       found.push_back(i);
   if (found.size() == 1) return found.front();
   if (found.size() > 1)
-    fail(heading_place(csv),
-         fmt::format("both '{}' and '{}' may be the column '{}'", csv.headings[found[0]], csv.headings[found[1]],
-                     wanted.name),
-         fmt::format("say which with --{}", option));
+    refuse_data(heading_place(csv),
+                fmt::format("both '{}' and '{}' may be the column '{}'", csv.headings[found[0]], csv.headings[found[1]],
+                            wanted.name),
+                fmt::format("say which with --{}", option));
   if (option == "time" && !csv.no_time.empty())
-    fail(csv.file, csv.no_time, "give the samples per second with --rate, if they are even all through");
+    refuse_data(csv.file, csv.no_time, "give the samples per second with --rate, if they are even all through");
   std::string remedy = fmt::format("name it with --{}", option);
   if (csv.columns.size() == 1)
     remedy = "its columns are not parted by commas, semicolons, tabs or blanks, or it has one column only";
-  fail(heading_place(csv),
-       fmt::format("the column '{}' is missing (the columns are {})", wanted.name, fmt::join(csv.headings, ", ")),
-       remedy);
+  refuse_data(
+      heading_place(csv),
+      fmt::format("the column '{}' is missing (the columns are {})", wanted.name, fmt::join(csv.headings, ", ")),
+      remedy);
 }
 
 Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
@@ -55,11 +52,11 @@ Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
   std::string symbol = wanted.unit.empty() ? csv.units[column] : wanted.unit;
   if (symbol.empty()) symbol = wanted.usual;
   if (symbol.empty())
-    fail(heading_place(csv), fmt::format("the column '{}' has no unit", csv.headings[column]),
-         fmt::format("write it in the header, '{} [N m]', or give --{}-unit", wanted.name, option));
+    refuse_data(heading_place(csv), fmt::format("the column '{}' has no unit", csv.headings[column]),
+                fmt::format("write it in the header, '{} [N m]', or give --{}-unit", wanted.name, option));
   if (auto unit = unit_meant(symbol, dimension)) return unit->symbol == "60 rpm" ? parse_unit("rpm") : *unit;
-  fail(heading_place(csv), fmt::format("'{}' is not a unit of {}", symbol, option),
-       fmt::format("a unit like '{}'; --{}-unit overrides the header", dimension, option));
+  refuse_data(heading_place(csv), fmt::format("'{}' is not a unit of {}", symbol, option),
+              fmt::format("a unit like '{}'; --{}-unit overrides the header", dimension, option));
 }
 
 /// What one in a column amounts to in the unit that find_unit gave: Hz are shown in rpm.
@@ -92,10 +89,11 @@ Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) 
     } else {
       const auto time = read_time(field);
       if (!time)
-        fail(csv.place(row, column), fmt::format("'{}' is no time like those before", field), "write every time alike");
+        refuse_data(csv.place(row, column), fmt::format("'{}' is no time like those before", field),
+                    "write every time alike");
       if (time->two_parts)
-        fail(csv.place(row, column), fmt::format("'{}' may be hours and minutes, or minutes and seconds", field),
-             "write hours, minutes and seconds, or seconds alone");
+        refuse_data(csv.place(row, column), fmt::format("'{}' may be hours and minutes, or minutes and seconds", field),
+                    "write hours, minutes and seconds, or seconds alone");
       dated = dated || time->dated;
       either = either || time->day_or_month;
       stamps.seconds.push_back(time->seconds);
@@ -104,15 +102,15 @@ Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) 
   if (clock) stamps.took.push_back(dated ? "dates and times" : "times of day");
   stamps.of_day = clock && !dated;
   if (dated && either)
-    fail(csv.place(*first, column), "has dates whose day and month cannot be told apart beside others",
-         "write dates like 2024-05-31");
+    refuse_data(csv.place(*first, column), "has dates whose day and month cannot be told apart beside others",
+                "write dates like 2024-05-31");
   // Days since 1900, as spreadsheets count them, in a column without a unit.
   const bool no_unit = !clock && wanted.unit.empty() && csv.units[column].empty();
   if (no_unit && csv.rows.size() > 2 && stamps.seconds.front() > 2e4 && stamps.seconds.front() < 8e4 &&
       stamps.seconds.back() - stamps.seconds.front() < 1.0)
-    fail(csv.place(csv.rows.front(), column),
-         fmt::format("{} looks like a spreadsheet's day, not like seconds", csv.rows.front().fields[column]),
-         "say which with --time-unit d or --time-unit s");
+    refuse_data(csv.place(csv.rows.front(), column),
+                fmt::format("{} looks like a spreadsheet's day, not like seconds", csv.rows.front().fields[column]),
+                "say which with --time-unit d or --time-unit s");
   return stamps;
 }
 
@@ -179,9 +177,9 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
       continue;
     }
     if (!log.time.empty() && !(times[i] > log.time.back()))
-      fail(csv.place(row, time),
-           fmt::format("{:g} s does not come after {:g} s of the sample before", times[i], log.time.back()),
-           "sort the log by time, remove repeated lines, or split a log that was restarted");
+      refuse_data(csv.place(row, time),
+                  fmt::format("{:g} s does not come after {:g} s of the sample before", times[i], log.time.back()),
+                  "sort the log by time, remove repeated lines, or split a log that was restarted");
     log.time.push_back(times[i]);
     log.torque.push_back(m);
     log.speed.push_back(w);

@@ -13,14 +13,14 @@ foreach(layer walls contact engine case rig bed reading forecast run)
   target_compile_options(demcal_${layer} PRIVATE ${numerics})
 endforeach()
 
-# The force pass (contact/forces/), compiled once for each instruction set of DEMCAL_FORCES; isa.cpp takes the widest that the
+# The force pass (contact/forces/), compiled once for each instruction set of DEMCAL_FORCES_USED; isa.cpp takes the widest that the
 # processor has. Each becomes one object file in which all but its entry is local: else the linker would keep one of
 # several copies of a template or inline function, and run it on processors that it was not compiled for.
 file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/dem/contact/forces/*.cpp)
 set(made ${CMAKE_BINARY_DIR}/dem)
 file(MAKE_DIRECTORY ${made})
 set(table "// Instruction sets that contact forces are compiled for, the least first; made by CMake.\n")
-foreach(isa IN LISTS DEMCAL_FORCES)
+foreach(isa IN LISTS DEMCAL_FORCES_USED)
   string(MAKE_C_IDENTIFIER demcal_forces_${isa} entry)
   add_library(${entry} OBJECT ${sources})
   target_link_libraries(${entry} PRIVATE demcal_flags)

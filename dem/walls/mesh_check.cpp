@@ -123,7 +123,7 @@ std::vector<Part> parts_of(const TriangleMesh& mesh, const Edges& edges) {
   return parts;
 }
 
-void turn(Triangle& t) { std::swap(t[1], t[2]); }
+void turn_over(Triangle& t) { std::swap(t[1], t[2]); }
 
 double volume(const TriangleMesh& mesh, const Part& part) {
   double sum = 0.0;
@@ -152,7 +152,7 @@ Turned orient(TriangleMesh& mesh, const std::vector<Part>& parts) {
     const bool most = 2 * against > part.triangles.size();
     result.against_neighbours += most ? part.triangles.size() - against : against;
     for (std::size_t k = 0; k < part.triangles.size(); ++k) {
-      if ((part.turned[k] != 0) != most) turn(mesh.triangles[part.triangles[k]]);
+      if ((part.turned[k] != 0) != most) turn_over(mesh.triangles[part.triangles[k]]);
     }
   }
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -160,7 +160,7 @@ Turned orient(TriangleMesh& mesh, const std::vector<Part>& parts) {
     bool cavity = false;
     for (std::size_t q = 0; q < parts.size(); ++q) cavity = cavity || (parts[q].closed && within(box[p], box[q]));
     if (cavity) continue;
-    for (const std::uint32_t t : parts[p].triangles) turn(mesh.triangles[t]);
+    for (const std::uint32_t t : parts[p].triangles) turn_over(mesh.triangles[t]);
     result.inside_out += parts[p].triangles.size();
   }
   return result;

@@ -18,10 +18,6 @@ namespace {
 
 constexpr std::size_t head_size = 84, row_size = 50;
 
-[[noreturn]] void fail(const std::string& place, std::string what, std::string remedy) {
-  throw data::InputError(data::ExitStatus::bad_data, data::Problem{place, std::move(what), std::move(remedy)});
-}
-
 void add_triangle(TriangleMesh& mesh, const std::array<Vec3, 3>& corner) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), corner.begin(), corner.end());
@@ -45,7 +41,7 @@ TriangleMesh parse_binary(std::string_view bytes, const std::string& name, doubl
     for (std::size_t k = 0; k < 3; ++k) {
       corner[k] = unit * Vec3{row[3 + 3 * k], row[4 + 3 * k], row[5 + 3 * k]};
       if (!finite(corner[k])) {
-        fail(
+        data::refuse_data(
             fmt::format("{}: triangle {}", name, t + 1),
             fmt::format("has a corner ({}, {}, {}) that is not finite", row[3 + 3 * k], row[4 + 3 * k], row[5 + 3 * k]),
             "export the mesh again");
@@ -108,7 +104,8 @@ class Words {
       stop(word, "where a coordinate belongs");
     }
     if (!std::isfinite(value) || error != std::errc{})
-      fail(place(), fmt::format("has a coordinate '{}' that is not finite", word), "export the mesh again");
+      data::refuse_data(place(), fmt::format("has a coordinate '{}' that is not finite", word),
+                        "export the mesh again");
     return value;
   }
   Vec3 vector() {
@@ -116,8 +113,8 @@ class Words {
     return {x, y, z};
   }
   [[noreturn]] void stop(std::string_view word, const std::string& where) const {
-    if (word.empty()) fail(place(), "ends " + where + ": the file is truncated", "export the mesh again");
-    fail(place(), fmt::format("has '{}' {}", word.substr(0, 40), where), "export the mesh as STL again");
+    if (word.empty()) data::refuse_data(place(), "ends " + where + ": the file is truncated", "export the mesh again");
+    data::refuse_data(place(), fmt::format("has '{}' {}", word.substr(0, 40), where), "export the mesh as STL again");
   }
 
   static bool same(std::string_view a, std::string_view b) {
@@ -187,10 +184,11 @@ void check_distance(const TriangleMesh& mesh, const std::string& name, double un
   }
   const double size = std::max({high.x - low.x, high.y - low.y, high.z - low.z}), step = std::ldexp(far, -23);
   if (step > 1e-3 * size)
-    fail(name,
-         fmt::format("lies {:.4g} from its origin and is {:.4g} large: single precision there has steps of {:.2g}",
-                     far / unit, size / unit, step / unit),
-         "move the part to the origin and export it again");
+    data::refuse_data(
+        name,
+        fmt::format("lies {:.4g} from its origin and is {:.4g} large: single precision there has steps of {:.2g}",
+                    far / unit, size / unit, step / unit),
+        "move the part to the origin and export it again");
 }
 
 }  // namespace
@@ -198,7 +196,7 @@ void check_distance(const TriangleMesh& mesh, const std::string& name, double un
 TriangleMesh parse_stl(std::string_view bytes, const std::string& name, double unit) {
   const std::size_t binary_size = head_size + row_size * static_cast<std::size_t>(binary_count(bytes));
   if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
-    fail(name, "is UTF-16, and STL is ASCII or binary", "export the mesh as STL again");
+    data::refuse_data(name, "is UTF-16, and STL is ASCII or binary", "export the mesh as STL again");
   std::string_view start = bytes.substr(0, 512);
   const bool text = start.find('\0') == std::string_view::npos;
   const bool binary = bytes.size() >= head_size && (bytes.size() == binary_size ||
@@ -208,19 +206,20 @@ TriangleMesh parse_stl(std::string_view bytes, const std::string& name, double u
     bytes.remove_prefix(3);
   }
   start.remove_prefix(std::min(start.find_first_not_of(" \t\r\n"), start.size()));
-  if (bytes.empty()) fail(name, "is empty", "export the mesh again");
+  if (bytes.empty()) data::refuse_data(name, "is empty", "export the mesh again");
   if (!binary && !(text && Words::same(start.substr(0, 5), "solid"))) {
     if (text || bytes.size() < head_size) {
-      fail(name, "is not STL: it neither begins with 'solid' nor has the size of a binary file",
-           "export the mesh as STL");
+      data::refuse_data(name, "is not STL: it neither begins with 'solid' nor has the size of a binary file",
+                        "export the mesh as STL");
     }
-    fail(name,
-         fmt::format("has {} bytes, but its {} triangles make {}: {}", bytes.size(), binary_count(bytes), binary_size,
-                     bytes.size() < binary_size ? "it is truncated, or not STL" : "it is not STL"),
-         "export the mesh as STL again");
+    data::refuse_data(
+        name,
+        fmt::format("has {} bytes, but its {} triangles make {}: {}", bytes.size(), binary_count(bytes), binary_size,
+                    bytes.size() < binary_size ? "it is truncated, or not STL" : "it is not STL"),
+        "export the mesh as STL again");
   }
   TriangleMesh mesh = binary ? parse_binary(bytes, name, unit) : parse_ascii(bytes, name, unit);
-  if (mesh.triangles.empty()) fail(name, "holds no triangle", "export the mesh again");
+  if (mesh.triangles.empty()) data::refuse_data(name, "holds no triangle", "export the mesh again");
   if (binary) check_distance(mesh, name, unit);
   return mesh;
 }

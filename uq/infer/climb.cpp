@@ -6,7 +6,6 @@
 namespace uq {
 namespace {
 
-constexpr double nowhere = -std::numeric_limits<double>::infinity();
 constexpr int steps_max = 80;
 constexpr double first_radius = 0.03, rise_min = 1e-3;
 

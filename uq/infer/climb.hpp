@@ -8,7 +8,7 @@ namespace uq {
 
 struct Climb {
   Eigen::VectorXd x;
-  double log_density = -std::numeric_limits<double>::infinity();
+  double log_density = nowhere;
   bool known = false;  ///< ended where the knowledge reaches
   int evaluations = 0;
 };

@@ -76,9 +76,9 @@ class Conditional {
   }
 
   double density(const Eigen::VectorXd& x) const {
-    if (!target_.contains(x)) return -std::numeric_limits<double>::infinity();
+    if (!target_.contains(x)) return nowhere;
     const double value = target_.log_density(x);
-    return std::isnan(value) ? -std::numeric_limits<double>::infinity() : value;
+    return std::isnan(value) ? nowhere : value;
   }
 
   /// One slice update along each axis, by stepping out and shrinking. The steps out are limited, and a random share of

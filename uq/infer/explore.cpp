@@ -11,7 +11,6 @@
 namespace uq {
 namespace {
 
-constexpr double nowhere = -std::numeric_limits<double>::infinity();
 constexpr int trees = 5, leaf = 4;
 
 /// Log densities of all rows, in blocks over the threads.

@@ -55,7 +55,7 @@ Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::Vector
 struct Knowledge {
   std::vector<Mixture> mixtures;
   std::vector<double> log_levels;
-  double log_bulk = -std::numeric_limits<double>::infinity();  ///< density that most draws have
+  double log_bulk = nowhere;  ///< density that most draws have
   bool knows(const Eigen::VectorXd& x, double log_density) const {
     for (std::size_t i = 0; i < mixtures.size(); ++i)
       if (!(log_density - mixtures[i].log_density(x) <= log_levels[i])) return false;

@@ -7,8 +7,6 @@
 namespace uq {
 namespace {
 
-constexpr double nowhere = -std::numeric_limits<double>::infinity();
-
 /// Shape of a generalised Pareto law of rising `excess` over zero, with the weak prior about 0.5 of Vehtari et al.
 double fitted_shape(const std::vector<double>& excess) {
   const auto n = excess.size();

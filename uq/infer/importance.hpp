@@ -29,7 +29,7 @@ Proposals propose(const Target& target, const Mixture& mixture, int count, data:
 struct Weights {
   Eigen::VectorXd values;
   double efficiency = 0.0;
-  double log_evidence = -std::numeric_limits<double>::infinity();
+  double log_evidence = nowhere;
 };
 Weights importance_weights(const Proposals& made);
 

@@ -16,7 +16,7 @@ Reference uniform_reference(const Eigen::VectorXd& lower, const Eigen::VectorXd&
           .log_density =
               [lower, upper, log_volume](const Eigen::VectorXd& x) {
                 const bool inside = (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
-                return inside ? -log_volume : -std::numeric_limits<double>::infinity();
+                return inside ? -log_volume : nowhere;
               }};
 }
 
@@ -36,7 +36,6 @@ Reference normal_reference(const Eigen::VectorXd& mean, const Eigen::VectorXd& s
 }
 
 Eigen::VectorXd evaluate(const Target& target, const Eigen::MatrixXd& points) {
-  constexpr double nowhere = -std::numeric_limits<double>::infinity();
   Eigen::VectorXd values = Eigen::VectorXd::Constant(points.rows(), nowhere);
   std::vector<Eigen::Index> inside;
   inside.reserve(static_cast<std::size_t>(points.rows()));

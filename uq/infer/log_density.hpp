@@ -18,8 +18,11 @@
 
 namespace uq {
 
+/// The log density outside of the support.
+inline constexpr double nowhere = -std::numeric_limits<double>::infinity();
+
 struct Evaluation {
-  double value = -std::numeric_limits<double>::infinity();
+  double value = nowhere;
   Eigen::VectorXd gradient;
 };
 

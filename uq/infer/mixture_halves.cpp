@@ -14,7 +14,6 @@ namespace {
 
 using data::Purpose;
 using data::RandomStream;
-constexpr double nowhere = -std::numeric_limits<double>::infinity();
 
 /// Draws of the proposals where the density is more than they expect: the skirts of a spike inside a wide mode, which
 /// no draw of the reference would hit.

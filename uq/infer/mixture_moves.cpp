@@ -8,7 +8,6 @@ namespace uq {
 namespace {
 
 using data::RandomStream;
-constexpr double nowhere = -std::numeric_limits<double>::infinity();
 
 /// Along the difference of two archived points (differential evolution).
 Eigen::VectorXd archived_step(const Moves& moves, RandomStream& random) {

@@ -9,7 +9,7 @@ namespace uq {
 struct Walker {
   data::RandomStream random;
   Eigen::VectorXd x;
-  double log_density = -std::numeric_limits<double>::infinity(), log_proposal = log_density;
+  double log_density = nowhere, log_proposal = log_density;
   WeightRecord weights = {};
   std::int64_t evaluations = 0;
 };

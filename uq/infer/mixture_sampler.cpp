@@ -17,7 +17,6 @@ namespace {
 
 using data::Purpose;
 using data::RandomStream;
-constexpr double nowhere = -std::numeric_limits<double>::infinity();
 
 /// Tempers each chain from its own share of the scouts.
 std::vector<Population> temper_all(const Target& target, const Scouts& scouts, std::vector<Walker>& walkers,

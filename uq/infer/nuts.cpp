@@ -18,7 +18,6 @@ using data::Purpose;
 using data::RandomStream;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-constexpr double nowhere = -std::numeric_limits<double>::infinity();
 constexpr double energy_rise_max = 1000.0;
 
 double log_sum(double a, double b) {

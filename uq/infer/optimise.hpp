@@ -22,7 +22,7 @@ struct Held {
 
 struct Maximum {
   Eigen::VectorXd x;
-  double value = -std::numeric_limits<double>::infinity();
+  double value = nowhere;
   bool converged = false;  ///< the optimiser met its tolerance from the best start
   int evaluations = 0;
 };

@@ -20,7 +20,7 @@ struct ProposalOptions {
 struct Adaptation {
   Mixture current, best;
   double efficiency = 0.0;  ///< of the best
-  double log_evidence = -std::numeric_limits<double>::infinity();
+  double log_evidence = nowhere;
   Eigen::MatrixXd points = {};  ///< gathered so far, with their shares
   Eigen::VectorXd shares = {};
   std::int64_t evaluations = 0;

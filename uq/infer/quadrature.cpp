@@ -11,8 +11,6 @@
 namespace uq {
 namespace {
 
-constexpr double nowhere = -std::numeric_limits<double>::infinity();
-
 /// Gauss-Legendre, three points on [-1/2, 1/2]: degree 5.
 const std::array<double, 3> nodes = {-0.5 * std::sqrt(0.6), 0.0, 0.5 * std::sqrt(0.6)};
 constexpr std::array<double, 3> node_weights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};

@@ -83,7 +83,7 @@ void move(const Target& target, Population& population, MoveState& state, double
 Population temper(const Target& target, Starts starts, data::RandomStream& random, const TemperingOptions& options) {
   const Eigen::Index n = options.population;
   Population population{.x = std::move(starts.x), .log_density = std::move(starts.log_density)};
-  if (!(population.log_density.maxCoeff() > -std::numeric_limits<double>::infinity())) return population;
+  if (!(population.log_density.maxCoeff() > nowhere)) return population;
 
   MoveState state;
   double b = 0.0;

@@ -16,7 +16,6 @@
 namespace uq {
 namespace {
 
-constexpr std::array colours = {plot::blue, plot::vermillion, plot::green, plot::sky, plot::ink, plot::grey};
 constexpr std::size_t trace_points = 200;  // of each chain
 constexpr std::size_t bins = 20;
 
@@ -31,7 +30,7 @@ std::vector<std::vector<double>> chains_of(const CaseReport& result, std::size_t
   return chains;
 }
 
-const char* colour_of(std::size_t chain) { return colours[chain % colours.size()]; }
+const char* colour_of(std::size_t chain) { return plot::colours[chain % plot::colours.size()]; }
 
 }  // namespace
 

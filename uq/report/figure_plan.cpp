@@ -12,8 +12,6 @@
 namespace uq {
 namespace {
 
-constexpr std::array colours = {plot::blue, plot::vermillion, plot::green, plot::sky, plot::ink, plot::grey};
-
 /// Single settings of single outputs: what a picture against one control can show.
 std::vector<const PlanCandidate*> simple(const PlanReport& plan) {
   std::vector<const PlanCandidate*> found;
@@ -68,7 +66,7 @@ std::optional<Figure> information_figure(const PlanReport& plan, const std::stri
       std::sort(series.points.begin(), series.points.end());
       all.push_back(std::move(series));
     }
-  if (all.size() > colours.size()) all.resize(colours.size());
+  if (all.size() > plot::colours.size()) all.resize(plot::colours.size());
   plot::Extent across;
   double top = 0.0;
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .height = 360};
@@ -86,7 +84,7 @@ std::optional<Figure> information_figure(const PlanReport& plan, const std::stri
     curves += fmt::format(
         "{}'{}.dat' index 's{}' using 1:2:3 with yerrorlines linecolor rgb '{}' linewidth 1.4 "
         "pointtype {} pointsize 0.6 title {}",
-        i == 0 ? "plot " : ", \\\n  ", stem, i, colours[i], 4 + i, gnuplot_text(all[i].title));
+        i == 0 ? "plot " : ", \\\n  ", stem, i, plot::colours[i], 4 + i, gnuplot_text(all[i].title));
   }
   const plot::Extent range = across.padded(0.05);
   figure.script = plot::look() + plot::label('x', {1.0, control}) + plot::label('y', {1.0, "information (nats)"}) +
@@ -110,7 +108,7 @@ std::optional<Figure> arrow_figure(const PlanReport& plan, const std::string& st
   std::string curves;
   std::size_t i = 0;
   for (auto& [output, of] : change) {
-    if (i == colours.size()) break;
+    if (i == plot::colours.size()) break;
     auto &x = of[plan.about], &y = of[other->name];
     for (const double value : x) both.include(value);
     for (const double value : y) both.include(value);
@@ -119,7 +117,7 @@ std::optional<Figure> arrow_figure(const PlanReport& plan, const std::string& st
     curves += fmt::format(
         "{}'{}.dat' index 's{}' using 1:2:3:4 with vectors head filled size graph 0.02,20 linecolor rgb '{}' "
         "linewidth 1.3 title {}",
-        i == 0 ? "plot " : ", \\\n  ", stem, i, colours[i], gnuplot_text(output));
+        i == 0 ? "plot " : ", \\\n  ", stem, i, plot::colours[i], gnuplot_text(output));
     ++i;
   }
   const plot::Extent range = both.padded(0.08);

@@ -1,5 +1,6 @@
 #pragma once
 // What the report's figures share: blocks of data, axis scales, the look. Used by figure*.cpp.
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,8 @@ inline constexpr const char* vermillion = "#D55E00";
 inline constexpr const char* green = "#009E73";
 inline constexpr const char* ink = "#222222";
 inline constexpr const char* grey = "#777777";
+/// Of curves that stand side by side.
+inline constexpr std::array colours = {blue, vermillion, green, sky, ink, grey};
 
 /// An axis: the power of ten (a multiple of three) taken out of its numbers, and its label that says so.
 struct Axis {
