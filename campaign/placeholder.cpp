@@ -36,7 +36,7 @@ std::vector<data::Finding> placeholders(const data::Study& study) {
   for (const data::ObservationSet& set : study.observations) {
     if (rows_of(data::read_file(set.file)) != rows_of(placeholder_torque())) continue;
     found.push_back(
-        {.kind = "placeholder",
+        {.kind = data::FindingKind::placeholder,
          .place = std::filesystem::path(set.file).filename().string(),
          .severity = data::Severity::warning,
          .what = fmt::format("'{}' still holds the example that demcal new wrote, and no measurement", set.name),

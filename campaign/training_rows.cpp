@@ -24,7 +24,7 @@ void tell_unknown_rows(const data::Study& study, TrainingRows& rows) {
   };
   for (const std::string& label : study.training.leave_out)
     if (!stands(label))
-      rows.findings.push_back({.kind = "rows left out",
+      rows.findings.push_back({.kind = data::FindingKind::rows_left_out,
                                .place = study.training.place,
                                .severity = data::Severity::warning,
                                .what = fmt::format("leave_out names {}, where no row is read", label),

@@ -47,7 +47,7 @@ Action add_check(CLI::App& program) {
     rows.findings.insert(rows.findings.end(), found.begin(), found.end());
     for (data::Finding& finding : rows.findings) {
       // Before the runs are made there may be no measurement yet, so that its placeholder is no fault of the study.
-      if (finding.kind == "placeholder") finding.severity = data::Severity::note;
+      if (finding.kind == data::FindingKind::placeholder) finding.severity = data::Severity::note;
       if (finding.severity == data::Severity::warning) warnings.push_back(data::describe(finding));
       if (finding.severity == data::Severity::note) say(*common, "note: " + data::describe(finding));
     }
@@ -99,7 +99,7 @@ Action add_check(CLI::App& program) {
                        warnings.empty() ? "no problems" : counted(warnings.size(), "warning")));
     nlohmann::json findings = nlohmann::json::array();
     for (const data::Finding& finding : rows.findings)
-      findings.push_back({{"kind", finding.kind},
+      findings.push_back({{"kind", to_text(finding.kind)},
                           {"place", finding.place},
                           {"severity", data::to_text(finding.severity)},
                           {"what", finding.what},

@@ -8,6 +8,10 @@
 
 namespace data {
 
+Finding about_rows(FindingKind kind, Severity severity, const std::vector<std::string>& places) {
+  return {.kind = kind, .place = list_places(places), .severity = severity, .what = {}, .remedy = {}, .places = places};
+}
+
 std::string describe(const Finding& finding) {
   return describe({Problem{finding.place, finding.what, finding.remedy}});
 }
@@ -36,7 +40,7 @@ void refuse(const std::vector<Finding>& findings) {
   for (const Finding& finding : findings) {
     if (finding.severity != Severity::refusal) continue;
     problems.push_back({finding.place, finding.what, finding.remedy});
-    of_study = of_study && finding.kind == "case";
+    of_study = of_study && finding.kind == FindingKind::contradicted_case;
   }
   if (!problems.empty()) throw InputError(of_study ? ExitStatus::bad_study : ExitStatus::bad_data, std::move(problems));
 }

@@ -17,14 +17,56 @@ enum class Severity {
 template <>
 inline constexpr std::array texts_of<Severity> = {"note", "warning", "refusal"};
 
+/// The same kind for the same oddity.
+enum class FindingKind {
+  copied_rows,    ///< the same row more than once
+  failed_runs,    ///< a status column or zeros say so
+  rows_left_out,  ///< because the study says so
+  unread_columns,
+  seed_column,                ///< another code's
+  placeholder,                ///< the template's example still stands for a measurement
+  contradicted_case,          ///< the study contradicts its data
+  unit,                       ///< another one is suspected
+  exchanged_columns,          ///< headers that stand over each other's numbers
+  outside_the_range,          ///< rows outside of an input's range
+  range_not_covered,          ///< by the runs
+  inputs_that_move_together,  ///< in all runs
+  zero_standard_error,        ///< of a run
+  no_logarithm,               ///< of an output that is 0 or less
+  no_response,                ///< an output that does not vary
+  copied_observations,        ///< the same readings more than once
+  standard_errors,            ///< of readings, too small or too large to be meant
+};
+template <>
+inline constexpr std::array texts_of<FindingKind> = {"copied rows",
+                                                     "failed runs",
+                                                     "rows left out",
+                                                     "unread columns",
+                                                     "seed column",
+                                                     "placeholder",
+                                                     "case",
+                                                     "unit",
+                                                     "exchanged columns",
+                                                     "outside the range",
+                                                     "range not covered",
+                                                     "inputs that move together",
+                                                     "standard error 0",
+                                                     "no logarithm",
+                                                     "no response",
+                                                     "copied observations",
+                                                     "standard errors"};
+
 struct Finding {
-  std::string kind;   ///< "copied rows", "failed runs", "unit"; the same word for the same oddity
+  FindingKind kind = FindingKind::unit;
   std::string place;  ///< "runs.csv:31", or as much of it as there is
   Severity severity = Severity::warning;
   std::string what;                 ///< one sentence with its numbers
   std::string remedy;               ///< what to do about it
   std::vector<std::string> places;  ///< every row that it is about, where there are several
 };
+
+/// One about rows, at their places; what and remedy are still to be said.
+Finding about_rows(FindingKind kind, Severity severity, const std::vector<std::string>& places);
 
 /// "PLACE: WHAT (REMEDY)".
 std::string describe(const Finding& finding);
@@ -34,8 +76,8 @@ std::string list_places(const std::vector<std::string>& places, std::size_t most
 
 bool has(const std::vector<Finding>& findings, Severity severity);
 
-/// Throws InputError with every refusal, if there are any: 78 where all are of the kind "case" (the study contradicts
-/// its data), else 65.
+/// Throws InputError with every refusal, if there are any: 78 where all say that the study
+/// contradicts its data, else 65.
 void refuse(const std::vector<Finding>& findings);
 
 }  // namespace data

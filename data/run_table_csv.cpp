@@ -123,7 +123,7 @@ void tell_columns(const Csv& csv, const Columns& at, TableRead& result) {
     std::vector<std::string> names;
     for (const std::size_t column : at.unread) names.push_back(contents(csv, column));
     result.findings.push_back(
-        {.kind = "unread columns",
+        {.kind = FindingKind::unread_columns,
          .place = place,
          .severity = Severity::note,
          .what =
@@ -132,7 +132,7 @@ void tell_columns(const Csv& csv, const Columns& at, TableRead& result) {
   }
   // Our own tables have settings; a seed beside none is another code's.
   if (at.seed && !at.settings)
-    result.findings.push_back({.kind = "seed column",
+    result.findings.push_back({.kind = FindingKind::seed_column,
                                .place = place,
                                .severity = Severity::note,
                                .what = "the column seed is kept with the run and is no input; rows of one point are "
@@ -152,7 +152,7 @@ void tell_failures(TableRead& result) {
     }
     if (places.empty()) continue;
     result.findings.push_back(
-        {.kind = asked ? "rows left out" : "failed runs",
+        {.kind = asked ? FindingKind::rows_left_out : FindingKind::failed_runs,
          .place = list_places(places),
          .severity = asked ? Severity::note : Severity::warning,
          .what = fmt::format("{} {} left out: {}", places.size(), places.size() == 1 ? "row is" : "rows are", example),

@@ -27,11 +27,6 @@ constexpr std::array wanted{"use", "include", "keep"};
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
-/// A finding about rows, with their places.
-Finding about(const std::string& kind, Severity severity, const std::vector<std::string>& places) {
-  return {.kind = kind, .place = list_places(places), .severity = severity, .what = {}, .remedy = {}, .places = places};
-}
-
 void leave_out_named(TableRead& read, const Study& study) {
   std::vector<std::string> places;
   for (RunRow& row : read.table.rows)
@@ -42,7 +37,7 @@ void leave_out_named(TableRead& read, const Study& study) {
         break;
       }
   if (places.empty()) return;
-  Finding finding = about("rows left out", Severity::note, places);
+  Finding finding = about_rows(FindingKind::rows_left_out, Severity::note, places);
   finding.what = fmt::format("{} {} left out, as [training] leave_out says", places.size(),
                              places.size() == 1 ? "row is" : "rows are");
   read.findings.push_back(std::move(finding));
@@ -78,7 +73,7 @@ void leave_out_zeros(TableRead& read) {
       if (all_zero || nothing_else) row->left_out = "0 with a standard error of 0: a run that failed";
     }
     const Column& column = table.outputs[k];
-    Finding finding = about("failed runs", Severity::warning, places);
+    Finding finding = about_rows(FindingKind::failed_runs, Severity::warning, places);
     finding.what = fmt::format(
         "{} {} of {} exactly 0 with a standard error of exactly 0, where the others lie from {:.4g} to {:.4g} {}: runs "
         "that failed, and left out",
@@ -122,7 +117,7 @@ void leave_out_copies(TableRead& read) {
     places.push_back(row.place);
   }
   if (places.empty()) return;
-  Finding finding = about("copied rows", noisy ? Severity::warning : Severity::note, places);
+  Finding finding = about_rows(FindingKind::copied_rows, noisy ? Severity::warning : Severity::note, places);
   finding.what = fmt::format("{} of {} runs are copies of others to the last digit ({}): each is counted once",
                              places.size(), rows.size(), example);
   finding.remedy = "remove the copies; a replicate is a run with another seed, and differs";

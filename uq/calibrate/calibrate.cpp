@@ -20,19 +20,18 @@ namespace {
 constexpr int scan_scouts = 8000;  // of each measurement error that is tried, at most
 
 void add_findings(CalibrationReport& report, const std::vector<data::Finding>& findings) {
-  for (const data::Finding& finding : findings) {
-    report.findings.push_back(
-        {finding.kind, finding.place, finding.severity, finding.what, finding.remedy, finding.places});
+  report.findings.insert(report.findings.end(), findings.begin(), findings.end());
+  for (const data::Finding& finding : findings)
     (finding.severity == data::Severity::note ? report.cautions : report.warnings).push_back(data::describe(finding));
-  }
 }
 
 /// What is suspected of units and errors comes before any other remedy.
 void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& findings) {
+  using enum data::FindingKind;
   for (const data::Finding& finding : findings)
     if (finding.severity == data::Severity::warning &&
-        (finding.kind == "unit" || finding.kind == "standard errors" || finding.kind == "no response")) {
-      report.remedy = fmt::format("First settle what is said of the data ({}: {}). Then: {}", finding.kind,
+        (finding.kind == unit || finding.kind == standard_errors || finding.kind == no_response)) {
+      report.remedy = fmt::format("First settle what is said of the data ({}: {}). Then: {}", to_text(finding.kind),
                                   finding.place, report.remedy);
       return;
     }

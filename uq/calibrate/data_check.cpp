@@ -17,15 +17,6 @@ namespace {
 using data::Finding;
 using data::Severity;
 
-Finding about(const std::string& kind, Severity severity, const std::vector<std::string>& places) {
-  return {.kind = kind,
-          .place = data::list_places(places),
-          .severity = severity,
-          .what = {},
-          .remedy = {},
-          .places = places};
-}
-
 double share_inside(const Column& column, double low, double high, double factor = 1.0) {
   const double slack = 0.01 * (high - low);
   const auto inside = std::count_if(column.values.begin(), column.values.end(), [&](double value) {
@@ -48,7 +39,7 @@ std::optional<Finding> other_unit(const Column& column) {
     for (const double factor : {known.factor, 1.0 / known.factor}) {
       if (share_inside(column, column.low, column.high, factor) < 0.95 || span(column, factor) < 0.4) continue;
       const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
-      Finding finding{.kind = "unit",
+      Finding finding{.kind = data::FindingKind::unit,
                       .place = column.places.front(),
                       .severity = inside < 0.5 && column.is_parameter ? Severity::refusal : Severity::warning,
                       .what = {},
@@ -84,7 +75,7 @@ std::optional<Finding> exchanged(const Column& a, const Column& b, double share)
     return fmt::format("{:.4g} to {:.4g}", column.shown(*least), column.shown(*most));
   };
   return Finding{
-      .kind = "exchanged columns",
+      .kind = data::FindingKind::exchanged_columns,
       .place = a.places.front(),
       .severity = Severity::refusal,
       .what = fmt::format("the columns {} and {} look exchanged: the runs' {} lies from {} and their {} from "
@@ -123,7 +114,7 @@ std::optional<Finding> exchanged_output(const data::Study& study, const data::Ru
         20 * static_cast<std::size_t>(as_measured) < 19 * control.values.size())
       continue;
     return Finding{
-        .kind = "exchanged columns",
+        .kind = data::FindingKind::exchanged_columns,
         .place = control.places.front(),
         .severity = Severity::refusal,
         .what = fmt::format("the columns {} and {} look exchanged: the runs' {} lies where {} was measured "
@@ -208,7 +199,7 @@ std::vector<Finding> check_ranges(const data::Study& study, data::RunTable& tabl
     if (near.empty() && far.empty()) continue;
     std::vector<std::string> places = far;
     places.insert(places.end(), near.begin(), near.end());
-    Finding finding = about("outside the range", Severity::warning, places);
+    Finding finding = data::about_rows(data::FindingKind::outside_the_range, Severity::warning, places);
     finding.what = fmt::format(
         "{} of {} rows have {} outside its range, {:.4g} to {:.4g}{} ({}{:.4g})", places.size(), column.values.size(),
         column.name, column.shown(column.low), column.shown(column.high), column.unit_text(),
@@ -243,7 +234,7 @@ std::vector<Finding> check_outputs(const data::Study& study, const data::RunTabl
     }
     if (count == 0) continue;
     if (!exact.empty() && 2 * with_error > count) {
-      Finding finding = about("standard error 0", Severity::warning, exact);
+      Finding finding = data::about_rows(data::FindingKind::zero_standard_error, Severity::warning, exact);
       finding.what = fmt::format("{} {} a standard error of 0 for {}, where the other {} have one: {} taken as exact",
                                  exact.size(), exact.size() == 1 ? "row has" : "rows have", output.name, with_error,
                                  exact.size() == 1 ? "it is" : "they are");
@@ -251,13 +242,13 @@ std::vector<Finding> check_outputs(const data::Study& study, const data::RunTabl
       findings.push_back(std::move(finding));
     }
     if (!no_logarithm.empty()) {
-      Finding finding = about("no logarithm", Severity::refusal, no_logarithm);
+      Finding finding = data::about_rows(data::FindingKind::no_logarithm, Severity::refusal, no_logarithm);
       finding.what = fmt::format("{} is not above 0, and surrogate.log_outputs learns its logarithm", output.name);
       finding.remedy = "leave the rows out ([training] leave_out), or leave the output out of log_outputs";
       findings.push_back(std::move(finding));
     }
     if (count > 2 && !(most > least))
-      findings.push_back({.kind = "no response",
+      findings.push_back({.kind = data::FindingKind::no_response,
                           .place = table.rows.front().place,
                           .severity = Severity::warning,
                           .what = fmt::format("{} is {:.5g}{}{} in all {} runs: it does not respond to any input, and "

@@ -60,7 +60,7 @@ void check_together(const std::string& material, const std::vector<const Column*
   const std::string of = material.empty() ? "" : " of " + material;
   std::set<Eigen::Index> told;
   const auto add = [&](const std::string& what, const std::string& vary) {
-    findings.push_back({.kind = "inputs that move together",
+    findings.push_back({.kind = data::FindingKind::inputs_that_move_together,
                         .place = columns.front()->places.front(),
                         .severity = Severity::warning,
                         .what = what,
@@ -109,7 +109,7 @@ void check_cover(const data::Study& study, const Column& column, const Eigen::Ve
   if (high - low >= t.covered || !is_free(study, column.name)) return;
   const data::Parameter& parameter = study.parameters[*study.parameter_index(column.name)];
   findings.push_back(
-      {.kind = "range not covered",
+      {.kind = data::FindingKind::range_not_covered,
        .place = column.places.front(),
        .severity = Severity::warning,
        .what =

@@ -52,7 +52,7 @@ std::optional<Finding> two_units(const data::Output& output, std::vector<Entry> 
   if (!known || parted_by_an_input(low, high)) return {};
   std::vector<std::string> places;
   for (const Entry& entry : low.size() < high.size() ? low : high) places.push_back(entry.row->place);
-  return Finding{.kind = "unit",
+  return Finding{.kind = data::FindingKind::unit,
                  .place = data::list_places(places),
                  .severity = data::Severity::warning,
                  .what = fmt::format("{} of {} rows have {} about {:.3g} times {} than the others, and nothing in "
@@ -91,7 +91,7 @@ std::optional<Finding> other_readings(const data::Study& study, const data::RunT
   }
   if (places.empty() || inside < places.size()) return {};
   return Finding{
-      .kind = "unit",
+      .kind = data::FindingKind::unit,
       .place = data::list_places(places),
       .severity = data::Severity::warning,
       .what = fmt::format("{} of {} readings of {} lie far outside all runs, where the others lie among them. "

@@ -43,7 +43,7 @@ struct Extent {
 
 void check_copies(const data::ObservationSet& set, std::vector<Finding>& findings) {
   if (set.copies.empty()) return;
-  Finding finding{.kind = "copied observations",
+  Finding finding{.kind = data::FindingKind::copied_observations,
                   .place = {},
                   .severity = Severity::warning,
                   .what = {},
@@ -92,7 +92,7 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
     const auto shown = [&](double si) { return output.unit.from_si(si); };
     const std::string unit = output.unit.symbol.empty() ? "" : " " + output.unit.symbol;
     Finding finding{
-        .kind = "unit",
+        .kind = data::FindingKind::unit,
         .place = place_of(set, set.points.front()) + ": " + output.name,
         .severity = Severity::warning,
         .what = fmt::format("observed {:.4g}{}{} lie{} outside all runs, {:.4g} to {:.4g}{}", shown(seen.low),
@@ -135,7 +135,7 @@ void check_control_unit(const data::Study& study, const data::RunTable& table, c
           known = &candidate;
     if (known == nullptr) continue;
     findings.push_back(
-        {.kind = "unit",
+        {.kind = data::FindingKind::unit,
          .place = place_of(set, set.points.front()) + ": " + control.name,
          .severity = Severity::warning,
          .what = fmt::format(
@@ -224,7 +224,7 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
     if (!(too_large && percent_fits) && !too_small) continue;
     const double scatter =
         too_small ? std::sqrt(chi2(*bent, error) / (dof - 1.0)) : std::sqrt(chi2(*found, error) / dof);
-    Finding finding{.kind = "standard errors",
+    Finding finding{.kind = data::FindingKind::standard_errors,
                     .place = fmt::format("{}: {}_se", place_of(set, set.points.front()), output.name),
                     .severity = Severity::warning,
                     .what = {},
@@ -292,7 +292,7 @@ std::vector<Finding> check_cases(const data::Study& study, const data::RunTable&
           return known.place == problem.place && known.what == problem.what;
         });
         if (!told)
-          findings.push_back({.kind = "case",
+          findings.push_back({.kind = data::FindingKind::contradicted_case,
                               .place = problem.place,
                               .severity = Severity::refusal,
                               .what = problem.what,

@@ -33,7 +33,7 @@ struct Column {
 template <class Struct, class Field>
 Column(const char*, Field Struct::*) -> Column<Struct, Field>;
 
-template <class Visit, SameAs<DataFinding> T>
+template <class Visit, SameAs<data::Finding> T>
 void visit_fields(Visit&& visit, T& f) {
   visit("kind", f.kind);
   visit("place", f.place);

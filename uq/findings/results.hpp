@@ -13,14 +13,6 @@
 
 namespace uq {
 
-/// What is odd in the data (data/finding.hpp), as told.
-struct DataFinding {
-  std::string kind, place;
-  data::Severity severity = data::Severity::warning;
-  std::string what, remedy;
-  std::vector<std::string> places;
-};
-
 /// A run that the others contradict (uq/emulate/outlying_runs.hpp).
 struct OutlyingRun {
   std::string place;                      ///< "runs.csv:31"
@@ -379,10 +371,10 @@ struct CalibrationReport {
   std::vector<ErrorScan> error_scan;
   std::vector<std::pair<std::string, std::string>> thresholds;  ///< "contraction for identified" -> "0.9"
   std::vector<std::pair<std::string, std::string>>
-      provenance;                     ///< version, hashes, instruction set, seeds, table, times
-  std::vector<std::string> notes;     ///< choices the source does not give, shown beside the verdicts
-  std::vector<DataFinding> findings;  ///< of rows and observations
-  std::vector<std::string> cautions;  ///< said on the first screen, without making the status a warning
+      provenance;                       ///< version, hashes, instruction set, seeds, table, times
+  std::vector<std::string> notes;       ///< choices the source does not give, shown beside the verdicts
+  std::vector<data::Finding> findings;  ///< of rows and observations
+  std::vector<std::string> cautions;    ///< said on the first screen, without making the status a warning
 };
 
 }  // namespace uq

@@ -10,7 +10,6 @@
 namespace uq {
 namespace {
 
-constexpr double nowhere = -std::numeric_limits<double>::infinity();
 constexpr Eigen::Index points_at_once = 32;  // predicted together
 
 /// Writes the rows of a group at u into `points`, from row `first` on.

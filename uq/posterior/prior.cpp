@@ -114,7 +114,6 @@ double ScaledPrior::law_inverse(double probability, bool upper) const {
 }
 
 double ScaledPrior::log_density_of_value(double x) const {
-  constexpr double nowhere = -std::numeric_limits<double>::infinity();
   const double log_root = 0.5 * std::log(2.0 * std::numbers::pi);
   switch (prior_.kind) {
     case PriorKind::uniform:

@@ -14,8 +14,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double nowhere = -std::numeric_limits<double>::infinity();
-
 double log_sum(const Eigen::VectorXd& logs) {
   const double largest = logs.size() == 0 ? nowhere : logs.maxCoeff();
   if (!std::isfinite(largest)) return nowhere;

@@ -96,10 +96,10 @@ Markup error_scan_section(const CalibrationReport& report) {
          table;
 }
 
-Markup findings_section(const std::vector<DataFinding>& findings) {
+Markup findings_section(const std::vector<data::Finding>& findings) {
   if (findings.empty()) return {};
   Table table{.columns = {{"Kind"}, {"Where"}, {"What", lengthy}, {"What to do", lengthy}}};
-  for (const DataFinding& one : findings) table.rows.push_back({one.kind, one.place, one.what, one.remedy});
+  for (const data::Finding& one : findings) table.rows.push_back({to_text(one.kind), one.place, one.what, one.remedy});
   return tag::p("What is odd in the data, found before anything was fitted.") + table;
 }
 

@@ -169,7 +169,7 @@ TEST_CASE("a column in another unit is suspected from its range, and refused whe
     files.each_run([](Row& row) { row.cohesion *= 1e-3; });
     const Looked looked = look(files);
     REQUIRE_FALSE(looked.findings.empty());
-    CHECK(looked.findings[0].kind == "unit");
+    CHECK(looked.findings[0].kind == data::FindingKind::unit);
     CHECK(looked.findings[0].severity == Severity::warning);
     CHECK_THAT(looked.findings[0].what, Contains("times 1000 it would fill it"));
   }
@@ -190,7 +190,8 @@ TEST_CASE("a column in another unit is suspected from its range, and refused whe
     files.each_reading([](Row& row) { row.speed /= 60.0; });
     bool said = false;
     for (const data::Finding& finding : look(files).findings)
-      said = said || (finding.kind == "unit" && finding.what.find("minutes against seconds") != std::string::npos);
+      said = said || (finding.kind == data::FindingKind::unit &&
+                      finding.what.find("minutes against seconds") != std::string::npos);
     CHECK(said);
   }
 }
@@ -217,7 +218,7 @@ TEST_CASE("rows of one output in another unit than the others are named, and a m
       // By 9.8 the two groups are nearer to each other than they are wide.
       REQUIRE(found.size() == (factor == 9.80665 ? 0U : 1U));
       if (found.empty()) continue;
-      CHECK(found[0].kind == "unit");
+      CHECK(found[0].kind == data::FindingKind::unit);
       CHECK(found[0].severity == Severity::warning);
       CHECK(found[0].places.size() == 20);
       CHECK_THAT(found[0].what, Contains("20 of 60 rows") && Contains("one prefix"));
@@ -254,7 +255,7 @@ TEST_CASE("a range narrowed below the table's is neither an exchange nor a unit"
   Files files;
   files.parameters =
       "[parameters.friction]\nlow = 0.3\nhigh = 0.5\n[parameters.cohesion]\nunit = \"mJ/m2\"\nlow = 2\nhigh = 6\n";
-  for (const data::Finding& finding : look(files).findings) CHECK(finding.kind == "outside the range");
+  for (const data::Finding& finding : look(files).findings) CHECK(finding.kind == data::FindingKind::outside_the_range);
 }
 
 TEST_CASE("standard errors in percent are suspected from the scatter, and as shares of the value likewise", "[uq]") {
