@@ -85,7 +85,7 @@ Point parse_point(const Workspace& workspace, const std::string& material, const
                   fmt::format("{} is outside the possible range [{:g}, {:g}] of {}", with_unit(value, found->unit),
                               found->unit.from_si(target.low), found->unit.from_si(target.high), target.name),
                   "choose a value inside it");
-    point.inputs[static_cast<std::size_t>(found - inputs.begin())] = value;
+    point.inputs[found - inputs.begin()] = value;
   }
   return point;
 }

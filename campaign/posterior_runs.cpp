@@ -71,13 +71,11 @@ Point to_point(const Workspace& workspace, const std::vector<uq::FittedSurrogate
   }
   for (std::size_t p = 0; p < study.parameters.size(); ++p)
     if (varied_parameter[p] && static_cast<Index>(p) < run.parameters.size())
-      point.inputs[p] = five_digits(study.parameters[p].axis().from_unit(run.parameters[static_cast<Index>(p)]),
-                                    study.parameters[p].unit);
+      point.inputs[p] = five_digits(study.parameters[p].axis().from_unit(run.parameters[p]), study.parameters[p].unit);
   for (std::size_t c = 0; c < study.controls.size(); ++c)
     if (varied_control[c] && static_cast<Index>(c) < run.controls.size()) {
       const data::Control& control = study.controls[c];
-      point.inputs[study.parameters.size() + c] =
-          five_digits(control.axis().from_unit(run.controls[static_cast<Index>(c)]), control.unit);
+      point.inputs[study.parameters.size() + c] = five_digits(control.axis().from_unit(run.controls[c]), control.unit);
     }
   return point;
 }

@@ -89,9 +89,7 @@ dem::RunResult run_point(const Workspace& workspace, const Point& point, const P
                                : ended(*before, c) ? ~std::uint64_t{0}
                                                    : before->result.checkpoint.state.step;
   for (int k = 0; k < options.frames && before; ++k)
-    if (frames[static_cast<std::size_t>(k)] <= passed &&
-        !dem::is_frame(dem::frame_path(options.frames_folder, k), tag(k)))
-      before.reset();
+    if (frames[k] <= passed && !dem::is_frame(dem::frame_path(options.frames_folder, k), tag(k))) before.reset();
   if (before && ended(*before, c)) return before->result;
 
   dem::RunOptions run{.threads = options.threads, .stop = options.stop, .progress = options.progress};

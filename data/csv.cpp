@@ -298,7 +298,7 @@ void read_columns(Table& table) {
       const Heading split = read_heading(std::string_view(list).substr(at, comma - at));
       const auto found = std::find(csv.columns.begin(), csv.columns.end(), split.name);
       if (found == csv.columns.end() || split.unit.empty()) continue;
-      std::string& unit = csv.units[static_cast<std::size_t>(found - csv.columns.begin())];
+      std::string& unit = csv.units[found - csv.columns.begin()];
       if (unit.empty()) unit = split.unit;
     }
   }

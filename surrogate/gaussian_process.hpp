@@ -141,7 +141,12 @@ class GaussianProcess {
   MeanBasis mean() const { return mean_; }
   bool nugget() const { return nugget_; }
   const Standardised& data() const { return *data_; }
+  /// The mode first, which is reported.
   const std::vector<Conditioned>& parts() const { return *parts_; }
+  /// Those that predictions average over: all parts but a mode that only stands for them.
+  std::span<const Conditioned> averaged() const {
+    return std::span(*parts_).subspan(parts_->size() > 1 && parts_->front().weight == 0.0 ? 1 : 0);
+  }
   const FitDiagnostics& diagnostics() const { return *diagnostics_; }
 
  private:

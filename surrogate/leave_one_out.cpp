@@ -29,7 +29,7 @@ LeaveOneOut GaussianProcess::leave_one_out() const {
                      Eigen::VectorXd::Zero(n)};
   // Moments of z per run over the parts, then to y.
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(n), second = mean, noise = mean;
-  for (const Conditioned& part : *parts_) {
+  for (const Conditioned& part : averaged()) {
     const Factorised& f = part.factorised;
     const Eigen::VectorXd precision = precision_diagonal(f);
     for (Index i = 0; i < n; ++i) {

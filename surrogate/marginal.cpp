@@ -228,7 +228,7 @@ HyperPosterior hyper_posterior(const Objective& objective, const VectorXd& mode)
 IntegrationOptions integration_options(Index points, std::uint64_t seed) {
   IntegrationOptions options{.seed = seed};
   if (points > 128) options.draws = 256;
-  if (points > 512) options = {.draws = 64, .stages = 2, .nodes = 16, .seed = seed};
+  if (points > 512) options = {.draws = 64, .stages = 2, .nodes = 6, .seed = seed};
   return options;
 }
 

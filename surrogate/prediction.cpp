@@ -114,14 +114,14 @@ Prediction GaussianProcess::predict(const Eigen::MatrixXd& points) const {
 
 void GaussianProcess::predict(const Eigen::MatrixXd& points, PredictionWorkspace& workspace, Prediction& result) const {
   check_points(points, dimension());
-  if (parts_->size() == 1) {
-    cross(parts_->front(), *this, points, Slopes::no, workspace);
-    latent(parts_->front(), *this, {0, points.rows()}, workspace, result);
+  if (averaged().size() == 1) {
+    cross(averaged().front(), *this, points, Slopes::no, workspace);
+    latent(averaged().front(), *this, {0, points.rows()}, workspace, result);
     rescale(*data_, result);
     return;
   }
   Mixture mixture;
-  for (const Conditioned& part : *parts_) {
+  for (const Conditioned& part : averaged()) {
     cross(part, *this, points, Slopes::no, workspace);
     latent(part, *this, {0, points.rows()}, workspace, workspace.part);
     rescale(*data_, workspace.part);
@@ -135,7 +135,7 @@ Eigen::VectorXd GaussianProcess::predict_mean(const Eigen::MatrixXd& points) con
   if (data_->scale != OutputScale::linear) return predict(points).mean;
   PredictionWorkspace workspace;
   Eigen::VectorXd origin, shift, mean;
-  for (const Conditioned& part : *parts_) {
+  for (const Conditioned& part : averaged()) {
     correlate_with_runs(part, *this, points, Slopes::no, workspace);
     latent_mean(part, {0, points.rows()}, workspace, mean);
     mean = (data_->shift + data_->unit * mean.array()).matrix();
@@ -159,8 +159,8 @@ std::vector<Prediction> GaussianProcess::predict_batch(const Eigen::MatrixXd& po
   for (Index first = 0; first < groups; first += block) {
     const Index count = std::min(block, groups - first);
     const Eigen::MatrixXd rows = points.middleRows(first * group, count * group);
-    std::vector<Mixture> mixtures(parts_->size() > 1 ? static_cast<std::size_t>(count) : 0);
-    for (const Conditioned& part : *parts_) {
+    std::vector<Mixture> mixtures(averaged().size() > 1 ? static_cast<std::size_t>(count) : 0);
+    for (const Conditioned& part : averaged()) {
       cross(part, *this, rows, Slopes::no, workspace);
       for (Index g = 0; g < count; ++g) {
         Prediction& result = mixtures.empty() ? results[first + g] : workspace.part;
@@ -183,7 +183,7 @@ MarginalPrediction GaussianProcess::predict_marginal(const Eigen::MatrixXd& poin
     const Index count = std::min(block, points.rows() - first);
     const Eigen::MatrixXd rows = points.middleRows(first, count);
     Eigen::VectorXd origin, shift = Eigen::VectorXd::Zero(count), spread = Eigen::VectorXd::Zero(count);
-    for (const Conditioned& part : *parts_) {
+    for (const Conditioned& part : averaged()) {
       cross(part, *this, rows, Slopes::no, workspace);
       Eigen::VectorXd mean = workspace.correlations.transpose() * part.factorised.residual_weights;
       if (workspace.projected.rows() > 0) mean += workspace.basis * part.factorised.mean_coefficients;

@@ -50,7 +50,7 @@ void GaussianProcess::predict_with_gradient(const Eigen::MatrixXd& points, std::
   check_points(points, dimension());
   const Index m = points.rows();
   const std::size_t wanted = coordinates.size();
-  const bool single = parts_->size() == 1;
+  const bool single = averaged().size() == 1;
   PredictionGradient& target = single ? result : workspace.gradient_part;
 
   Eigen::VectorXd origin, shift;  // mixture of the gradients, as in Mixture
@@ -58,7 +58,7 @@ void GaussianProcess::predict_with_gradient(const Eigen::MatrixXd& points, std::
   std::vector<Eigen::MatrixXd> spread_gradient(wanted);
   Mixture mixture;
 
-  for (const Conditioned& part : *parts_) {
+  for (const Conditioned& part : averaged()) {
     cross(part, *this, points, Slopes::yes, workspace);
     latent(part, *this, {0, m}, workspace, target.value);
     const Index n = part.scaled_points.rows(), p = workspace.projected.rows();

@@ -35,7 +35,7 @@ struct OldPairs {
   }
   const VectorRow* history_of(std::uint32_t slot) const {
     const auto after = std::upper_bound(chunk_pair.begin(), chunk_pair.end(), slot);
-    const Pool<VectorRow>& pool = history[static_cast<std::size_t>(after - chunk_pair.begin() - 1)];
+    const Pool<VectorRow>& pool = history[after - chunk_pair.begin() - 1];
     return pool.rows.data() + history_at[slot] * pool.width;
   }
 };

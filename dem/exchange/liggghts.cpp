@@ -159,7 +159,7 @@ std::string data_file(const BuiltRig& rig, const Types& types) {
   Vec3 low = rig.low, high = rig.high;
   const double margin = 0.01 * length(rig.high - rig.low);
   for (const auto& [axis, at] : {std::pair{0, &Vec3::x}, {1, &Vec3::y}, {2, &Vec3::z}}) {
-    if (rig.periodic[static_cast<std::size_t>(axis)]) continue;
+    if (rig.periodic[axis]) continue;
     low.*at -= margin;
     high.*at += margin;
   }
@@ -192,8 +192,7 @@ TriangleMesh in_box(const TriangleMesh& mesh, const BuiltRig& rig) {
     Vec3 shift;
     for (const auto& [axis, at] : {std::pair{0, &Vec3::x}, {1, &Vec3::y}, {2, &Vec3::z}}) {
       const double period = rig.high.*at - rig.low.*at;
-      if (rig.periodic[static_cast<std::size_t>(axis)])
-        shift.*at = -period * std::floor((centre.*at - rig.low.*at) / period);
+      if (rig.periodic[axis]) shift.*at = -period * std::floor((centre.*at - rig.low.*at) / period);
     }
     const auto first = static_cast<std::uint32_t>(moved.vertices.size());
     for (const auto corner : corners) moved.vertices.push_back(mesh.vertices[corner] + shift);

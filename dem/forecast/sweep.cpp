@@ -24,9 +24,7 @@ struct Mark {
 /// About `count` points, evenly by area, by length along sharp edges, and corners; the same at every call.
 std::vector<Mark> marks_of(const TriangleMesh& mesh, std::size_t count) {
   std::vector<Mark> marks;
-  const auto corner = [&](std::size_t t, int k) {
-    return mesh.vertices[mesh.triangles[t][static_cast<std::size_t>(k)]];
-  };
+  const auto corner = [&](std::size_t t, int k) { return mesh.vertices[mesh.triangles[t][k]]; };
   std::vector<double> area;  // summed
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Vec3>> normals;
   double all = 0.0;
@@ -131,8 +129,7 @@ class Follower {
     find_touches(surface_, features_, p, reach_, touches_);
     std::optional<Touch> best;
     for (int k = 0; k < touches_.count; ++k)
-      if (!best || touches_.touch[static_cast<std::size_t>(k)].distance < best->distance)
-        best = touches_.touch[static_cast<std::size_t>(k)];
+      if (!best || touches_.touch[k].distance < best->distance) best = touches_.touch[k];
     return best;
   }
 

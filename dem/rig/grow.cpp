@@ -180,8 +180,8 @@ class Bed {
           c = (c + l.n[a]) % l.n[a];
         }
         if (c < 0 || c >= l.n[a]) continue;
-        along[a].cell[static_cast<std::size_t>(along[a].count)] = c;
-        along[a].shift[static_cast<std::size_t>(along[a].count++)] = shift;
+        along[a].cell[along[a].count] = c;
+        along[a].shift[along[a].count++] = shift;
       }
     }
     for (int i = 0; i < along[0].count; ++i)
@@ -243,7 +243,7 @@ class Bed {
     find_touches(surfaces_[w.body], features_, p, r, touches_);
     double deepest = 0.0;
     for (int t = 0; t < touches_.count; ++t) {
-      const Touch& touch = touches_.touch[static_cast<std::size_t>(t)];
+      const Touch& touch = touches_.touch[t];
       most_[w.sphere] = std::min(most_[w.sphere], touch.distance);
       deepest = std::max(deepest, 1.0 - touch.distance / r);
       push_[w.sphere] += (r - touch.distance) * rotate(start_[w.body].rotation, touch.normal);

@@ -23,7 +23,7 @@ Eigen::VectorXd scaled(const data::Study& study, const Column& column) {
                                               : study.controls[*study.control_index(column.name)].axis();
   Eigen::VectorXd u(static_cast<Eigen::Index>(column.values.size()));
   for (Eigen::Index i = 0; i < u.size(); ++i) {
-    const double value = column.values[static_cast<std::size_t>(i)];
+    const double value = column.values[i];
     u[i] = axis.to_unit(value);
   }
   return u;
@@ -71,8 +71,7 @@ void check_together(const std::string& material, const std::vector<const Column*
     for (Eigen::Index b = a + 1; b < inputs; ++b) {
       const double r = plain(a, b), s = of_ranks(a, b);
       if (std::max(std::abs(r), std::abs(s)) < t.together) continue;
-      const std::string &first = columns[static_cast<std::size_t>(a)]->name,
-                        &second = columns[static_cast<std::size_t>(b)]->name;
+      const std::string &first = columns[a]->name, &second = columns[b]->name;
       add(fmt::format("{} and {} move together in all {} runs{} (correlation {:.3f}, of ranks {:.3f}): the runs cannot "
                       "tell their effects apart",
                       first, second, runs, of, r, s),
@@ -86,7 +85,7 @@ void check_together(const std::string& material, const std::vector<const Column*
   for (Eigen::Index k = 0; k < inputs; ++k) {
     const double multiple = 1.0 - 1.0 / inverse(k, k);
     if (told.contains(k) || multiple < t.multiple) continue;
-    const std::string& name = columns[static_cast<std::size_t>(k)]->name;
+    const std::string& name = columns[k]->name;
     add(fmt::format(
             "{} follows from the other inputs in all {} runs{} (R2 {:.4f}): the runs cannot tell its effect from "
             "theirs",

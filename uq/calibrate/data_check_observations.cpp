@@ -168,7 +168,7 @@ std::optional<Eigen::ArrayXd> residuals2(const data::Study& study, const data::O
   if (varied == study.controls.size()) return {};
   Eigen::ArrayXd x(rows), y(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const data::Observation& point = set.points[static_cast<std::size_t>(i)];
+    const data::Observation& point = set.points[i];
     x[i] = point.controls[varied];
     y[i] = point.values[column];
   }
@@ -205,8 +205,8 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
     const Eigen::Index rows = found->size();
     Eigen::ArrayXd error(rows), value(rows);
     for (Eigen::Index i = 0; i < rows; ++i) {
-      error[i] = set.points[static_cast<std::size_t>(i)].standard_errors[column] / output.unit.factor;
-      value[i] = std::abs(output.unit.from_si(set.points[static_cast<std::size_t>(i)].values[column]));
+      error[i] = set.points[i].standard_errors[column] / output.unit.factor;
+      value[i] = std::abs(output.unit.from_si(set.points[i].values[column]));
     }
     const double dof = static_cast<double>(rows - terms_of(rows));
     const auto chi2 = [&](const Eigen::ArrayXd& residuals2, const Eigen::ArrayXd& s) {

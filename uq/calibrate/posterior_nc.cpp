@@ -180,7 +180,7 @@ void write_unknowns(const File& file, const SampledCase& sampled) {
   Group group(file, "posterior");
   chain_dimensions(group, sampled.draws);
   for (int k = 0; k < sampled.model->dimension(); ++k) {
-    const Slot& slot = sampled.model->slots[static_cast<std::size_t>(k)];
+    const Slot& slot = sampled.model->slots[k];
     const data::Parameter& parameter = slot.prior.parameter();
     std::vector<double> values;
     for (const auto& chain : sampled.draws.chains)
@@ -283,7 +283,7 @@ std::string draws_csv(const SampledCase& sampled) {
     for (Eigen::Index i = 0; i < chain.x.rows(); ++i) {
       rows += fmt::format("{},{}", c, i);
       for (int k = 0; k < sampled.model->dimension(); ++k) {
-        const Slot& slot = sampled.model->slots[static_cast<std::size_t>(k)];
+        const Slot& slot = sampled.model->slots[k];
         rows += fmt::format(",{:.10g}", slot.prior.parameter().unit.from_si(slot.value(chain.x(i, k))));
       }
       rows += fmt::format(",{:.10g}\n", chain.log_density[i]);

@@ -34,8 +34,7 @@ void add_diagnostics(CaseReport& report, const SampledCase& sampled) {
 
 void add_nuisances(CaseReport& report, const SampledCase& sampled) {
   for (int k = 0; k < sampled.model->dimension(); ++k)
-    if (sampled.model->slots[static_cast<std::size_t>(k)].nuisance != Acts::none)
-      report.nuisances.push_back(summary_of(sampled, k));
+    if (sampled.model->slots[k].nuisance != Acts::none) report.nuisances.push_back(summary_of(sampled, k));
 }
 
 /// Separate regions of the posterior, in the study's units. Where the sampler has missed one, it has not converged.
@@ -44,7 +43,7 @@ void add_modes(CaseReport& report, const CaseModel& model, const Identification&
     for (const Mode& mode : found.modes) {
       ModeReport made{.weight = mode.weight, .mean = {}, .sd = {}};
       for (int k = 0; k < model.own_count(); ++k) {
-        const Slot& slot = model.slots[static_cast<std::size_t>(k)];
+        const Slot& slot = model.slots[k];
         const data::Unit& unit = slot.prior.parameter().unit;
         made.mean[slot.label] = unit.from_si(slot.value(mode.mean[k]));
         made.sd[slot.label] = mode.sd[k] * std::abs(slot.slope(mode.mean[k])) / unit.factor;
@@ -64,7 +63,7 @@ void add_draws(CaseReport& report, const CaseModel& model, const Eigen::MatrixXd
   const Eigen::Index own = model.own_count();
   Eigen::MatrixXd values = draws.leftCols(own);
   for (Eigen::Index k = 0; k < own; ++k) {
-    const data::Parameter& parameter = model.slots[static_cast<std::size_t>(k)].prior.parameter();
+    const data::Parameter& parameter = model.slots[k].prior.parameter();
     for (Eigen::Index i = 0; i < values.rows(); ++i)
       values(i, k) = parameter.unit.from_si(parameter.axis().from_unit(values(i, k)));
   }
@@ -73,9 +72,7 @@ void add_draws(CaseReport& report, const CaseModel& model, const Eigen::MatrixXd
   report.correlation.assign(static_cast<std::size_t>(own), std::vector<double>(static_cast<std::size_t>(own), 1.0));
   for (Eigen::Index a = 0; a < own; ++a)
     for (Eigen::Index b = 0; b < own; ++b)
-      if (a != b)
-        report.correlation[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =
-            centred.col(a).dot(centred.col(b)) / (length[a] * length[b]);
+      if (a != b) report.correlation[a][b] = centred.col(a).dot(centred.col(b)) / (length[a] * length[b]);
   const Eigen::MatrixXd plotted = thinned(values, 1500);
   for (Eigen::Index i = 0; i < plotted.rows(); ++i) {
     std::vector<double> row;
@@ -215,7 +212,7 @@ void add_warnings(CaseReport& report, const SampledCase& sampled) {
 }  // namespace
 
 NuisanceReport summary_of(const SampledCase& sampled, int unknown) {
-  const Slot& slot = sampled.model->slots[static_cast<std::size_t>(unknown)];
+  const Slot& slot = sampled.model->slots[unknown];
   const data::Unit& unit = slot.prior.parameter().unit;
   Eigen::VectorXd values = sampled.draws.coordinate(unknown).reshaped();
   for (double& value : values) value = unit.from_si(slot.value(value));

@@ -15,7 +15,7 @@ namespace {
 /// Index of the unknown of this name in another case's model.
 int unknown_of(const CaseModel& model, const std::string& name) {
   for (int k = 0; k < model.dimension(); ++k)
-    if (model.slots[static_cast<std::size_t>(k)].label == name) return k;
+    if (model.slots[k].label == name) return k;
   return -1;
 }
 
@@ -31,9 +31,9 @@ GivenDraws given_draws(const SampledCase& sampled) {
   GivenDraws given;
   const CaseModel& model = *sampled.model;
   for (int k = 0; k < model.dimension(); ++k)
-    if (!model.slots[static_cast<std::size_t>(k)].cut_from.empty()) given.unknowns.push_back(k);
+    if (!model.slots[k].cut_from.empty()) given.unknowns.push_back(k);
   for (const int unknown : given.unknowns) {
-    const Slot& slot = model.slots[static_cast<std::size_t>(unknown)];
+    const Slot& slot = model.slots[unknown];
     const SampledCase& source = source_of(sampled, slot);
     const Eigen::MatrixXd column = source.draws.coordinate(unknown_of(*source.model, slot.label));
     const Eigen::Index rows =

@@ -21,7 +21,7 @@ constexpr int band_simulations = 2000;
 std::vector<int> counts_below(const std::vector<int>& ranks, int rank_max) {
   std::vector<int> below(static_cast<std::size_t>(rank_max), 0);
   for (const int rank : ranks)
-    if (rank < rank_max) ++below[static_cast<std::size_t>(rank)];  // below[i - 1] counts rank i - 1 so far
+    if (rank < rank_max) ++below[rank];  // below[i - 1] counts rank i - 1 so far
   for (std::size_t i = 1; i < below.size(); ++i) below[i] += below[i - 1];
   return below;
 }
@@ -34,15 +34,14 @@ class Binomials {
       const double z = static_cast<double>(i) / (rank_max + 1);
       std::vector<double> cdf(static_cast<std::size_t>(count) + 1);
       for (int n = 0; n <= count; ++n)
-        cdf[static_cast<std::size_t>(n)] =
-            gsl_cdf_binomial_P(static_cast<unsigned>(n), z, static_cast<unsigned>(count));
+        cdf[n] = gsl_cdf_binomial_P(static_cast<unsigned>(n), z, static_cast<unsigned>(count));
       cdf_.push_back(std::move(cdf));
     }
   }
   /// Two-sided tail probability of a number at point i.
   double two_sided(std::size_t i, int number) const {
-    const double low = cdf_[i][static_cast<std::size_t>(number)];
-    const double high = number == 0 ? 1.0 : 1.0 - cdf_[i][static_cast<std::size_t>(number - 1)];
+    const double low = cdf_[i][number];
+    const double high = number == 0 ? 1.0 : 1.0 - cdf_[i][number - 1];
     return std::min(1.0, 2.0 * std::min(low, high));
   }
   /// Smallest and largest number whose tail probability is at least `least`.
@@ -69,8 +68,7 @@ struct Replicate {
 Replicate replicate(const CaseModel& model, const SimulationOptions& options, int index) {
   data::RandomStream random(options.seed, data::Purpose::simulated_truth, static_cast<std::uint32_t>(index));
   Eigen::VectorXd truth(model.dimension());
-  for (Eigen::Index s = 0; s < truth.size(); ++s)
-    truth[s] = model.slots[static_cast<std::size_t>(s)].prior.draw(random);
+  for (Eigen::Index s = 0; s < truth.size(); ++s) truth[s] = model.slots[s].prior.draw(random);
   const StackedPrediction prediction = predict(model, truth);
   const Factor root = factor(prediction.total(), "simulated data");
   Eigen::VectorXd y(prediction.mean.size());
@@ -133,7 +131,7 @@ SimulationCalibration simulate_calibration(const CaseModel& model, const Simulat
   std::vector<Replicate> replicates(static_cast<std::size_t>(options.replicates));
   std::atomic<int> done{0};
   for_each_index(options.replicates, options.threads, [&](int i) {
-    replicates[static_cast<std::size_t>(i)] = replicate(model, options, i);
+    replicates[i] = replicate(model, options, i);
     if (options.progress) options.progress(static_cast<double>(++done) / options.replicates);
   });
   SimulationCalibration found{.case_name = model.name,
@@ -144,8 +142,7 @@ SimulationCalibration simulate_calibration(const CaseModel& model, const Simulat
                               .band_low = {},
                               .band_high = {},
                               .unknowns = {}};
-  for (int s = 0; s < model.dimension(); ++s)
-    found.unknowns.push_back({.name = model.slots[static_cast<std::size_t>(s)].label, .ranks = {}});
+  for (int s = 0; s < model.dimension(); ++s) found.unknowns.push_back({.name = model.slots[s].label, .ranks = {}});
   for (const Replicate& one : replicates) {
     if (!one.converged) {
       ++found.failed;

@@ -127,7 +127,7 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
     };
     std::vector<int> suspects;
     for (const int i : kept)
-      if (!came_back[static_cast<std::size_t>(i)] && suspicion(i) > options.screen) suspects.push_back(i);
+      if (!came_back[i] && suspicion(i) > options.screen) suspects.push_back(i);
     std::sort(suspects.begin(), suspects.end(), [&](int a, int b) { return suspicion(a) > suspicion(b); });
     // What stands near the worst one may only be pulled along by it.
     while (!suspects.empty() &&
@@ -142,7 +142,7 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
       if (contradiction(i) > options.screen)
         next.push_back(i);
       else
-        came_back[static_cast<std::size_t>(i)] = true;
+        came_back[i] = true;
     }
     std::sort(next.begin(), next.end());
     if (next == aside) break;

@@ -105,7 +105,7 @@ std::vector<SobolIndex> sobol_indices(const std::function<surrogate::Prediction(
   }
   std::vector<SobolIndex> indices(static_cast<std::size_t>(inputs));
   for (int k = 0; k < inputs; ++k) {
-    SobolIndex& index = indices[static_cast<std::size_t>(k)];
+    SobolIndex& index = indices[k];
     const auto sd = [](const auto& row) { return std::sqrt((row.array() - row.mean()).square().mean()); };
     index = {.first = first.row(k).mean(),
              .first_sd = sd(first.row(k)),

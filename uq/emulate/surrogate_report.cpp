@@ -59,7 +59,7 @@ void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const 
                                .deviations = found.deviations[i]});
   }
   if (const auto end = at_one_end(rows.set.x, found.runs)) {
-    const EmulatorInput& input = rows.inputs[static_cast<std::size_t>(end->input)];
+    const EmulatorInput& input = rows.inputs[end->input];
     std::pair<double, double> covered;
     if (input.kind == InputKind::control)
       covered = rows.control_range.at(input.index);
@@ -108,7 +108,7 @@ std::string point_text(const data::Study& study, const TrainingRows& rows, const
   std::string text;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     const EmulatorInput& input = rows.inputs[k];
-    const double u = point[static_cast<Eigen::Index>(k)];
+    const double u = point[k];
     const bool is_parameter = input.kind == InputKind::parameter;
     const data::Unit& unit = is_parameter ? study.parameters[input.index].unit : study.controls[input.index].unit;
     const data::Axis axis = is_parameter ? study.parameters[input.index].axis() : study.controls[input.index].axis();
@@ -174,7 +174,7 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   report.nugget_sd = nugget_sd / output.unit.factor;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     report.inputs.push_back(input_name(study, rows.inputs[k]));
-    report.length_scales.push_back(hyper.length_scales[static_cast<Eigen::Index>(k)]);
+    report.length_scales.push_back(hyper.length_scales[k]);
   }
   report.observed = in_unit(rows.set.y, output.unit);
   report.predicted = in_unit(found.leave_one_out.mean, output.unit);

@@ -33,7 +33,7 @@ FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const Surro
     std::vector<std::string>& places = fitted.rows.places;
     if (!fitted.rows.low && std::ssize(places) == all) {
       std::vector<std::string> left;
-      for (const int run : kept) left.push_back(std::move(places[static_cast<std::size_t>(run)]));
+      for (const int run : kept) left.push_back(std::move(places[run]));
       places = std::move(left);
     }
   }

@@ -66,7 +66,7 @@ LevelRows level_rows(const data::Study& study, const data::RunTable& table, cons
                   Eigen::VectorXd(count),
                   {}};
   for (Eigen::Index i = 0; i < count; ++i) {
-    const data::RunRow& row = *rows[static_cast<std::size_t>(i)];
+    const data::RunRow& row = *rows[i];
     for (std::size_t p = 0; p < study.parameters.size(); ++p)
       found.parameters(i, static_cast<Eigen::Index>(p)) = row.inputs[columns.parameters[p]];
     for (std::size_t c = 0; c < study.controls.size(); ++c)

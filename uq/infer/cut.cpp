@@ -32,11 +32,11 @@ class Conditional {
     if (!std::isfinite(level_)) return false;
     const auto d = static_cast<Eigen::Index>(free_.size());
     axes_ = Eigen::MatrixXd::Zero(target_.dimension, d);
-    for (Eigen::Index k = 0; k < d; ++k) axes_(free_[static_cast<std::size_t>(k)], k) = 0.1;
+    for (Eigen::Index k = 0; k < d; ++k) axes_(free_[k], k) = 0.1;
     Eigen::MatrixXd seen(sweeps, d);
     for (int i = 0; i < sweeps; ++i) {
       sweep();
-      for (Eigen::Index k = 0; k < d; ++k) seen(i, k) = x_[free_[static_cast<std::size_t>(k)]];
+      for (Eigen::Index k = 0; k < d; ++k) seen(i, k) = x_[free_[k]];
     }
     const Eigen::MatrixXd late = seen.bottomRows(sweeps - sweeps / 3);
     const Eigen::MatrixXd centred = late.rowwise() - late.colwise().mean();
@@ -45,8 +45,7 @@ class Conditional {
     // Steps of two sd along the principal axes.
     for (Eigen::Index k = 0; k < d; ++k)
       for (Eigen::Index j = 0; j < d; ++j)
-        axes_(free_[static_cast<std::size_t>(j)], k) =
-            2.0 * std::sqrt(std::max(solver.eigenvalues()[k], 1e-16)) * solver.eigenvectors()(j, k);
+        axes_(free_[j], k) = 2.0 * std::sqrt(std::max(solver.eigenvalues()[k], 1e-16)) * solver.eigenvectors()(j, k);
     return true;
   }
 

@@ -84,7 +84,7 @@ std::vector<Eigen::Index> peaks(const Scouts& scouts) {
   }
   std::vector<Eigen::Index> found;
   for (Eigen::Index i = 0; i < n; ++i)
-    if (votes[static_cast<std::size_t>(i)] == trees && scouts.log_density[i] > nowhere) found.push_back(i);
+    if (votes[i] == trees && scouts.log_density[i] > nowhere) found.push_back(i);
   std::stable_sort(found.begin(), found.end(),
                    [&](Eigen::Index a, Eigen::Index b) { return scouts.log_density[a] > scouts.log_density[b]; });
   return found;
@@ -107,7 +107,7 @@ Eigen::MatrixXd line_maxima(const Target& target, const Scouts& scouts, const Ei
   const Eigen::Index points = options.line_points, count = static_cast<Eigen::Index>(directions.size());
   Eigen::MatrixXd all(count * points, d);
   for (Eigen::Index line = 0; line < count; ++line) {
-    const Eigen::VectorXd& direction = directions[static_cast<std::size_t>(line)];
+    const Eigen::VectorXd& direction = directions[line];
     // The part of the line inside the scouts' box.
     double from = nowhere, to = -nowhere;
     for (Eigen::Index k = 0; k < d; ++k) {
@@ -181,9 +181,8 @@ Search search_unknown(const Target& target, const Scouts& scouts, const Knowledg
 
   const Eigen::VectorXd width = scouts.high - scouts.low;
   std::vector<Climb> climbs(static_cast<std::size_t>(starts.rows()));
-  for_each_index(static_cast<int>(starts.rows()), options.threads, [&](int i) {
-    climbs[static_cast<std::size_t>(i)] = climb(target, starts.row(i).transpose(), width, knowledge);
-  });
+  for_each_index(static_cast<int>(starts.rows()), options.threads,
+                 [&](int i) { climbs[i] = climb(target, starts.row(i).transpose(), width, knowledge); });
   search.starts = static_cast<int>(climbs.size());
   for (const Climb& found : climbs) {
     search.evaluations += found.evaluations;
@@ -223,7 +222,7 @@ Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::Vector
       sum += mode.log_density - value(at);
       ++sides;
     }
-    at_bound[static_cast<std::size_t>(k)] = sides < 2;
+    at_bound[k] = sides < 2;
     return sides == 0 ? std::numeric_limits<double>::infinity() : sum / sides;
   };
   for (Eigen::Index k = 0; k < d; ++k)
@@ -239,7 +238,7 @@ Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::Vector
   for (Eigen::Index k = 0; k < d; ++k) curvature(k, k) = std::max(2.0 * std::min(fall(k), 4.0), 0.0);
   for (Eigen::Index k = 0; k < d; ++k)
     for (Eigen::Index l = 0; l < k; ++l) {
-      if (at_bound[static_cast<std::size_t>(k)] || at_bound[static_cast<std::size_t>(l)]) continue;
+      if (at_bound[k] || at_bound[l]) continue;
       double mixed = 0.0;
       for (const double a : {-0.5, 0.5})
         for (const double b : {-0.5, 0.5}) {

@@ -46,7 +46,7 @@ Eigen::VectorXd evaluate(const Target& target, const Eigen::MatrixXd& points) {
     Eigen::MatrixXd kept(static_cast<Eigen::Index>(inside.size()), points.cols());
     for (std::size_t i = 0; i < inside.size(); ++i) kept.row(static_cast<Eigen::Index>(i)) = points.row(inside[i]);
     const Eigen::VectorXd found = target.log_densities(kept);
-    for (std::size_t i = 0; i < inside.size(); ++i) values[inside[i]] = found[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < inside.size(); ++i) values[inside[i]] = found[i];
   } else {
     for (const Eigen::Index i : inside) values[i] = target.log_density(points.row(i).transpose());
   }

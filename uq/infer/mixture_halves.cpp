@@ -22,7 +22,7 @@ Eigen::MatrixXd surprises(const Target& target, std::vector<Half>& halves, const
   constexpr int each = 8;
   std::vector<Eigen::MatrixXd> found(halves.size());
   for_each_index(static_cast<int>(halves.size()), options.threads, [&](int h) {
-    Half& half = halves[static_cast<std::size_t>(h)];
+    Half& half = halves[h];
     const Proposals made = propose(target, half.proposal.best, draws, half.random);
     half.proposal.evaluations += draws;
     const Eigen::VectorXd surprise = (made.log_density - made.log_proposal).array() - half.proposal.log_evidence;
@@ -32,7 +32,7 @@ Eigen::MatrixXd surprises(const Target& target, std::vector<Half>& halves, const
                       [&](Eigen::Index a, Eigen::Index b) { return surprise[a] > surprise[b]; });
     order.resize(each);
     std::erase_if(order, [&](Eigen::Index i) { return !(surprise[i] > std::log(3.0)); });
-    found[static_cast<std::size_t>(h)] = made.x(order, Eigen::all);
+    found[h] = made.x(order, Eigen::all);
   });
   Eigen::Index rows = 0;
   for (const auto& part : found) rows += part.rows();
@@ -67,7 +67,7 @@ std::vector<Half> make_halves(const std::vector<Population>& populations, const 
 
 void adapt_halves(const Target& target, std::vector<Half>& halves, const MixtureSamplerOptions& options) {
   for_each_index(static_cast<int>(halves.size()), options.threads, [&](int h) {
-    Half& half = halves[static_cast<std::size_t>(h)];
+    Half& half = halves[h];
     if (half.proposal.points.size() == 0) half.proposal = begin_proposal(half.archive, half.random, options.proposal);
     adapt(target, half.proposal, half.random, options.proposal);
   });

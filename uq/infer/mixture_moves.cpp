@@ -61,8 +61,8 @@ void extend(const Moves& moves, Walker& walker, Chain& chain, int draws) {
     std::vector<bool> local(static_cast<std::size_t>(steps));
     int global = 0;
     for (int i = 0; i < steps; ++i) {
-      local[static_cast<std::size_t>(i)] = walker.random.uniform() < moves.local_share;
-      if (!local[static_cast<std::size_t>(i)]) ++global;
+      local[i] = walker.random.uniform() < moves.local_share;
+      if (!local[i]) ++global;
     }
     const Proposals made = propose(moves.target, moves.mixture, global, walker.random);
     walker.evaluations += global;

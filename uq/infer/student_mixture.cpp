@@ -43,10 +43,10 @@ Eigen::ArrayXXd log_terms(const Gaussians& fit, const Eigen::MatrixXd& points) {
   Eigen::ArrayXXd terms(points.rows(), fit.weights.size());
   const double dimension = static_cast<double>(points.cols());
   for (Eigen::Index k = 0; k < fit.weights.size(); ++k) {
-    const auto& factor = fit.factors[static_cast<std::size_t>(k)];
+    const auto& factor = fit.factors[k];
     const double constant = std::log(std::max(fit.weights[k], 1e-300)) - factor.diagonal().array().log().sum() -
                             0.5 * dimension * std::log(2.0 * std::numbers::pi);
-    terms.col(k) = constant - 0.5 * squared_distances(points, fit.means[static_cast<std::size_t>(k)], factor);
+    terms.col(k) = constant - 0.5 * squared_distances(points, fit.means[k], factor);
   }
   return terms;
 }
@@ -62,7 +62,7 @@ Eigen::ArrayXd largest_of_rows(const Eigen::ArrayXXd& terms) {
 void refit_component(Gaussians& fit, std::size_t k, const Eigen::MatrixXd& points, const Eigen::ArrayXd& share,
                      const Eigen::MatrixXd& pooled) {
   const double total = share.sum();
-  fit.weights[static_cast<Eigen::Index>(k)] = total;
+  fit.weights[k] = total;
   if (total <= 0.0) return;
   const Eigen::Index dimension = points.cols();
   Eigen::ArrayXXd centred(points.rows(), dimension);
@@ -229,7 +229,7 @@ Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weight
 
   Mixture mixture;
   for (std::size_t k = 0; k < best.means.size(); ++k) {
-    const double weight = best.weights[static_cast<Eigen::Index>(k)];
+    const double weight = best.weights[k];
     if (weight < 1e-6) continue;
     mixture.components.push_back(
         {.weight = weight, .mean = best.means[k], .factor = best.factors[k] * std::sqrt(inflation)});

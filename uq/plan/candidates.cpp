@@ -392,7 +392,7 @@ ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, 
       const double sd = std::hypot(error.absolute, error.relative * prediction.mean[row]);
       found.absolute[row] = error.absolute;
       found.relative[row] = error.relative;
-      group.variance[static_cast<Index>(r)] = std::max(sd * sd, 1e-300) / candidate.readings;
+      group.variance[r] = std::max(sd * sd, 1e-300) / candidate.readings;
       found.planned[planned->second.candidate].push_back(row);
     }
   return found;

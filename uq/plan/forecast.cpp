@@ -128,8 +128,7 @@ std::vector<std::vector<WordProbability>> Forecast::words(const std::vector<Inde
 
 double Forecast::identified(const std::vector<Index>& rows, double readings, int parameter, Uncertain uncertain,
                             OthersEnds ends) const {
-  const std::vector<Verdict> drawn =
-      words_of_draws(rows, readings, uncertain, ends)[static_cast<std::size_t>(parameter)];
+  const std::vector<Verdict> drawn = words_of_draws(rows, readings, uncertain, ends)[parameter];
   return static_cast<double>(std::count(drawn.begin(), drawn.end(), Verdict::identified)) /
          std::max(1.0, static_cast<double>(drawn.size()));
 }

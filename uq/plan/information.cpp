@@ -34,7 +34,7 @@ Laws whitened(const Ensemble& ensemble) {
   Laws laws{.whiten = {}, .log_constant = VectorXd(ensemble.draws())};
   const Index d = ensemble.readings();
   for (Index j = 0; j < ensemble.draws(); ++j) {
-    const Eigen::LLT<MatrixXd> factor(ensemble.covariance[static_cast<std::size_t>(j)]);
+    const Eigen::LLT<MatrixXd> factor(ensemble.covariance[j]);
     laws.whiten.push_back(factor.matrixL().solve(MatrixXd::Identity(d, d)));
     laws.log_constant[j] = laws.whiten.back().diagonal().array().log().sum() -
                            0.5 * static_cast<double>(d) * std::log(2.0 * std::numbers::pi);
@@ -180,7 +180,7 @@ Marginal marginal_of(const Ensemble& ensemble, const Laws& laws, const MatrixXd&
   MatrixXd difference(n, ensemble.readings());
   for (Index j = 0; j < n; ++j) {
     difference = readings.rowwise() - ensemble.mean.row(j);
-    squared_length(laws.whiten[static_cast<std::size_t>(j)], difference, term);
+    squared_length(laws.whiten[j], difference, term);
     term = (-0.5 * term + laws.log_constant[j] - own).exp();
     found.density.density.col(block_of(j, n)) += term;
     found.density.count.col(block_of(j, n)) += 1.0;
@@ -219,7 +219,7 @@ void add_conditional(const Ensemble& ensemble, const Laws& laws, const MatrixXd&
   MatrixXd mean(n, d), about(n, d);
   ArrayXd reference(n);
   for (Index i = 0; i < n; ++i) {
-    const Index from = order[static_cast<std::size_t>(i)];
+    const Index from = order[i];
     x[i] = ensemble.values(from, k);
     mean.row(i) = ensemble.mean.row(from);
     about.row(i) = readings.row(from);
@@ -233,9 +233,9 @@ void add_conditional(const Ensemble& ensemble, const Laws& laws, const MatrixXd&
   MatrixXd difference(n, d);
   ArrayXd term(n);
   for (Index j = 0; j < n; ++j) {
-    const Index from = order[static_cast<std::size_t>(j)], block = block_of(from, ensemble.draws());
+    const Index from = order[j], block = block_of(from, ensemble.draws());
     for (Index c = 0; c < d; ++c) difference.col(c) = about.col(c) - rest(j, c) * smooth.spread.col(c);
-    squared_length(laws.whiten[static_cast<std::size_t>(from)], difference, term);
+    squared_length(laws.whiten[from], difference, term);
     term = (-0.5 * term + laws.log_constant[from] - reference).exp();
     for (std::size_t w = 0; w < windows.size(); ++w) {
       const Index reach = std::max<Index>(static_cast<Index>(windows[w] * static_cast<double>(n)), window_least);
@@ -246,8 +246,8 @@ void add_conditional(const Ensemble& ensemble, const Laws& laws, const MatrixXd&
   }
   for (std::size_t w = 0; w < windows.size(); ++w)
     for (Index i = 0; i < n; ++i) {
-      sums[w]->density.row(order[static_cast<std::size_t>(i)]) += sorted[w].density.row(i);
-      sums[w]->count.row(order[static_cast<std::size_t>(i)]) += sorted[w].count.row(i);
+      sums[w]->density.row(order[i]) += sorted[w].density.row(i);
+      sums[w]->count.row(order[i]) += sorted[w].count.row(i);
     }
 }
 
@@ -286,7 +286,7 @@ Information information(const Ensemble& ensemble, const InformationOptions& opti
   MatrixXd readings(n, d);
   ArrayXd own(n);
   for (Index i = 0; i < n; ++i) {
-    const auto& whiten = laws.whiten[static_cast<std::size_t>(i)];
+    const auto& whiten = laws.whiten[i];
     readings.row(i) =
         ensemble.mean.row(i) + whiten.triangularView<Eigen::Lower>().solve(noise.row(i).transpose()).transpose();
     own[i] = laws.log_constant[i] - 0.5 * noise.row(i).squaredNorm();

@@ -20,13 +20,13 @@ Outlook::Outlook(const ExtendedCase& extended, const MatrixXd& draws, Given give
   std::vector<Index> planned;
   for (const auto& rows : extended.planned) planned.insert(planned.end(), rows.begin(), rows.end());
   std::sort(planned.begin(), planned.end());
-  for (std::size_t i = 0; i < planned.size(); ++i) place_[static_cast<std::size_t>(planned[i])] = static_cast<Index>(i);
+  for (std::size_t i = 0; i < planned.size(); ++i) place_[planned[i]] = static_cast<Index>(i);
   const VectorXd y = observed(model);
 
   values_.resize(draws.rows(), model.own_count());
   for (Index i = 0; i < draws.rows(); ++i)
     for (Index k = 0; k < values_.cols(); ++k) {
-      const Slot& slot = model.slots[static_cast<std::size_t>(k)];
+      const Slot& slot = model.slots[k];
       values_(i, k) = slot.prior.parameter().unit.from_si(slot.value(draws(i, k)));
     }
   laws_.resize(static_cast<std::size_t>(draws.rows()));
@@ -34,14 +34,14 @@ Outlook::Outlook(const ExtendedCase& extended, const MatrixXd& draws, Given give
     const StackedPrediction all = predict(model, draws.row(job).transpose());
     ReadingLaw law = reading_law(all, y, planned, given == Given::data ? extended.measured : std::vector<Index>{});
     law.noise = extended.noise_at(all.mean, all.noise)(planned);
-    laws_[static_cast<std::size_t>(job)] = std::move(law);
+    laws_[job] = std::move(law);
   });
 }
 
 ReadingLaw Outlook::law(Index draw, const std::vector<Index>& rows) const {
   std::vector<Index> places;
-  for (const Index row : rows) places.push_back(place_[static_cast<std::size_t>(row)]);
-  const ReadingLaw& all = laws_[static_cast<std::size_t>(draw)];
+  for (const Index row : rows) places.push_back(place_[row]);
+  const ReadingLaw& all = laws_[draw];
   return {all.mean(places), all.shared(places, places), all.noise(places)};
 }
 
@@ -62,8 +62,7 @@ PriorDraws prior_draws(const CaseModel& model, int count, int readings, std::uin
   const MatrixXd cube = surrogate::scrambled_sobol(count, unknowns + readings, seed);
   PriorDraws draws{MatrixXd(count, unknowns), MatrixXd(count, readings)};
   for (Index i = 0; i < count; ++i) {
-    for (Index s = 0; s < unknowns; ++s)
-      draws.u(i, s) = model.slots[static_cast<std::size_t>(s)].prior.inverse_cdf(cube(i, s));
+    for (Index s = 0; s < unknowns; ++s) draws.u(i, s) = model.slots[s].prior.inverse_cdf(cube(i, s));
     for (Index r = 0; r < readings; ++r) draws.noise(i, r) = gsl_cdf_ugaussian_Pinv(cube(i, unknowns + r));
   }
   return draws;

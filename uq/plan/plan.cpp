@@ -60,7 +60,7 @@ int parameter_index(const Study& study, std::size_t case_index, const CaseModel&
   }
   std::vector<std::string> names;
   for (int k = 0; k < model.own_count(); ++k) {
-    names.push_back(model.slots[static_cast<std::size_t>(k)].label);
+    names.push_back(model.slots[k].label);
     if (names.back() == name) return k;
   }
   throw data::InputError(data::ExitStatus::bad_study,
@@ -106,7 +106,7 @@ class Planner {
     if (options.budget) std::erase_if(candidates_, [&](const Candidate& one) { return one.cost > *options.budget; });
     VectorXd centre(model.dimension());
     for (Index s = 0; s < centre.size(); ++s)
-      centre[s] = options.prior ? model.slots[static_cast<std::size_t>(s)].prior.mean() : draws_.col(s).mean();
+      centre[s] = options.prior ? model.slots[s].prior.mean() : draws_.col(s).mean();
     if (!options.prior) centre = found_->best_fit.x;
     centre_ = centre;
     extended_ = extend(study, emulators, case_index, model, candidates_, centre);
@@ -123,11 +123,11 @@ class Planner {
     report.candidates.resize(candidates_.size());
     std::atomic<int> done{0};
     for_each_index(static_cast<int>(candidates_.size()), options_.threads, [&](int i) {
-      report.candidates[static_cast<std::size_t>(i)] = describe(static_cast<std::size_t>(i));
+      report.candidates[i] = describe(static_cast<std::size_t>(i));
       tell(0.3 + 0.5 * ++done / static_cast<double>(candidates_.size()));
     });
     const std::vector<std::size_t> order = ranked(report.candidates);
-    const bool open = found_ && found_->parameters[static_cast<std::size_t>(about_)].verdict != Verdict::identified;
+    const bool open = found_ && found_->parameters[about_].verdict != Verdict::identified;
     if (open) count_readings(report.candidates, order);
     add_batches(report);
     std::vector<PlanCandidate> best_first;
@@ -142,10 +142,8 @@ class Planner {
   }
 
  private:
-  std::string name_of(int k) const { return sampled_.model->slots[static_cast<std::size_t>(k)].label; }
-  const data::Unit& unit_of(int k) const {
-    return sampled_.model->slots[static_cast<std::size_t>(k)].prior.parameter().unit;
-  }
+  std::string name_of(int k) const { return sampled_.model->slots[k].label; }
+  const data::Unit& unit_of(int k) const { return sampled_.model->slots[k].prior.parameter().unit; }
   void tell(double share) const {
     if (options_.progress) options_.progress(share);
   }
@@ -230,7 +228,7 @@ class Planner {
       if (k < words.size()) parameter.words = words[k];
       one.parameters.push_back(std::move(parameter));
     }
-    const Estimate& asked = information.about[static_cast<std::size_t>(about_)].information;
+    const Estimate& asked = information.about[about_].information;
     one.teaches = asked.value > least_information && asked.value > asked.error;
     return one;
   }
@@ -239,9 +237,7 @@ class Planner {
   std::vector<std::size_t> ranked(const std::vector<PlanCandidate>& all) const {
     std::vector<std::size_t> order(all.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto worth = [&](std::size_t i) {
-      return all[i].parameters[static_cast<std::size_t>(about_)].information / all[i].cost;
-    };
+    const auto worth = [&](std::size_t i) { return all[i].parameters[about_].information / all[i].cost; };
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       if (all[a].model_only != all[b].model_only) return all[b].model_only;
       return worth(a) > worth(b);
@@ -258,9 +254,9 @@ class Planner {
     if (repeat != order.end() && std::find(asked.begin(), asked.end(), *repeat) == asked.end())
       asked.push_back(*repeat);
     for_each_index(static_cast<int>(asked.size()), options_.threads, [&](int i) {
-      const std::size_t which = asked[static_cast<std::size_t>(i)];
+      const std::size_t which = asked[i];
       const ReadingsNeeded needed = forecast_->readings_needed(extended_.planned[which], about_);
-      PlannedParameter& parameter = all[which].parameters[static_cast<std::size_t>(about_)];
+      PlannedParameter& parameter = all[which].parameters[about_];
       parameter.repeats_needed = needed.count;
       parameter.floor = to_text(needed.floor);
       if (!needed.count && needed.at_most >= 0.005)
@@ -302,8 +298,7 @@ class Planner {
     for_each_index(static_cast<int>(candidates_.size()), options_.threads, [&](int i) {
       std::vector<std::size_t> tried = members;
       tried[position] = static_cast<std::size_t>(i);
-      if (!candidates_[tried[position]].model_only && affordable(tried))
-        value[static_cast<std::size_t>(i)] = quick_information(tried);
+      if (!candidates_[tried[position]].model_only && affordable(tried)) value[i] = quick_information(tried);
     });
     const auto best = std::max_element(value.begin(), value.end());
     if (*best < 0.0) return {};
@@ -376,8 +371,7 @@ class Planner {
             .output = study_.outputs[candidate.outputs.front()].name, .parameter = name_of(k), .setting = {}};
         for (std::size_t c = 0; c < study_.controls.size(); ++c)
           arrow.setting[study_.controls[c].name] = study_.controls[c].unit.from_si(candidate.settings.front()[c]);
-        arrow.change =
-            slopes(row, k) * model.slots[static_cast<std::size_t>(k)].prior.sd() / std::sqrt(prediction.noise[row]);
+        arrow.change = slopes(row, k) * model.slots[k].prior.sd() / std::sqrt(prediction.noise[row]);
         report.arrows.push_back(std::move(arrow));
       }
     }

@@ -220,7 +220,7 @@ class Builder {
     group->observed.conservativeResize(before + rows);
     group->variance.conservativeResize(before + rows);
     for (Eigen::Index k = 0; k < inputs; ++k) {
-      const EmulatorInput& input = emulator.inputs[static_cast<std::size_t>(k)];
+      const EmulatorInput& input = emulator.inputs[k];
       if (input.kind == InputKind::control) {
         fill_control(*group, emulator, set, before, k);
         for (const auto& error : set.setting_errors)
@@ -235,7 +235,7 @@ class Builder {
     for (const auto& [parameter, constant] : emulator.constants) check_constant(item, set, parameter, constant);
     for (const auto& [control, range] : emulator.control_range) check_constant_control(emulator, set, control, range);
     for (Eigen::Index i = 0; i < rows; ++i) {
-      const data::Observation& point = set.points[static_cast<std::size_t>(i)];
+      const data::Observation& point = set.points[i];
       group->observed[before + i] = point.values[column];
       group->variance[before + i] = point.standard_errors[column] * point.standard_errors[column];
       group->origin.push_back({.set = set_index, .point = static_cast<std::size_t>(i), .output = set.outputs[column]});
@@ -251,7 +251,7 @@ class Builder {
 
   void fill_control(RowGroup& group, const Emulator& emulator, const data::ObservationSet& set, Eigen::Index before,
                     Eigen::Index k) {
-    const std::size_t index = emulator.inputs[static_cast<std::size_t>(k)].index;
+    const std::size_t index = emulator.inputs[k].index;
     const data::Control& control = study_.controls[index];
     const auto range = emulator.control_range.find(index);
     const auto [low, high] =
@@ -383,13 +383,13 @@ class Builder {
 
   void check_slots_used(const CaseModel& model) {
     for (int s = 0; s < model.dimension(); ++s) {
-      bool used = model.slots[static_cast<std::size_t>(s)].nuisance != Acts::none;
+      bool used = model.slots[s].nuisance != Acts::none;
       for (const auto& group : model.groups) used = used || (group.slot.array() == s).any();
       if (used) continue;
-      const CalibrationCase& owner = *homes_[static_cast<std::size_t>(s)].owner;
+      const CalibrationCase& owner = *homes_[s].owner;
       problem(owner.place,
               fmt::format("case '{}' frees {}, but no run of its materials varies it", owner.name,
-                          model.slots[static_cast<std::size_t>(s)].prior.parameter().name),
+                          model.slots[s].prior.parameter().name),
               "vary it in training, or fix it");
     }
   }

@@ -24,7 +24,7 @@ SettingShift shift_of(const data::Control& control, const data::ObservationSet& 
   const auto rows = static_cast<Eigen::Index>(set.points.size());
   SettingShift shift{.column = column, .error = Eigen::VectorXd(rows)};
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const double value = set.points[static_cast<std::size_t>(i)].controls[error.control];
+    const double value = set.points[i].controls[error.control];
     const data::Axis axis = control.axis();
     shift.error[i] = std::hypot(error.spread.absolute, error.spread.relative * value) / axis.slope(axis.to_unit(value));
     shift.common = shift.common && value == set.points.front().controls[error.control];
@@ -49,7 +49,7 @@ void add_discrepancy(RowGroup& group, const data::Study& study, const SetRows& r
   for (Eigen::Index i = 0; i < count; ++i)
     for (std::size_t c = 0; c < study.controls.size(); ++c)
       part.controls(part.count + i, static_cast<Eigen::Index>(c)) =
-          study.controls[c].axis().to_unit(rows.set.points[static_cast<std::size_t>(i)].controls[c]);
+          study.controls[c].axis().to_unit(rows.set.points[i].controls[c]);
   part.count += count;
 }
 

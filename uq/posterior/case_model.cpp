@@ -19,13 +19,13 @@ int CaseModel::row_count() const {
 
 Eigen::VectorXd CaseModel::lower() const {
   Eigen::VectorXd low(dimension());
-  for (int s = 0; s < dimension(); ++s) low[s] = slots[static_cast<std::size_t>(s)].prior.low();
+  for (int s = 0; s < dimension(); ++s) low[s] = slots[s].prior.low();
   return low;
 }
 
 Eigen::VectorXd CaseModel::upper() const {
   Eigen::VectorXd high(dimension());
-  for (int s = 0; s < dimension(); ++s) high[s] = slots[static_cast<std::size_t>(s)].prior.high();
+  for (int s = 0; s < dimension(); ++s) high[s] = slots[s].prior.high();
   return high;
 }
 
@@ -37,8 +37,8 @@ void find_coordinates(RowGroup& group, int slots) {
     const int s = group.slot(0, k);
     if ((group.slot.col(k).array() != s).any()) group.uniform = false;
     if (s < 0) continue;
-    if (group.coordinate[static_cast<std::size_t>(s)]) group.uniform = false;
-    group.coordinate[static_cast<std::size_t>(s)] = static_cast<int>(k);
+    if (group.coordinate[s]) group.uniform = false;
+    group.coordinate[s] = static_cast<int>(k);
   }
 }
 

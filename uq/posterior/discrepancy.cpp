@@ -51,8 +51,8 @@ DiscrepancyBand band_of(const data::Study& study, const CaseModel& model, const 
     const GroupLaw law = group_law(model, group, u);
     Eigen::MatrixXd covariance = law.covariance;
     covariance.diagonal() += law.noise;
-    const Slot& sd = model.slots[static_cast<std::size_t>(part.sd)];
-    const Slot& length = model.slots[static_cast<std::size_t>(part.length)];
+    const Slot& sd = model.slots[part.sd];
+    const Slot& length = model.slots[part.length];
     const double variance = std::pow(sd.value(u[part.sd]) * part.magnitude, 2);
     Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(group.observed.size(), band_points);
     cross.middleRows(part.first, part.count) =
@@ -100,8 +100,8 @@ std::vector<DiscrepancyBand> discrepancy_bands(const data::Study& study, const C
   for (const auto& group : model.groups)
     for (const auto& part : group.measurement.discrepancies)
       for (Eigen::Index row = part.first; row < part.first + part.count; ++row) {
-        const std::size_t set = group.origin[static_cast<std::size_t>(row)].set;
-        const bool first_of_set = row == part.first || group.origin[static_cast<std::size_t>(row - 1)].set != set;
+        const std::size_t set = group.origin[row].set;
+        const bool first_of_set = row == part.first || group.origin[row - 1].set != set;
         if (first_of_set && is_own_set(study, model, set))
           bands.push_back(band_of(study, model, group, part, {set, seed}, used));
       }

@@ -38,14 +38,14 @@ Classes classes_of(const RowGroup& group) {
   for (Eigen::Index i = 0; i < group.base.rows(); ++i) {
     const int set = set_of(group.measurement, i);
     std::vector<double> key = {static_cast<double>(set), static_cast<double>(discrepancy_of(group.measurement, i)),
-                               static_cast<double>(group.origin[static_cast<std::size_t>(i)].set)};
+                               static_cast<double>(group.origin[i].set)};
     for (Eigen::Index k = 0; k < group.base.cols(); ++k) {
       key.push_back(group.slot(i, k));
       key.push_back(group.slot(i, k) < 0 ? group.base(i, k) : 0.0);
     }
     bool alone = false;
     if (set >= 0) {
-      const ReadSet& read = group.measurement.sets[static_cast<std::size_t>(set)];
+      const ReadSet& read = group.measurement.sets[set];
       for (const SettingShift& setting : read.settings) {
         alone = alone || !setting.common;  // each row's own error of a setting: its variance depends on the unknowns
         key.push_back(setting.error[i - read.first]);
@@ -61,10 +61,10 @@ Classes classes_of(const RowGroup& group) {
 
 /// Rows [first, first + count) of the group as a range of classes: sets are whole, and their classes are in order.
 std::pair<Eigen::Index, Eigen::Index> range_of(const Classes& classes, Eigen::Index first, Eigen::Index count) {
-  Eigen::Index low = classes.of_row[static_cast<std::size_t>(first)], high = low;
+  Eigen::Index low = classes.of_row[first], high = low;
   for (Eigen::Index i = first; i < first + count; ++i) {
-    low = std::min(low, classes.of_row[static_cast<std::size_t>(i)]);
-    high = std::max(high, classes.of_row[static_cast<std::size_t>(i)]);
+    low = std::min(low, classes.of_row[i]);
+    high = std::max(high, classes.of_row[i]);
   }
   return {low, high - low + 1};
 }
@@ -79,8 +79,7 @@ Measurement pooled_measurement(const Measurement& measurement, const Classes& cl
     for (std::size_t q = 0; q < set.settings.size(); ++q) {
       set.settings[q].error.resize(set.count);
       for (Eigen::Index i = 0; i < set.count; ++i)
-        set.settings[q].error[i] =
-            full.settings[q].error[classes.first[static_cast<std::size_t>(set.first + i)] - full.first];
+        set.settings[q].error[i] = full.settings[q].error[classes.first[set.first + i] - full.first];
     }
   }
   for (std::size_t s = 0; s < pooled.discrepancies.size(); ++s) {
@@ -89,7 +88,7 @@ Measurement pooled_measurement(const Measurement& measurement, const Classes& cl
     std::tie(part.first, part.count) = range_of(classes, full.first, full.count);
     part.controls.resize(part.count, full.controls.cols());
     for (Eigen::Index i = 0; i < part.count; ++i)
-      part.controls.row(i) = full.controls.row(classes.first[static_cast<std::size_t>(part.first + i)] - full.first);
+      part.controls.row(i) = full.controls.row(classes.first[part.first + i] - full.first);
   }
   return pooled;
 }
@@ -102,16 +101,16 @@ RowGroup pool_group(const RowGroup& group, const Classes& classes) {
   pooled.base = group.base(classes.first, Eigen::all);
   pooled.slot = group.slot(classes.first, Eigen::all);
   pooled.origin.clear();
-  for (const Eigen::Index row : classes.first) pooled.origin.push_back(group.origin[static_cast<std::size_t>(row)]);
+  for (const Eigen::Index row : classes.first) pooled.origin.push_back(group.origin[row]);
   pooled.measurement = pooled_measurement(group.measurement, classes);
 
   Eigen::VectorXd weight = Eigen::VectorXd::Zero(count), sum = weight;
   Eigen::VectorXd own(group.base.rows());
   for (Eigen::Index i = 0; i < own.size(); ++i) {
     const int set = set_of(group.measurement, i);
-    const bool unit = set >= 0 && group.measurement.sets[static_cast<std::size_t>(set)].noise_is_sd;
+    const bool unit = set >= 0 && group.measurement.sets[set].noise_is_sd;
     own[i] = unit ? 1.0 : 1.0 / group.variance[i];
-    const Eigen::Index c = classes.of_row[static_cast<std::size_t>(i)];
+    const Eigen::Index c = classes.of_row[i];
     weight[c] += own[i];
     sum[c] += own[i] * group.observed[i];
   }
@@ -122,19 +121,19 @@ RowGroup pool_group(const RowGroup& group, const Classes& classes) {
   const double log_two_pi = std::log(2.0 * std::numbers::pi);
   const auto of = [&](Eigen::Index row) -> Repeats& {
     const int set = set_of(group.measurement, row);
-    const int noise = set < 0 ? -1 : group.measurement.sets[static_cast<std::size_t>(set)].noise;
+    const int noise = set < 0 ? -1 : group.measurement.sets[set].noise;
     by_noise[noise].noise = noise;
     return by_noise[noise];
   };
   for (Eigen::Index i = 0; i < own.size(); ++i) {
     Repeats& repeats = of(i);
-    const double away = group.observed[i] - pooled.observed[classes.of_row[static_cast<std::size_t>(i)]];
+    const double away = group.observed[i] - pooled.observed[classes.of_row[i]];
     repeats.scatter += own[i] * away * away;
     repeats.extra += 1;
     repeats.log_constant += 0.5 * (std::log(own[i]) - log_two_pi);
   }
   for (Eigen::Index c = 0; c < count; ++c) {
-    Repeats& repeats = of(classes.first[static_cast<std::size_t>(c)]);
+    Repeats& repeats = of(classes.first[c]);
     repeats.extra -= 1;
     repeats.log_constant -= 0.5 * (std::log(weight[c]) - log_two_pi);
   }

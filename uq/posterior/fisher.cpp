@@ -29,7 +29,7 @@ FisherSpectrum fisher_spectrum(const CaseModel& full, const Eigen::VectorXd& u) 
   Eigen::MatrixXd slopes = sensitivity(model, u);
   std::vector<Eigen::Index> all, parameters;
   for (Eigen::Index s = 0; s < u.size(); ++s) {
-    const Slot& slot = model.slots[static_cast<std::size_t>(s)];
+    const Slot& slot = model.slots[s];
     slopes.col(s) *= slot.prior.sd();
     all.push_back(s);
     if (slot.nuisance == Acts::none) parameters.push_back(s);
@@ -41,8 +41,7 @@ FisherSpectrum fisher_spectrum(const CaseModel& full, const Eigen::VectorXd& u) 
   found.known_directions = static_cast<int>((known.eigenvalues().array() > 1.0).count());
   // The nuisances, integrated out under their priors, are part of what is uncertain of the data.
   for (Eigen::Index s = 0; s < u.size(); ++s)
-    if (model.slots[static_cast<std::size_t>(s)].nuisance != Acts::none)
-      covariance += slopes.col(s) * slopes.col(s).transpose();
+    if (model.slots[s].nuisance != Acts::none) covariance += slopes.col(s) * slopes.col(s).transpose();
   Eigen::MatrixXd unit = whiten(slopes, parameters, covariance);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(unit.transpose() * unit);
   found.eigenvalues = solver.eigenvalues().cwiseMax(0.0);

@@ -8,7 +8,7 @@ namespace {
 
 double factor_of(const ReadSet& set, const std::vector<Slot>& slots, const Eigen::VectorXd& u) {
   double factor = set.factor;
-  for (const int s : set.factors) factor *= slots[static_cast<std::size_t>(s)].value(u[s]);
+  for (const int s : set.factors) factor *= slots[s].value(u[s]);
   return factor;
 }
 
@@ -124,7 +124,7 @@ Meter meter_at(const Measurement& measurement, const std::vector<Slot>& slots, c
                Eigen::Index row) {
   for (const ReadSet& set : measurement.sets) {
     if (row < set.first || row >= set.first + set.count) continue;
-    const double offset = set.offset < 0 ? 0.0 : slots[static_cast<std::size_t>(set.offset)].value(u[set.offset]);
+    const double offset = set.offset < 0 ? 0.0 : slots[set.offset].value(u[set.offset]);
     return {.factor = factor_of(set, slots, u), .offset = offset};
   }
   return {};
@@ -135,7 +135,7 @@ Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Slot>
   Eigen::VectorXd noise = variance;
   for (const ReadSet& set : measurement.sets) {
     if (set.noise < 0) continue;
-    const double k = slots[static_cast<std::size_t>(set.noise)].value(u[set.noise]);
+    const double k = slots[set.noise].value(u[set.noise]);
     if (set.noise_is_sd) {
       noise.segment(set.first, set.count).setConstant(k * k);
     } else {
@@ -148,7 +148,7 @@ Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Slot>
 GroupLaw law_of(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& variance,
                 const surrogate::Prediction& prediction, const Eigen::VectorXd& u) {
   const Eigen::Index rows = variance.size();
-  const auto value = [&](int s) { return slots[static_cast<std::size_t>(s)].value(u[s]); };
+  const auto value = [&](int s) { return slots[s].value(u[s]); };
   const Eigen::VectorXd f = factors_of(measurement, slots, u, rows);
   GroupLaw law{.mean = f.cwiseProduct(prediction.mean.head(rows)),
                .covariance = (f * f.transpose()).cwiseProduct(prediction.covariance.topLeftCorner(rows, rows)),
@@ -190,7 +190,7 @@ LawGradient law_gradient(const Measurement& measurement, const std::vector<Slot>
                found);
 
   for (int s = 0; s < static_cast<int>(slots.size()); ++s) {
-    const Slot& slot = slots[static_cast<std::size_t>(s)];
+    const Slot& slot = slots[s];
     if (slot.nuisance == Acts::none || contains(unknowns, s)) continue;
     const double value = slot.value(u[s]), slope = slot.slope(u[s]);
     Eigen::VectorXd factors = Eigen::VectorXd::Zero(rows), offset = Eigen::VectorXd::Zero(rows);
@@ -216,8 +216,8 @@ LawGradient law_gradient(const Measurement& measurement, const std::vector<Slot>
     for (const DiscrepancyRows& part : measurement.discrepancies) {
       if (part.sd != s && part.length != s) continue;
       const double square = part.magnitude * part.magnitude;
-      const double sd = slots[static_cast<std::size_t>(part.sd)].value(u[part.sd]);
-      const double length = slots[static_cast<std::size_t>(part.length)].value(u[part.length]);
+      const double sd = slots[part.sd].value(u[part.sd]);
+      const double length = slots[part.length].value(u[part.length]);
       Eigen::MatrixXd change(part.count, part.count);
       if (part.sd == s) {
         change = 2.0 * sd * slope * square * discrepancy_correlation(part.controls, part.controls, length);

@@ -51,7 +51,7 @@ struct Scatter {
 Scatter scatter_of(const CaseModel& model, const Repeats& repeats, const Eigen::VectorXd& u) {
   if (repeats.noise < 0)
     return {.log_density = repeats.log_constant - 0.5 * repeats.scatter, .chi_squared = repeats.scatter};
-  const Slot& slot = model.slots[static_cast<std::size_t>(repeats.noise)];
+  const Slot& slot = model.slots[repeats.noise];
   const double k = slot.value(u[repeats.noise]), chi = repeats.scatter / (k * k);
   return {.log_density = repeats.log_constant - 0.5 * chi - repeats.extra * std::log(k),
           .chi_squared = chi,
@@ -68,7 +68,7 @@ void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::Ve
     sum.value += density(u);
     constexpr double step = 1e-5;
     for (Eigen::Index s = 0; s < u.size(); ++s) {
-      const bool nuisance = model.slots[static_cast<std::size_t>(s)].nuisance != Acts::none;
+      const bool nuisance = model.slots[s].nuisance != Acts::none;
       if (!nuisance && !(group.slot.array() == static_cast<int>(s)).any()) continue;
       Eigen::VectorXd up = u, down = u;
       up[s] += step;
@@ -167,7 +167,7 @@ RowMoments moments(const CaseModel& model, const std::vector<GroupLaw>& laws, co
     const RowGroup& group = model.groups[g];
     const Eigen::VectorXd noise = noise_of(group.measurement, model.slots, group.variance, u);
     for (Eigen::Index i = 0; i < noise.size(); ++i) {
-      const Eigen::Index at = model.distinct ? group.distinct_row[static_cast<std::size_t>(i)] : i;
+      const Eigen::Index at = model.distinct ? group.distinct_row[i] : i;
       found.mean[first + i] = laws[g].mean[at];
       found.variance[first + i] = laws[g].covariance(at, at) + noise[i];
     }
@@ -204,8 +204,7 @@ void for_each_law(const CaseModel& full, const Eigen::MatrixXd& points,
       std::vector<GroupLaw> laws;
       for (std::size_t g = 0; g < model.groups.size(); ++g) {
         const RowGroup& group = model.groups[g];
-        laws.push_back(law_of(group.measurement, model.slots, group.variance, found[g][static_cast<std::size_t>(i)],
-                              part.row(i).transpose()));
+        laws.push_back(law_of(group.measurement, model.slots, group.variance, found[g][i], part.row(i).transpose()));
       }
       use(from + i, laws);
     }
@@ -214,15 +213,13 @@ void for_each_law(const CaseModel& full, const Eigen::MatrixXd& points,
 
 double log_prior(const CaseModel& model, const Eigen::VectorXd& u) {
   double sum = 0.0;
-  for (std::size_t s = 0; s < model.slots.size(); ++s)
-    sum += model.slots[s].prior.log_density(u[static_cast<Eigen::Index>(s)]);
+  for (std::size_t s = 0; s < model.slots.size(); ++s) sum += model.slots[s].prior.log_density(u[s]);
   return sum;
 }
 
 Evaluation log_prior_gradient(const CaseModel& model, const Eigen::VectorXd& u) {
   Evaluation found{.value = log_prior(model, u), .gradient = Eigen::VectorXd(u.size())};
-  for (std::size_t s = 0; s < model.slots.size(); ++s)
-    found.gradient[static_cast<Eigen::Index>(s)] = model.slots[s].prior.slope(u[static_cast<Eigen::Index>(s)]);
+  for (std::size_t s = 0; s < model.slots.size(); ++s) found.gradient[s] = model.slots[s].prior.slope(u[s]);
   return found;
 }
 
@@ -256,7 +253,7 @@ Eigen::VectorXd log_likelihoods(const CaseModel& full, const Eigen::MatrixXd& po
       const Eigen::MatrixXd part = points.middleRows(from, std::min(points_at_once, points.rows() - from));
       const std::vector<surrogate::Prediction> found = predictions(group, part);
       for (Eigen::Index i = 0; i < part.rows(); ++i)
-        sums[from + i] += log_group_density(model, group, found[static_cast<std::size_t>(i)], part.row(i).transpose());
+        sums[from + i] += log_group_density(model, group, found[i], part.row(i).transpose());
     }
   return sums;
 }
@@ -314,7 +311,7 @@ Target posterior_target(std::shared_ptr<const CaseModel> model) {
   Target target{.dimension = model->dimension(), .lower = model->lower(), .upper = model->upper()};
   target.reference.draw = [model](data::RandomStream& random) {
     Eigen::VectorXd u(model->dimension());
-    for (Eigen::Index s = 0; s < u.size(); ++s) u[s] = model->slots[static_cast<std::size_t>(s)].prior.draw(random);
+    for (Eigen::Index s = 0; s < u.size(); ++s) u[s] = model->slots[s].prior.draw(random);
     return u;
   };
   target.reference.log_density = [model](const Eigen::VectorXd& u) { return log_prior(*model, u); };

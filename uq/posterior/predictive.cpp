@@ -139,7 +139,7 @@ Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws,
       shared = laws[g].mean + semidefinite_root(laws[g].covariance, "replicate data") * shared;
       const Eigen::VectorXd noise = noise_of(group.measurement, model.slots, group.variance, u);
       for (Eigen::Index row = 0; row < noise.size(); ++row) {
-        const Eigen::Index at = model.distinct ? group.distinct_row[static_cast<std::size_t>(row)] : row;
+        const Eigen::Index at = model.distinct ? group.distinct_row[row] : row;
         made(i, first + row) = shared[at] + std::sqrt(noise[row]) * random.normal();
       }
       first += noise.size();
@@ -229,7 +229,7 @@ void check_priors(const data::Study& study, const CaseModel& model) {
   };
   const Reach prior = reach(400, [&] {
     Eigen::VectorXd u(d);
-    for (Eigen::Index s = 0; s < d; ++s) u[s] = model.slots[static_cast<std::size_t>(s)].prior.draw(random);
+    for (Eigen::Index s = 0; s < d; ++s) u[s] = model.slots[s].prior.draw(random);
     return u;
   });
   // A value between the lowest and the highest prediction is within reach, however few draws came near it.
@@ -244,7 +244,7 @@ void check_priors(const data::Study& study, const CaseModel& model) {
     // Parameters anywhere in their ranges; a nuisance has no range but its prior's.
     Eigen::VectorXd u(d);
     for (Eigen::Index s = 0; s < d; ++s) {
-      const Slot& slot = model.slots[static_cast<std::size_t>(s)];
+      const Slot& slot = model.slots[s];
       u[s] = slot.nuisance == Acts::none ? random.uniform() : slot.prior.draw(random);
     }
     return u;
@@ -253,11 +253,11 @@ void check_priors(const data::Study& study, const CaseModel& model) {
   for (const Eigen::Index i : excluded) {
     if (range.nearest[i] > 3.0 && out_of_reach(range, i))
       continue;  // out of the model's reach altogether: it does not fit
-    const data::ObservationSet& set = study.observations[from[static_cast<std::size_t>(i)].set];
-    const data::Unit& unit = study.outputs[from[static_cast<std::size_t>(i)].output].unit;
+    const data::ObservationSet& set = study.observations[from[i].set];
+    const data::Unit& unit = study.outputs[from[i].output].unit;
     std::string names;
     for (const auto& slot : model.slots) names += (names.empty() ? "" : ", ") + slot.label;
-    problems.push_back({fmt::format("{}:{}", set.file, set.points[from[static_cast<std::size_t>(i)].point].line),
+    problems.push_back({fmt::format("{}:{}", set.file, set.points[from[i].point].line),
                         fmt::format("case '{}': the priors of {} only allow {:.4g} to {:.4g} {}, but {:.4g} {} was "
                                     "measured; the parameters' ranges would allow it",
                                     model.name, names, unit.from_si(prior.lowest[i]), unit.from_si(prior.highest[i]),

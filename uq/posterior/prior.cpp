@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "data/error.hpp"
+#include "uq/infer/log_density.hpp"
 #include "uq/posterior/beta_law.hpp"
 
 namespace uq {

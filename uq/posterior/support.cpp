@@ -60,9 +60,7 @@ std::vector<Plane> planes_of(const RunCloud& runs, const std::vector<EmulatorInp
   std::vector<Plane> planes;
   for (Index a = 0; a < runs.points.cols(); ++a)
     for (Index b = a + 1; b < runs.points.cols(); ++b) {
-      if (inputs[static_cast<std::size_t>(a)].kind == InputKind::control &&
-          inputs[static_cast<std::size_t>(b)].kind == InputKind::control)
-        continue;
+      if (inputs[a].kind == InputKind::control && inputs[b].kind == InputKind::control) continue;
       std::set<std::pair<double, double>> distinct;
       for (Index i = 0; i < runs.points.rows(); ++i) distinct.emplace(runs.points(i, a), runs.points(i, b));
       Plane plane{.first = a, .second = b, .points = MatrixXd(static_cast<Index>(distinct.size()), 2), .hull = {}};
@@ -108,7 +106,7 @@ MatrixXd points_at(const Ground& ground, const VectorXd& u) {
   MatrixXd points(static_cast<Index>(ground.rows.size()), group.base.cols());
   for (Index i = 0; i < points.rows(); ++i)
     for (Index k = 0; k < points.cols(); ++k) {
-      const Index row = ground.rows[static_cast<std::size_t>(i)];
+      const Index row = ground.rows[i];
       const int slot = group.slot(row, k);
       points(i, k) = slot < 0 ? group.base(row, k) : u[slot];
     }
@@ -235,12 +233,12 @@ NextRun next_run(const data::Study& study, const Ground& ground, const Candidate
   NextRun run{.material = emulator.material, .point = {}};
   for (const auto& [parameter, value] : emulator.constants)
     run.point[study.parameters[parameter].name] = study.parameters[parameter].unit.from_si(value);
-  const RowOrigin& origin = ground.group->origin[static_cast<std::size_t>(candidate.row)];
+  const RowOrigin& origin = ground.group->origin[candidate.row];
   const data::Observation& measured = study.observations[origin.set].points[origin.point];
   for (std::size_t c = 0; c < study.controls.size(); ++c)
     run.point[study.controls[c].name] = study.controls[c].unit.from_si(measured.controls[c]);
   for (std::size_t k = 0; k < emulator.inputs.size(); ++k) {
-    const Shown value = shown(study, emulator.inputs[k], candidate.point[static_cast<Index>(k)]);
+    const Shown value = shown(study, emulator.inputs[k], candidate.point[k]);
     run.point[value.name] = value.value;
   }
   return run;
@@ -251,23 +249,20 @@ std::vector<NextRun> next_runs(const data::Study& study, const Ground& ground, c
   std::vector<Candidate> candidates;
   for (Index d = 0; d < draws.rows(); ++d) {
     const MatrixXd points = points_at(ground, draws.row(d).transpose());
-    for (Index i = 0; i < points.rows(); ++i)
-      candidates.push_back({points.row(i).transpose(), ground.rows[static_cast<std::size_t>(i)]});
+    for (Index i = 0; i < points.rows(); ++i) candidates.push_back({points.row(i).transpose(), ground.rows[i]});
   }
   const MatrixXd& runs = ground.group->emulator.runs->points;
   VectorXd nearest(static_cast<Index>(candidates.size()));
   for (Index i = 0; i < nearest.size(); ++i)
-    nearest[i] =
-        (runs.rowwise() - candidates[static_cast<std::size_t>(i)].point.transpose()).rowwise().squaredNorm().minCoeff();
+    nearest[i] = (runs.rowwise() - candidates[i].point.transpose()).rowwise().squaredNorm().minCoeff();
   std::vector<NextRun> chosen;
   for (int i = 0; i < count && i < nearest.size(); ++i) {
     Index best = 0;
     if (!(nearest.maxCoeff(&best) > 1e-12)) break;
-    const Candidate& candidate = candidates[static_cast<std::size_t>(best)];
+    const Candidate& candidate = candidates[best];
     chosen.push_back(next_run(study, ground, candidate));
     for (Index k = 0; k < nearest.size(); ++k)
-      nearest[k] =
-          std::min(nearest[k], (candidates[static_cast<std::size_t>(k)].point - candidate.point).squaredNorm());
+      nearest[k] = std::min(nearest[k], (candidates[k].point - candidate.point).squaredNorm());
   }
   return chosen;
 }
@@ -311,7 +306,7 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
         if (met.gap[k] < 0) continue;
         input.gap += each;
         gap[at] = true;
-        const auto& [from, to] = ground.lines[k].gaps[static_cast<std::size_t>(met.gap[k])];
+        const auto& [from, to] = ground.lines[k].gaps[met.gap[k]];
         input.gap_low = shown(study, ground.group->emulator.inputs[k], from).value;
         input.gap_high = shown(study, ground.group->emulator.inputs[k], to).value;
       }

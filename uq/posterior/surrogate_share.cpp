@@ -25,7 +25,7 @@ SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& dr
   found.share = -1.0;
   std::size_t own = 0;
   for (Eigen::Index k = 0; k < draws.cols(); ++k) {
-    if (!model.slots[static_cast<std::size_t>(k)].own) continue;
+    if (!model.slots[k].own) continue;
     const Eigen::ArrayXd u = draws.col(k).array();
     const double with = u.mean(), without = (weight.array() * u).sum();
     const double variance = std::max((u - with).square().mean(), 1e-300);
@@ -34,7 +34,7 @@ SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& dr
     found.shares[own++] = share;
     if (share > found.share) {
       found.share = share;
-      found.parameter = model.slots[static_cast<std::size_t>(k)].label;
+      found.parameter = model.slots[k].label;
     }
   }
   return found;

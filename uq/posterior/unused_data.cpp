@@ -120,9 +120,8 @@ PredictionReport predict_unused(const data::Study& study, const std::vector<Emul
   const VectorXd away = observed(model)(rows) - all.centre;
   PredictionReport report{.name = wanted.name, .observed_sets = wanted.observe, .points = {}, .sentence = {}};
   for (Index i = 0; i < away.size(); ++i) {
-    PredictivePoint point = point_of(wider, from[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])]);
-    const data::Unit& unit =
-        wider.outputs[from[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])].output].unit;
+    PredictivePoint point = point_of(wider, from[static_cast<std::size_t>(rows[i])]);
+    const data::Unit& unit = wider.outputs[from[static_cast<std::size_t>(rows[i])].output].unit;
     point.mean = unit.from_si(all.centre[i]);
     point.q05 = unit.from_si(quantile_of(all, i, 0.05));
     point.q95 = unit.from_si(quantile_of(all, i, 0.95));

@@ -99,8 +99,7 @@ ReferencePoints reference_points(const CaseModel& model, const Eigen::MatrixXd& 
   const Eigen::MatrixXd cube =
       surrogate::scrambled_sobol(static_cast<int>(from_prior), static_cast<int>(unknowns), options.seed);
   for (Index i = 0; i < from_prior; ++i)
-    for (Index k = 0; k < unknowns; ++k)
-      reference.u(from_draws + i, k) = model.slots[static_cast<std::size_t>(k)].prior.inverse_cdf(cube(i, k));
+    for (Index k = 0; k < unknowns; ++k) reference.u(from_draws + i, k) = model.slots[k].prior.inverse_cdf(cube(i, k));
   const Eigen::VectorXd log_likelihood = log_likelihoods(model, reference.u);
   if (!std::isfinite(log_evidence))
     log_evidence = log_sum(log_likelihood.tail(from_prior)) - std::log(static_cast<double>(from_prior));
@@ -177,12 +176,11 @@ Eigen::MatrixXd IntegratedVariance::log_factors(const Group& group, const std::v
   Eigen::MatrixXd logs = Eigen::MatrixXd::Zero(points, static_cast<Index>(members.size()));
   Eigen::VectorXd variance(static_cast<Index>(members.size()));
   for (std::size_t k = 0; k < members.size(); ++k)
-    variance[static_cast<Index>(k)] = group.between(members[k], members[k]) + group.noise[members[k]];
+    variance[k] = group.between(members[k], members[k]) + group.noise[members[k]];
   Eigen::MatrixXd b(count, static_cast<Index>(members.size()));
   for (Index j = 0; j < points; ++j) {
     if (!std::isfinite(log_square_[j])) continue;
-    const Eigen::LLT<Eigen::MatrixXd> less(group.less[static_cast<std::size_t>(j)]),
-        more(group.more[static_cast<std::size_t>(j)]);
+    const Eigen::LLT<Eigen::MatrixXd> less(group.less[j]), more(group.more[j]);
     if (less.info() != Eigen::Success || more.info() != Eigen::Success) continue;
     for (std::size_t k = 0; k < members.size(); ++k)
       b.col(static_cast<Index>(k)) = group.cross.block(j * count, members[k], count, 1);
@@ -238,8 +236,8 @@ void IntegratedVariance::add(int candidate) {
     for (Index j = 0; j < group.residual.cols(); ++j) {
       if (std::isfinite(log_square_[j])) log_square_[j] += logs[j];
       const Eigen::VectorXd part = b.segment(j * count, count);
-      group.less[static_cast<std::size_t>(j)] -= part * part.transpose() / variance;
-      group.more[static_cast<std::size_t>(j)] += part * part.transpose() / variance;
+      group.less[j] -= part * part.transpose() / variance;
+      group.more[j] += part * part.transpose() / variance;
     }
     group.cross -= b * (c / variance);
     group.between -= c.transpose() * (c / variance);

@@ -17,8 +17,7 @@ using Eigen::Index;
 /// Sets the controls that the emulator has as inputs to shares of [0, 1].
 void set_controls(RunPoint& point, const Emulator& emulator, const Eigen::VectorXd& shares) {
   for (const EmulatorInput& input : emulator.inputs)
-    if (input.kind == InputKind::control)
-      point.controls[static_cast<Index>(input.index)] = shares[static_cast<Index>(input.index)];
+    if (input.kind == InputKind::control) point.controls[input.index] = shares[input.index];
 }
 
 /// Controls of the study that some emulator of the case has as an input: the largest index and one.
@@ -32,7 +31,7 @@ int controls_of(const CaseModel& model) {
 
 Eigen::VectorXd prior_point(const CaseModel& model, const Eigen::VectorXd& cube) {
   Eigen::VectorXd u(model.dimension());
-  for (Index k = 0; k < u.size(); ++k) u[k] = model.slots[static_cast<std::size_t>(k)].prior.inverse_cdf(cube[k]);
+  for (Index k = 0; k < u.size(); ++k) u[k] = model.slots[k].prior.inverse_cdf(cube[k]);
   return u;
 }
 
@@ -157,7 +156,7 @@ RunPoint run_at(const RowGroup& group, Index row, const Eigen::VectorXd& u) {
     const EmulatorInput& input = group.emulator.inputs[k];
     const int slot = group.slot(row, static_cast<Index>(k));
     const double value = slot < 0 ? group.base(row, static_cast<Index>(k)) : u[slot];
-    (input.kind == InputKind::parameter ? point.parameters : point.controls)[static_cast<Index>(input.index)] = value;
+    (input.kind == InputKind::parameter ? point.parameters : point.controls)[input.index] = value;
   }
   return point;
 }

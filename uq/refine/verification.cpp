@@ -20,10 +20,9 @@ Eigen::VectorXd inputs_at(const data::Study& study, const TrainingRows& rows, co
   Eigen::VectorXd point(static_cast<Index>(rows.inputs.size()));
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     const std::size_t index = rows.inputs[k].index;
-    point[static_cast<Index>(k)] =
-        rows.inputs[k].kind == InputKind::parameter
-            ? study.parameters[index].axis().to_unit(row.inputs[index])
-            : study.controls[index].axis().to_unit(row.inputs[study.parameters.size() + index]);
+    point[k] = rows.inputs[k].kind == InputKind::parameter
+                   ? study.parameters[index].axis().to_unit(row.inputs[index])
+                   : study.controls[index].axis().to_unit(row.inputs[study.parameters.size() + index]);
   }
   return point;
 }
@@ -54,14 +53,13 @@ void add_output(const data::Study& study, const FittedSurrogate& fitted, const s
   if (own.empty()) return;
   const auto count = static_cast<Index>(own.size());
   Eigen::MatrixXd points(count, static_cast<Index>(fitted.rows.inputs.size()));
-  for (Index i = 0; i < count; ++i)
-    points.row(i) = inputs_at(study, fitted.rows, own[static_cast<std::size_t>(i)]->row).transpose();
+  for (Index i = 0; i < count; ++i) points.row(i) = inputs_at(study, fitted.rows, own[i]->row).transpose();
   const surrogate::Prediction prediction = emulator_of(fitted).predict(points);
   Eigen::MatrixXd total = prediction.covariance;
   Eigen::VectorXd residual(count);
   const data::Unit& unit = study.outputs[output].unit;
   for (Index i = 0; i < count; ++i) {
-    const VerificationRun& run = *own[static_cast<std::size_t>(i)];
+    const VerificationRun& run = *own[i];
     const double mean = prediction.mean[i], value = run.row.outputs[output], error = run.row.standard_errors[output];
     const double of_surrogate = prediction.covariance(i, i) + scatter(fitted, mean);
     total(i, i) = of_surrogate + error * error;

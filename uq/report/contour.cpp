@@ -65,8 +65,8 @@ std::vector<Loop> contour(const DensityGrid& grid, const Box& box, double level)
   std::map<Edge, std::array<Edge, 2>> joined;
   std::map<Edge, int> count;
   const auto join = [&](const Edge& a, const Edge& b) {
-    joined[a][static_cast<std::size_t>(count[a]++)] = b;
-    joined[b][static_cast<std::size_t>(count[b]++)] = a;
+    joined[a][count[a]++] = b;
+    joined[b][count[b]++] = a;
   };
   for (std::size_t i = 0; i + 1 < nodes.x.size(); ++i) {
     for (std::size_t j = 0; j + 1 < nodes.y.size(); ++j) {

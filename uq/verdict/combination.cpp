@@ -119,7 +119,7 @@ FittedCombination fit_combination(const Eigen::MatrixXd& values, const Eigen::Ve
       if (form == CombinationForm::product)
         found.terms.push_back({.power = weights[i], .coefficient = 1.0});
       else
-        found.terms.push_back({.power = powers[static_cast<std::size_t>(i)], .coefficient = weights[i]});
+        found.terms.push_back({.power = powers[i], .coefficient = weights[i]});
     }
     best = std::move(found);
   };
@@ -142,7 +142,7 @@ double evaluate(const FittedCombination& combination, const Eigen::VectorXd& row
   const bool product = combination.form == CombinationForm::product;
   double value = product ? 1.0 : 0.0;
   for (Index i = 0; i < row.size(); ++i) {
-    const CombinationTerm& term = combination.terms[static_cast<std::size_t>(i)];
+    const CombinationTerm& term = combination.terms[i];
     const double raised = std::pow(row[i], term.power);
     value = product ? value * raised : value + term.coefficient * raised;
   }
@@ -165,8 +165,7 @@ double filled_share(const Eigen::MatrixXd& values) {
     std::vector<std::pair<double, Index>> sorted;
     for (Index i = 0; i < n; ++i) sorted.emplace_back(values(order[static_cast<std::size_t>(i * unique / n)], k), i);
     std::sort(sorted.begin(), sorted.end());
-    for (Index i = 0; i < n; ++i)
-      ranks(sorted[static_cast<std::size_t>(i)].second, k) = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
+    for (Index i = 0; i < n; ++i) ranks(sorted[i].second, k) = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
   }
   const auto log_distance = [&](const Eigen::MatrixXd& points) {
     double sum = 0.0;

@@ -30,8 +30,7 @@ Eigen::MatrixXd starting_points(const data::Study& study, const CaseModel& model
   Eigen::MatrixXd starts(1 + starts_over_prior, model.dimension());
   starts.row(0) = first.transpose();
   for (Eigen::Index i = 1; i < starts.rows(); ++i)
-    for (Eigen::Index k = 0; k < starts.cols(); ++k)
-      starts(i, k) = model.slots[static_cast<std::size_t>(k)].prior.draw(random);
+    for (Eigen::Index k = 0; k < starts.cols(); ++k) starts(i, k) = model.slots[k].prior.draw(random);
   return starts;
 }
 
@@ -52,7 +51,7 @@ std::vector<SetFit> fits_alone(const data::Study& study, const CaseModel& model,
       if (from[i].set == set)
         ++rows;
       else
-        variance[static_cast<Eigen::Index>(i)] *= variance_of_others;
+        variance[i] *= variance_of_others;
     }
     const CaseModel alone = with_data(model, y, variance);
     const Maximum best = maximum_likelihood(alone, starts);

@@ -170,7 +170,7 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
     const Profile& profile = all.profiles[k];
     const Slot& slot = model.slots[k];
     ParameterReport report = describe_draws(slot, draws.col(static_cast<Eigen::Index>(k)), profile);
-    report.map = shown(slot, mode[static_cast<Eigen::Index>(k)]);
+    report.map = shown(slot, mode[k]);
     if (profile.low_pinned) report.low_pinned_by = model.slots[static_cast<std::size_t>(*profile.low_pinned)].label;
     if (profile.high_pinned) report.high_pinned_by = model.slots[static_cast<std::size_t>(*profile.high_pinned)].label;
     ParameterEvidence one{.name = report.name,

@@ -19,7 +19,7 @@ Eigen::MatrixXd inputs_at(const RowGroup& group, const Yardstick::Group& looked,
   Eigen::MatrixXd points(static_cast<Eigen::Index>(looked.rows.size()), group.base.cols());
   for (Eigen::Index i = 0; i < points.rows(); ++i)
     for (Eigen::Index k = 0; k < points.cols(); ++k) {
-      const Eigen::Index row = looked.rows[static_cast<std::size_t>(i)];
+      const Eigen::Index row = looked.rows[i];
       const int s = group.slot(row, k);
       points(i, k) = s < 0 ? group.base(row, k) : u[s];
     }
@@ -54,7 +54,7 @@ Yardstick make_yardstick(const CaseModel& model, const Eigen::VectorXd& best) {
     const GroupLaw law = group_law(model, group, best);
     const surrogate::Prediction known = group.emulator.predict(inputs_at(group, looked, best));
     for (Eigen::Index i = 0; i < count; ++i) {
-      const Eigen::Index row = looked.rows[static_cast<std::size_t>(i)];
+      const Eigen::Index row = looked.rows[i];
       const double factor = meter_at(group.measurement, model.slots, best, row).factor;
       const double variance = law.noise[row] + factor * factor * std::max(known.covariance(i, i), 0.0);
       looked.weight[i] = variance > 0.0 ? factor / std::sqrt(variance) : 0.0;
@@ -113,10 +113,10 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
 
   std::vector<Influence> found(static_cast<std::size_t>(model.dimension()));
   for (int k = 0; k < model.dimension(); ++k) {
-    Influence& influence = found[static_cast<std::size_t>(k)];
+    Influence& influence = found[k];
     if (!acts_on_emulators(model, k)) {
       // A nuisance of the meter acts without the surrogate; a parameter that no emulator sees does nothing.
-      influence.some = influence.shown = model.slots[static_cast<std::size_t>(k)].nuisance != Acts::none;
+      influence.some = influence.shown = model.slots[k].nuisance != Acts::none;
       continue;
     }
     double effect = 0.0, doubt = 0.0, ends_effect = 0.0, ends_doubt = 0.0;
@@ -131,7 +131,7 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
         Eigen::MatrixXd points(levels * n, group.base.cols());
         for (Eigen::Index t = 0; t < levels; ++t) {
           Eigen::VectorXd u = base;
-          u[k] = lower[k] + shares[static_cast<std::size_t>(t)] * (upper[k] - lower[k]);
+          u[k] = lower[k] + shares[t] * (upper[k] - lower[k]);
           points.middleRows(t * n, n) = inputs_at(group, looked, u);
         }
         const surrogate::Prediction at = group.emulator.predict(points);
@@ -151,7 +151,7 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
           for (Eigen::Index t = 0; t < levels; ++t) {
             const double d = at.mean[t * n + i] - mean;
             effect += w * d * d;
-            moved[static_cast<std::size_t>(t)] += w * std::pow(at.mean[t * n + i] - at.mean[i], 2);
+            moved[t] += w * std::pow(at.mean[t * n + i] - at.mean[i], 2);
           }
         }
       }

@@ -148,16 +148,16 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
   const double width = 0.02 * (box.upper[k] - box.lower[k]);
   auto solve = [&](Eigen::Index i, const Eigen::VectorXd& neighbour) {
     Eigen::MatrixXd starts = neighbour.transpose();
-    if (const auto near = draw_near(guides, k, values[static_cast<std::size_t>(i)], width)) {
+    if (const auto near = draw_near(guides, k, values[i], width)) {
       starts.conservativeResize(2, Eigen::NoChange);
       starts.row(1) = near->transpose();
     }
     for (const Maximum& other : known.maxima)
-      if (std::abs(other.x[k] - values[static_cast<std::size_t>(i)]) < width) {
+      if (std::abs(other.x[k] - values[i]) < width) {
         starts.conservativeResize(starts.rows() + 1, Eigen::NoChange);
         starts.row(starts.rows() - 1) = other.x.transpose();
       }
-    const Maximum found = maximise(profiled(model), box, starts, Held{k, values[static_cast<std::size_t>(i)]});
+    const Maximum found = maximise(profiled(model), box, starts, Held{k, values[i]});
     level[i] = found.value;
     profile.path.row(i) = found.x.transpose();
   };
@@ -170,10 +170,9 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
   auto improve = [&](Eigen::Index i, Eigen::Index from) {
     const Eigen::VectorXd start = profile.path.row(from).transpose();
     Eigen::VectorXd moved = start;
-    moved[k] = values[static_cast<std::size_t>(i)];
+    moved[k] = values[i];
     if (log_likelihood(model, moved) + log_certificates(model, moved).value <= level[i]) return;
-    const Maximum found =
-        maximise(profiled(model), box, start.transpose(), Held{k, values[static_cast<std::size_t>(i)]});
+    const Maximum found = maximise(profiled(model), box, start.transpose(), Held{k, values[i]});
     if (found.value <= level[i]) return;
     level[i] = found.value;
     profile.path.row(i) = found.x.transpose();
@@ -204,7 +203,7 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
   climb(model, box, guides, 0.5 * options.thresholds.profile_drop, found);
   found.influence = find_influence(model, found.best.x, guides.draws, options.thresholds);
   for (int k = 0; k < model.dimension(); ++k) {
-    if (!model.slots[static_cast<std::size_t>(k)].own) continue;
+    if (!model.slots[k].own) continue;
     Profile profile = sweep(model, box, k, guides, found, options);
     Eigen::Index highest = 0;
     if (profile.deviance.maxCoeff(&highest) > found.best.value) {

@@ -69,10 +69,9 @@ double deviance_with_held(const CaseModel& model, const Box& box, Held held, Hel
 std::optional<int> pinned(const CaseModel& model, const Box& box, const Profiles& all, const Profile& profile,
                           const Crossing& end, const VerdictThresholds& thresholds) {
   for (int other = 0; other < model.dimension(); ++other) {
-    if (other == profile.unknown || !all.influence[static_cast<std::size_t>(other)].some) continue;
+    if (other == profile.unknown || !all.influence[other].some) continue;
     const double width = box.upper[other] - box.lower[other];
-    const bool low = end.maximiser[other] - box.lower[other] < 1e-4 * width &&
-                     !physical_low(model.slots[static_cast<std::size_t>(other)]);
+    const bool low = end.maximiser[other] - box.lower[other] < 1e-4 * width && !physical_low(model.slots[other]);
     if (!low && box.upper[other] - end.maximiser[other] >= 1e-4 * width) continue;
     // The middle of where the path has it inside the interval.
     double least = box.upper[other], most = box.lower[other];

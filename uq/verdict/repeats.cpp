@@ -45,15 +45,14 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
       const bool low = u[s] - lower[s] <= slack, high = upper[s] - u[s] <= slack;
       if (!low && !high) free.push_back(s);
       // A bound at 0 that nature sets ends nothing (uq/verdict/profile.hpp).
-      if (s < model.own_count() && (high || (low && !physical_low(model.slots[static_cast<std::size_t>(s)]))))
-        point.at_end = true;
+      if (s < model.own_count() && (high || (low && !physical_low(model.slots[s])))) point.at_end = true;
     }
     point.slopes.resize(slopes.rows(), static_cast<Eigen::Index>(free.size()));
     point.precision.resize(point.slopes.cols());
     for (std::size_t k = 0; k < free.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
       point.slopes.col(column) = slopes.col(free[k]);
-      point.precision[column] = 1.0 / std::pow(model.slots[static_cast<std::size_t>(free[k])].prior.sd(), 2);
+      point.precision[column] = 1.0 / std::pow(model.slots[free[k]].prior.sd(), 2);
     }
     found.push_back(std::move(point));
   }
@@ -84,9 +83,7 @@ PathWords::PathWords(const std::vector<PathPoint>& points, const std::vector<Eig
 std::pair<bool, bool> PathWords::ends_by_another(const Eigen::VectorXd& deviance, double drop) const {
   const auto end_of = [&](auto first, auto last, int outwards) {
     for (auto i = first; i != last; i -= outwards)
-      if (deviance[static_cast<Eigen::Index>(i)] <= drop)
-        return i != first &&
-               (points_[static_cast<std::size_t>(i)].at_end || points_[static_cast<std::size_t>(i + outwards)].at_end);
+      if (deviance[i] <= drop) return i != first && (points_[i].at_end || points_[i + outwards].at_end);
     return false;
   };
   const int n = static_cast<int>(points_.size());
@@ -104,7 +101,7 @@ Eigen::VectorXd PathWords::deviances(const Eigen::VectorXd& y) const {
       const Eigen::VectorXd pull = point.slopes.transpose() * r;
       value -= pull.dot(point.bent.solve(pull));
     }
-    deviance[static_cast<Eigen::Index>(i)] = value;
+    deviance[i] = value;
   }
   deviance.array() -= deviance.minCoeff();
   return deviance;
@@ -141,7 +138,7 @@ PathWords::Parts PathWords::parts(const Eigen::VectorXd& deviance, double drop) 
   Parts found{.count = 0, .of = std::vector<std::size_t>(points_.size(), 0)};
   bool real = true;  // what lies between here and the last point inside is more than the surrogate's doubt
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const double value = deviance[static_cast<Eigen::Index>(i)];
+    const double value = deviance[i];
     if (value <= drop) {
       if (real) ++found.count;
       real = false;

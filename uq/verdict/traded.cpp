@@ -29,12 +29,12 @@ const double straight_fill = std::sqrt(2.0);
 
 /// Value of own parameter k at u, in the study's unit.
 double shown(const CaseModel& model, int k, double u) {
-  const data::Parameter& parameter = model.slots[static_cast<std::size_t>(k)].prior.parameter();
+  const data::Parameter& parameter = model.slots[k].prior.parameter();
   return parameter.unit.from_si(parameter.axis().from_unit(u));
 }
 
 double range_of(const CaseModel& model, int k) {
-  const data::Parameter& parameter = model.slots[static_cast<std::size_t>(k)].prior.parameter();
+  const data::Parameter& parameter = model.slots[k].prior.parameter();
   return std::abs(parameter.unit.from_si(parameter.high) - parameter.unit.from_si(parameter.low));
 }
 
@@ -113,7 +113,7 @@ void add_equivalent_points(TradedPair& pair, const CaseModel& model, const Subse
   const Profile* along = nullptr;
   double widest = -1.0;
   for (const int k : subset) {
-    const Profile& profile = profiles[static_cast<std::size_t>(k)];
+    const Profile& profile = profiles[k];
     const auto [low, high] = span(profile);
     if (high - low > widest) {
       widest = high - low;
@@ -140,8 +140,7 @@ void add_equivalent_points(TradedPair& pair, const CaseModel& model, const Subse
   }
   for (const Eigen::Index i : chosen) {
     std::map<std::string, double> point;
-    for (int k = 0; k < model.own_count(); ++k)
-      point[model.slots[static_cast<std::size_t>(k)].label] = shown(model, k, along->path(i, k));
+    for (int k = 0; k < model.own_count(); ++k) point[model.slots[k].label] = shown(model, k, along->path(i, k));
     pair.equivalent.push_back(std::move(point));
     const Eigen::VectorXd u = along->path.row(i).transpose();
     pair.equivalent_u.emplace_back(u.begin(), u.end());
@@ -153,8 +152,8 @@ TradedPair describe(const CaseModel& model, const Found& found, const Eigen::Mat
   TradedPair pair;
   std::vector<CombinationColumn> columns;
   for (const int k : found.subset) {
-    const data::Parameter& parameter = model.slots[static_cast<std::size_t>(k)].prior.parameter();
-    pair.parameters.push_back(model.slots[static_cast<std::size_t>(k)].label);
+    const data::Parameter& parameter = model.slots[k].prior.parameter();
+    pair.parameters.push_back(model.slots[k].label);
     columns.push_back({pair.parameters.back(), parameter.unit.symbol, values.col(k).cwiseAbs().mean()});
   }
   // Of the members, the two that hang together most.
@@ -205,10 +204,10 @@ std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::M
   std::vector<int> pool;
   for (int k = 0; k < own; ++k) {
     for (Eigen::Index i = 0; i < values.rows(); ++i) values(i, k) = shown(model, k, looked_at(i, k));
-    const bool apart = verdicts[static_cast<std::size_t>(k)] == Verdict::several_values;
-    if (all.influence[static_cast<std::size_t>(k)].some && !apart) pool.push_back(k);
+    const bool apart = verdicts[k] == Verdict::several_values;
+    if (all.influence[k].some && !apart) pool.push_back(k);
   }
-  const auto open = [&](int k) { return verdicts[static_cast<std::size_t>(k)] != Verdict::identified; };
+  const auto open = [&](int k) { return verdicts[k] != Verdict::identified; };
 
   std::vector<Found> kept;
   std::vector<int> tied(static_cast<std::size_t>(own));  // parameters that the pairs found so far tie together
@@ -222,7 +221,7 @@ std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::M
       });
       if (known) continue;
       Eigen::VectorXd ranges(static_cast<Eigen::Index>(size));
-      for (std::size_t i = 0; i < size; ++i) ranges[static_cast<Eigen::Index>(i)] = range_of(model, subset[i]);
+      for (std::size_t i = 0; i < size; ++i) ranges[i] = range_of(model, subset[i]);
       FittedCombination found = look_at(columns_of(values, subset), ranges, thresholds);
       if (found.form == CombinationForm::none) continue;
       candidates.push_back({subset, std::move(found)});
@@ -231,8 +230,8 @@ std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::M
                      [](const Found& a, const Found& b) { return a.combination.share < b.combination.share; });
     for (Found& candidate : candidates) {
       if (size == 2) {
-        const int a = tied[static_cast<std::size_t>(candidate.subset[0])];
-        const int b = tied[static_cast<std::size_t>(candidate.subset[1])];
+        const int a = tied[candidate.subset[0]];
+        const int b = tied[candidate.subset[1]];
         if (a == b) continue;
         for (int& root : tied) root = root == b ? a : root;
       }
