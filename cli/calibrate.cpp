@@ -17,7 +17,7 @@
 namespace cli {
 namespace {
 
-struct Options {
+struct CalibrateOptions {
   Common common;
   std::shared_ptr<std::optional<data::Sampler>> sampler;
   int verify = 0;  ///< points of each case's posterior; 0: none
@@ -27,7 +27,7 @@ struct Options {
   bool no_scan = false;
 };
 
-uq::Calibration calibrate_once(const Options& options, const Workspace& workspace, const TrainingRows& rows) {
+uq::Calibration calibrate_once(const CalibrateOptions& options, const Workspace& workspace, const TrainingRows& rows) {
   const uq::SurrogateOptions surrogates = surrogate_options(options.common, workspace, rows);
   uq::Calibration result;
   {
@@ -79,7 +79,7 @@ bool all_agree(const std::vector<uq::VerificationReport>& reports) {
                      [](const uq::VerificationReport& one) { return one.agrees || one.values.empty(); });
 }
 
-data::ExitStatus calibrate_and_verify(const Options& options) {
+data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
   const data::InterruptGuard interrupt;
   const Common& common = options.common;
   const auto begin = std::chrono::steady_clock::now();
@@ -163,7 +163,7 @@ data::ExitStatus calibrate_and_verify(const Options& options) {
 }  // namespace
 
 Action add_calibrate(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command =
       add_study_command(program, "calibrate", "fit, sample, identify, report: what the torque determines and what not",
                         "demcal calibrate data/developer", options->common);

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ExportOptions {
   Common common;
   PointOptions point;
   std::string folder, to;
@@ -36,7 +36,7 @@ std::vector<std::string> at_of(const Workspace& workspace, const Point& point) {
   return at;
 }
 
-data::ExitStatus write(const Options& options, const Workspace& workspace) {
+data::ExitStatus write(const ExportOptions& options, const Workspace& workspace) {
   const Point point = point_of(workspace, options.point);
   for (const std::string& warning : foretell(workspace, point).forecast.warnings)
     say(options.common, "note: " + warning);
@@ -66,7 +66,7 @@ data::ExitStatus write(const Options& options, const Workspace& workspace) {
 }
 
 /// The point that the folder was written for. Throws InputError (65, 66) where it was for another study.
-Point point_of(const Options& options, Workspace& workspace) {
+Point point_of(const ExportOptions& options, Workspace& workspace) {
   const std::string path = (fs::path(options.folder) / record).string();
   const nlohmann::json json = nlohmann::json::parse(data::read_file(path), nullptr, false);
   const auto wrong = [&](const std::string& what) {
@@ -86,7 +86,7 @@ Point point_of(const Options& options, Workspace& workspace) {
   }
 }
 
-data::ExitStatus collect(const Options& options, Workspace workspace) {
+data::ExitStatus collect(const ExportOptions& options, Workspace workspace) {
   const Point point = point_of(options, workspace);
   const auto& outputs = workspace.study.outputs;
   const auto torque =
@@ -136,7 +136,7 @@ data::ExitStatus collect(const Options& options, Workspace workspace) {
 }  // namespace
 
 Action add_export(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ExportOptions>();
   CLI::App* command =
       add_study_command(program, "export", "the case of a point for LIGGGHTS, and its torque back",
                         "demcal export data/developer lig --to liggghts --material zirconia-800", options->common);

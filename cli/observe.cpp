@@ -31,7 +31,7 @@ struct Window {
   double to() const { return seconds.empty() ? all : seconds[1]; }
 };
 
-struct Options {
+struct ObserveOptions {
   Common common;
   std::string log, out, idle_log, unit, output = "torque", control = "rpm";
   data::LogColumns columns;
@@ -52,7 +52,7 @@ struct Idle {
   std::vector<data::MeanTorque> at;  ///< SI, by plateau
 };
 
-Idle find_idle(const Options& options, const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus) {
+Idle find_idle(const ObserveOptions& options, const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus) {
   Idle idle;
   const bool from_log = !options.idle_log.empty() || !options.idle_window.seconds.empty();
   if (options.idle && from_log)
@@ -131,8 +131,8 @@ std::string in_comment(std::string text) {
 }
 
 /// One row per plateau; beside the columns that a study reads, what the mean rests on.
-std::string to_csv(const Options& options, const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
-                   const Idle& idle, const data::Unit& unit) {
+std::string to_csv(const ObserveOptions& options, const data::TorqueLog& log,
+                   const std::vector<data::Plateau>& plateaus, const Idle& idle, const data::Unit& unit) {
   std::string text = fmt::format("# {}\n# from {} (XXH3 {}), by demcal observe\n", data::blank_mark(),
                                  in_comment(fs::path(options.log).filename().string()), data::hash_file(options.log));
   text += fmt::format(
@@ -199,7 +199,7 @@ std::string left_over(const data::TorqueLog& log, const std::vector<data::Platea
       turning - held, turning, 100.0 * options.tolerance, 500.0 * options.tolerance);
 }
 
-data::ExitStatus observe(Options options) {
+data::ExitStatus observe(ObserveOptions options) {
   const fs::path out = options.out.empty() ? fs::path(options.log).stem().string() + "-observed.csv" : options.out;
   check_observe_targets(out, {options.log, options.idle_log});
   if (options.constant_speed) {
@@ -298,7 +298,7 @@ void add_window(CLI::App& command, const std::string& name, Window& window, cons
 }  // namespace
 
 Action add_observe(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ObserveOptions>();
   CLI::App* command = program.add_subcommand(
       "observe", "a raw torque log (time, torque, rpm) to observations: one mean with its error per constant speed");
   command->footer("Example: demcal observe bench-log.csv --idle-log empty.csv --out observed/bench.csv");

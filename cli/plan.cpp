@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr int runs_listed = 4;  // training runs shown beside the measurements
 
-struct Options {
+struct PlanOptions {
   Common common;
   std::string about, only;
   double budget = 0.0;
@@ -30,7 +30,7 @@ struct Options {
 };
 
 /// Indices of the cases that are asked for.
-std::vector<std::size_t> chosen_cases(const Options& options, const Workspace& workspace) {
+std::vector<std::size_t> chosen_cases(const PlanOptions& options, const Workspace& workspace) {
   data::require_cases(workspace.study);
   std::vector<std::size_t> chosen;
   std::vector<std::string> names;
@@ -93,7 +93,7 @@ void add_to_report(const Workspace& workspace, const std::vector<uq::CaseReport>
   uq::write_report_html(report, workspace.out);
 }
 
-data::ExitStatus plan(const Options& options) {
+data::ExitStatus plan(const PlanOptions& options) {
   const Common& common = options.common;
   const Workspace workspace = open_workspace(common);
   const std::vector<std::size_t> cases = chosen_cases(options, workspace);
@@ -153,7 +153,7 @@ data::ExitStatus plan(const Options& options) {
 }  // namespace
 
 Action add_plan(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PlanOptions>();
   CLI::App* command =
       add_study_command(program, "plan", "what to measure next: which reading teaches most of a parameter, per cost",
                         "demcal plan data/developer --about friction --batch 2", options->common);

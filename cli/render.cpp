@@ -11,7 +11,7 @@
 namespace cli {
 namespace {
 
-struct Options {
+struct RenderOptions {
   std::string frame, out, by = "material";
   std::vector<double> from{-1.0, -2.0, 1.2};
   int width = 1000;
@@ -20,7 +20,7 @@ struct Options {
 }  // namespace
 
 Action add_render(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RenderOptions>();
   CLI::App* command = program.add_subcommand("render", "draw a frame of a run as a picture (POV-Ray)");
   command->add_option("FRAME", options->frame, "a file that demcal simulate --frames N has written")->required();
   command->add_option("--out", options->out, "the picture (default: beside the frame, as PNG)");

@@ -24,7 +24,7 @@
 namespace cli {
 namespace {
 
-struct Options {
+struct SimulateOptions {
   Common common;
   PointOptions point;
   int threads = 1;
@@ -144,7 +144,7 @@ std::string file_of(const Workspace& workspace, const Point& point) {
 }  // namespace
 
 Action add_simulate(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = add_study_command(
       program, "simulate", "run the DEM at one point and say its torque",
       "demcal simulate data/developer --material carrier --at friction=0.4,hamaker=9e-18,rpm=150", options->common);

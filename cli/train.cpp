@@ -18,7 +18,7 @@ namespace cli {
 namespace fs = std::filesystem;
 namespace {
 
-struct Options {
+struct TrainOptions {
   Common common;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   int runs = 0, at_posterior = 0;
@@ -31,7 +31,7 @@ struct Options {
 }  // namespace
 
 Action add_train(CLI::App& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TrainOptions>();
   CLI::App* command = add_study_command(program, "train", "make the training runs that are missing",
                                         "demcal train data/developer --runs 6", options->common);
   add_isa_option(*command);

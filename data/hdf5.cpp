@@ -17,15 +17,14 @@
 #endif
 
 namespace data {
-namespace {
 
 /// An HDF5 identifier and what closes it.
-class Id {
+class Hdf5Id {
  public:
-  Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  Id(const Id&) = delete;
-  Id& operator=(const Id&) = delete;
-  ~Id() {
+  Hdf5Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Hdf5Id(const Hdf5Id&) = delete;
+  Hdf5Id& operator=(const Hdf5Id&) = delete;
+  ~Hdf5Id() {
     if (id_ >= 0) close_(id_);
   }
   hid_t get() const { return id_; }
@@ -35,6 +34,8 @@ class Id {
   hid_t id_;
   herr_t (*close_)(hid_t);
 };
+
+namespace {
 
 /// When a file cannot be closed, say because the disk is full, the library's clean-up at the program's end crashes. All
 /// files are closed here, so there is nothing left to clean up. It must be told before its first use.
@@ -77,12 +78,12 @@ struct Types<std::uint8_t> {
 };
 
 /// UTF-8 of `length` bytes, filled up with zeros.
-Id text_type(std::size_t length) {
+Hdf5Id text_type(std::size_t length) {
   const hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, std::max<std::size_t>(1, length));
   H5Tset_strpad(type, H5T_STR_NULLPAD);
   H5Tset_cset(type, H5T_CSET_UTF8);
-  return Id(type, H5Tclose);
+  return Hdf5Id(type, H5Tclose);
 }
 
 /// Reads as many bytes as the stored text has; anything else than text of fixed length has none.
@@ -93,10 +94,10 @@ std::size_t text_length(hid_t stored) {
 
 std::string without_padding(std::string_view text) { return std::string(text.substr(0, text.find('\0'))); }
 
-Id space_of(const std::vector<std::size_t>& shape) {
-  if (shape.empty()) return Id(H5Screate(H5S_SCALAR), H5Sclose);
+Hdf5Id space_of(const std::vector<std::size_t>& shape) {
+  if (shape.empty()) return Hdf5Id(H5Screate(H5S_SCALAR), H5Sclose);
   std::vector<hsize_t> extents(shape.begin(), shape.end());
-  return Id(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), H5Sclose);
+  return Hdf5Id(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), H5Sclose);
 }
 
 std::vector<std::size_t> shape_of(hid_t space) {
@@ -113,8 +114,8 @@ std::size_t product(const std::vector<std::size_t>& shape) {
 }  // namespace
 
 struct Hdf5Group::Handle {
-  std::shared_ptr<Id> file;  ///< keeps the file open as long as any group
-  Id id;
+  std::shared_ptr<Hdf5Id> file;  ///< keeps the file open as long as any group
+  Hdf5Id id;
   std::string path;    ///< of the file
   std::string inside;  ///< "/columns"
 
@@ -131,7 +132,7 @@ struct Hdf5Group::Handle {
   }
   /// How many values a dataset has. Damaged extents ask for more than the file holds of them.
   std::size_t elements(const std::string& name, hid_t dataset, const std::vector<std::size_t>& shape) const {
-    const Id type(H5Dget_type(dataset), H5Tclose);
+    const Hdf5Id type(H5Dget_type(dataset), H5Tclose);
     const auto stored = static_cast<std::size_t>(H5Dget_storage_size(dataset));
     std::size_t bytes = H5Tget_size(type.get());
     for (const std::size_t extent : shape)
@@ -141,18 +142,19 @@ struct Hdf5Group::Handle {
     return product(shape);
   }
   /// The object that carries an attribute: this group or a dataset of it.
-  Id carrier(const std::string& dataset) const {
-    return Id(dataset.empty() ? H5Oopen(id.get(), ".", H5P_DEFAULT) : H5Oopen(id.get(), dataset.c_str(), H5P_DEFAULT),
-              H5Oclose);
+  Hdf5Id carrier(const std::string& dataset) const {
+    return Hdf5Id(
+        dataset.empty() ? H5Oopen(id.get(), ".", H5P_DEFAULT) : H5Oopen(id.get(), dataset.c_str(), H5P_DEFAULT),
+        H5Oclose);
   }
-  void set(const std::pair<std::string, std::string>& attribute_of, hid_t file_type, const Id& space,
+  void set(const std::pair<std::string, std::string>& attribute_of, hid_t file_type, const Hdf5Id& space,
            const std::pair<hid_t, const void*>& memory) const {
     silence();
     const auto& [attribute, dataset] = attribute_of;
-    const Id object = carrier(dataset);
+    const Hdf5Id object = carrier(dataset);
     if (object.ok() && H5Aexists(object.get(), attribute.c_str()) > 0) H5Adelete(object.get(), attribute.c_str());
-    const Id made(H5Acreate2(object.get(), attribute.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
-                  H5Aclose);
+    const Hdf5Id made(H5Acreate2(object.get(), attribute.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                      H5Aclose);
     if (!made.ok() || H5Awrite(made.get(), memory.first, memory.second) < 0) cannot_write(dataset + "@" + attribute);
   }
   /// Reads a one-element attribute of the given class into `memory`.
@@ -160,11 +162,11 @@ struct Hdf5Group::Handle {
            const std::pair<hid_t, void*>& memory) const {
     silence();
     const auto& [attribute, dataset] = attribute_of;
-    const Id object = carrier(dataset);
-    const Id found(H5Aopen(object.get(), attribute.c_str(), H5P_DEFAULT), H5Aclose);
+    const Hdf5Id object = carrier(dataset);
+    const Hdf5Id found(H5Aopen(object.get(), attribute.c_str(), H5P_DEFAULT), H5Aclose);
     if (!found.ok()) bad_data(dataset + "@" + attribute, "the attribute is missing");
-    const Id type(H5Aget_type(found.get()), H5Tclose);
-    const Id space(H5Aget_space(found.get()), H5Sclose);
+    const Hdf5Id type(H5Aget_type(found.get()), H5Tclose);
+    const Hdf5Id space(H5Aget_space(found.get()), H5Sclose);
     if (H5Tget_class(type.get()) != expected || H5Sget_simple_extent_npoints(space.get()) != 1 ||
         H5Aread(found.get(), memory.first, memory.second) < 0) {
       bad_data(dataset + "@" + attribute, "the attribute is not of the expected type");
@@ -175,9 +177,9 @@ struct Hdf5Group::Handle {
 namespace {
 
 std::shared_ptr<Hdf5Group::Handle> open_root(hid_t file, const std::string& path) {
-  auto held = std::make_shared<Id>(file, H5Fclose);
+  auto held = std::make_shared<Hdf5Id>(file, H5Fclose);
   const hid_t root = H5Gopen2(file, "/", H5P_DEFAULT);
-  return std::shared_ptr<Hdf5Group::Handle>(new Hdf5Group::Handle{held, Id(root, H5Gclose), path, "/"});
+  return std::shared_ptr<Hdf5Group::Handle>(new Hdf5Group::Handle{held, Hdf5Id(root, H5Gclose), path, "/"});
 }
 
 Hdf5Group open_file(const std::string& path, unsigned mode) {
@@ -201,7 +203,7 @@ Hdf5Group open_file(const std::string& path, unsigned mode) {
 
 Hdf5Group create_hdf5(const std::string& path) {
   silence();
-  const Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_link_creation_order(creation.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   H5Pset_attr_creation_order(creation.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT);
@@ -224,13 +226,13 @@ std::string Hdf5Group::place(const std::string& name) const { return handle_->pl
 
 Hdf5Group Hdf5Group::create_group(const std::string& name) const {
   silence();
-  const Id creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  const Hdf5Id creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
   H5Pset_link_creation_order(creation.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   H5Pset_attr_creation_order(creation.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   const hid_t made = H5Gcreate2(handle_->id.get(), name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT);
   if (made < 0) handle_->cannot_write(name);
   const std::string inside = handle_->inside == "/" ? "/" + name : handle_->inside + "/" + name;
-  return Hdf5Group(std::shared_ptr<Handle>(new Handle{handle_->file, Id(made, H5Gclose), handle_->path, inside}));
+  return Hdf5Group(std::shared_ptr<Handle>(new Handle{handle_->file, Hdf5Id(made, H5Gclose), handle_->path, inside}));
 }
 
 Hdf5Group Hdf5Group::group(const std::string& name) const {
@@ -238,7 +240,7 @@ Hdf5Group Hdf5Group::group(const std::string& name) const {
   const hid_t found = H5Gopen2(handle_->id.get(), name.c_str(), H5P_DEFAULT);
   if (found < 0) handle_->bad_data(name, "the group is missing");
   const std::string inside = handle_->inside == "/" ? "/" + name : handle_->inside + "/" + name;
-  return Hdf5Group(std::shared_ptr<Handle>(new Handle{handle_->file, Id(found, H5Gclose), handle_->path, inside}));
+  return Hdf5Group(std::shared_ptr<Handle>(new Handle{handle_->file, Hdf5Id(found, H5Gclose), handle_->path, inside}));
 }
 
 bool Hdf5Group::has(const std::string& name) const {
@@ -261,7 +263,7 @@ std::vector<std::string> Hdf5Group::names() const {
 }
 
 void Hdf5Group::set(const std::string& attribute, const std::string& text, const std::string& dataset) const {
-  const Id type = text_type(text.size());
+  const Hdf5Id type = text_type(text.size());
   handle_->set({attribute, dataset}, type.get(), space_of({}), {type.get(), text.c_str()});
 }
 
@@ -284,7 +286,7 @@ void Hdf5Group::set(const std::string& attribute, const std::vector<std::int64_t
 
 void Hdf5Group::set_ascii(const std::string& attribute, const std::string& text) const {
   assert(!text.empty());
-  const Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  const Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), text.size());
   H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
   handle_->set({attribute, ""}, type.get(), space_of({}), {type.get(), text.data()});
@@ -292,16 +294,16 @@ void Hdf5Group::set_ascii(const std::string& attribute, const std::string& text)
 
 bool Hdf5Group::has_attribute(const std::string& attribute, const std::string& dataset) const {
   silence();
-  const Id object = handle_->carrier(dataset);
+  const Hdf5Id object = handle_->carrier(dataset);
   return object.ok() && H5Aexists(object.get(), attribute.c_str()) > 0;
 }
 
 std::string Hdf5Group::text(const std::string& attribute, const std::string& dataset) const {
   silence();
-  const Id object = handle_->carrier(dataset);
-  const Id found(H5Aopen(object.get(), attribute.c_str(), H5P_DEFAULT), H5Aclose);
+  const Hdf5Id object = handle_->carrier(dataset);
+  const Hdf5Id found(H5Aopen(object.get(), attribute.c_str(), H5P_DEFAULT), H5Aclose);
   if (!found.ok()) handle_->bad_data(dataset + "@" + attribute, "the attribute is missing");
-  const Id stored(H5Aget_type(found.get()), H5Tclose);
+  const Hdf5Id stored(H5Aget_type(found.get()), H5Tclose);
   const std::size_t length = text_length(stored.get());
   if (length == 0 || length > H5Aget_storage_size(found.get()))
     handle_->bad_data(dataset + "@" + attribute, "the attribute is not text of fixed length");
@@ -327,12 +329,12 @@ void Hdf5Group::write(const std::string& name, std::span<const T> values, std::v
   silence();
   if (shape.empty()) shape = {values.size()};
   assert(product(shape) == values.size());
-  const Id space = space_of(shape);
-  const Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Hdf5Id space = space_of(shape);
+  const Hdf5Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_attr_creation_order(creation.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  const Id made(H5Dcreate2(handle_->id.get(), name.c_str(), Types<T>::file(), space.get(), H5P_DEFAULT, creation.get(),
-                           H5P_DEFAULT),
-                H5Dclose);
+  const Hdf5Id made(H5Dcreate2(handle_->id.get(), name.c_str(), Types<T>::file(), space.get(), H5P_DEFAULT,
+                               creation.get(), H5P_DEFAULT),
+                    H5Dclose);
   if (!made.ok() ||
       (!values.empty() && H5Dwrite(made.get(), Types<T>::memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)) {
     handle_->cannot_write(name);
@@ -342,11 +344,11 @@ void Hdf5Group::write(const std::string& name, std::span<const T> values, std::v
 template <class T>
 Array<T> Hdf5Group::read(const std::string& name) const {
   silence();
-  const Id found(H5Dopen2(handle_->id.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Hdf5Id found(H5Dopen2(handle_->id.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!found.ok()) handle_->bad_data(name, "the dataset is missing");
-  const Id type(H5Dget_type(found.get()), H5Tclose);
+  const Hdf5Id type(H5Dget_type(found.get()), H5Tclose);
   const H5T_class_t kind = H5Tget_class(type.get());
-  const Id space(H5Dget_space(found.get()), H5Sclose);
+  const Hdf5Id space(H5Dget_space(found.get()), H5Sclose);
   Array<T> array;
   array.shape = shape_of(space.get());
   if (kind != H5T_FLOAT && kind != H5T_INTEGER) handle_->bad_data(name, "the dataset does not hold numbers");
@@ -375,11 +377,11 @@ void Hdf5Group::write_texts(const std::string& name, const std::vector<std::stri
   for (const std::string& value : values) length = std::max(length, value.size());
   std::string bytes(values.size() * length, '\0');
   for (std::size_t i = 0; i < values.size(); ++i) values[i].copy(bytes.data() + i * length, length);
-  const Id type = text_type(length);
-  const Id space = space_of({values.size()});
-  const Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Hdf5Id type = text_type(length);
+  const Hdf5Id space = space_of({values.size()});
+  const Hdf5Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_attr_creation_order(creation.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  const Id made(
+  const Hdf5Id made(
       H5Dcreate2(handle_->id.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
       H5Dclose);
   if (!made.ok() ||
@@ -390,12 +392,12 @@ void Hdf5Group::write_texts(const std::string& name, const std::vector<std::stri
 
 std::vector<std::string> Hdf5Group::read_texts(const std::string& name) const {
   silence();
-  const Id found(H5Dopen2(handle_->id.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Hdf5Id found(H5Dopen2(handle_->id.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!found.ok()) handle_->bad_data(name, "the dataset is missing");
-  const Id stored(H5Dget_type(found.get()), H5Tclose);
+  const Hdf5Id stored(H5Dget_type(found.get()), H5Tclose);
   const std::size_t length = text_length(stored.get());
   if (length == 0) handle_->bad_data(name, "the dataset does not hold texts of fixed length");
-  const Id space(H5Dget_space(found.get()), H5Sclose);
+  const Hdf5Id space(H5Dget_space(found.get()), H5Sclose);
   const std::size_t count = handle_->elements(name, found.get(), shape_of(space.get()));
   std::string bytes(count * length, '\0');
   if (count > 0 && H5Dread(found.get(), stored.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0) {

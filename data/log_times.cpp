@@ -11,7 +11,7 @@
 namespace data {
 namespace {
 
-constexpr double day = 86400.0;
+constexpr double day_length = 86400.0;  // s
 
 /// The first sample of each stamp.
 std::vector<std::size_t> starts_of(const std::vector<double>& times) {
@@ -28,11 +28,11 @@ std::size_t pass_midnight(std::vector<double>& times, bool of_day) {
   double before = times.empty() ? 0.0 : times.front();
   for (double& time : times) {
     const double stamp = time;
-    const bool wraps =
-        of_day ? stamp < before - 0.5 * day : before > day - 600.0 && before <= day && stamp >= 0.0 && stamp < 600.0;
+    const bool wraps = of_day ? stamp < before - 0.5 * day_length
+                              : before > day_length - 600.0 && before <= day_length && stamp >= 0.0 && stamp < 600.0;
     if (wraps) ++midnights;
     before = stamp;
-    time += static_cast<double>(midnights) * day;
+    time += static_cast<double>(midnights) * day_length;
   }
   return midnights;
 }

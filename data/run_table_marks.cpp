@@ -22,8 +22,8 @@ bool one_of(const std::string& text, const std::array<const char*, N>& words) {
 constexpr std::array ended_well{"converged", "ok",        "success",  "successful",
                                 "finished",  "completed", "complete", "valid"};
 constexpr std::array ended_badly{"failed", "failure", "crashed", "error", "aborted", "diverged"};
-constexpr std::array told{"status", "state", "result", "outcome", "exit", "flag", "remark", "comment", "note"};
-constexpr std::array wanted{"use", "include", "keep"};
+constexpr std::array state_columns{"status", "state", "result", "outcome", "exit", "flag", "remark", "comment", "note"};
+constexpr std::array use_columns{"use", "include", "keep"};
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -134,16 +134,17 @@ bool names_row(const std::string& label, const std::string& place) {
 
 bool is_status_column(std::string_view name) {
   const std::string plain = lower_case(name);
-  return one_of(plain, ended_well) || one_of(plain, ended_badly) || one_of(plain, told) || one_of(plain, wanted);
+  return one_of(plain, ended_well) || one_of(plain, ended_badly) || one_of(plain, state_columns) ||
+         one_of(plain, use_columns);
 }
 
-bool is_user_column(std::string_view name) { return one_of(lower_case(name), wanted); }
+bool is_user_column(std::string_view name) { return one_of(lower_case(name), use_columns); }
 
 bool says_failed(std::string_view column, std::string_view field) {
   const std::string name = lower_case(column), word = lower_case(field);
   static constexpr std::array no{"0", "no", "false", "n", "none"};
   static constexpr std::array yes{"1", "yes", "true", "y", "x"};
-  if (one_of(name, ended_well) || one_of(name, wanted)) return one_of(word, no) || word == "0.0";
+  if (one_of(name, ended_well) || one_of(name, use_columns)) return one_of(word, no) || word == "0.0";
   if (one_of(name, ended_badly) && one_of(word, yes)) return true;
   static constexpr std::array parts{"fail",          "crash",       "abort",      "diverg",    "unstable",
                                     "timeout",       "timed out",   "killed",     "explod",    "invalid",

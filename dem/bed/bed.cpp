@@ -18,7 +18,7 @@
 namespace dem {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Elastic {
   double young_modulus, poisson_ratio;

@@ -14,7 +14,7 @@
 namespace dem {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double rayleigh_times = 6.0;
 
 double sphere_mass(const Material& m, double diameter) { return m.density * pi / 6.0 * diameter * diameter * diameter; }

@@ -7,7 +7,7 @@
 namespace dem {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double trough_below(double radius, double z) {
   return z <= 0.0 ? disc_below(radius, z) : 0.5 * pi * radius * radius + 2.0 * radius * z;

@@ -11,7 +11,7 @@
 namespace dem {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int blade_rings = 2;  // quadrilaterals from shaft to rim
 
 }  // namespace

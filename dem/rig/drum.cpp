@@ -12,7 +12,7 @@
 namespace dem {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Vec3 at(double radius, double angle, double y) { return {radius * std::cos(angle), y, radius * std::sin(angle)}; }
 

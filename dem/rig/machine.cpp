@@ -14,7 +14,7 @@
 namespace dem {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TriangleMesh shifted(TriangleMesh mesh, double y) {
   for (Vec3& v : mesh.vertices) v.y += y;

@@ -18,20 +18,20 @@
 namespace dem {
 namespace {
 
-struct Frame {
+struct Scene {
   std::vector<Vec3> point;
   std::vector<double> radius, speed, coordination, force;
   std::vector<int> material;
   std::vector<std::array<std::size_t, 3>> facets;
 };
 
-Frame read_frame(const std::string& path) {
+Scene read_frame(const std::string& path) {
   const data::Hdf5Group file = data::open_hdf5(path);
   if (!file.has("VTKHDF") || !file.has_attribute("frame"))
     throw data::InputError(data::ExitStatus::bad_data,
                            {path, "is no frame of a run", "give a file that demcal simulate --frames N has written"});
   const data::Hdf5Group vtk = file.group("VTKHDF"), values = vtk.group("PointData");
-  Frame frame;
+  Scene frame;
   frame.radius = values.read<double>("radius").values;
   frame.coordination = values.read<double>("coordination").values;
   frame.force = values.read<double>("force").values;
@@ -82,7 +82,7 @@ struct Shades {
   double low = 0.0, high = 1.0;
 };
 
-Shades shades_of(const Frame& frame, ColourBy by) {
+Shades shades_of(const Scene& frame, ColourBy by) {
   Shades shades;
   shades.values = by == ColourBy::speed ? &frame.speed : by == ColourBy::force ? &frame.force : &frame.coordination;
   std::vector<double> sorted;
@@ -95,7 +95,7 @@ Shades shades_of(const Frame& frame, ColourBy by) {
   return shades;
 }
 
-std::string spheres_text(const Frame& frame, const PictureOptions& options) {
+std::string spheres_text(const Scene& frame, const PictureOptions& options) {
   const Shades shades = shades_of(frame, options.by);
   std::string scene;
   for (std::size_t i = 0; i < frame.point.size(); ++i) {
@@ -111,7 +111,7 @@ std::string spheres_text(const Frame& frame, const PictureOptions& options) {
 }
 
 /// A body at a time: those that move nearly opaque, those that rest like glass.
-std::string bodies_text(const Frame& frame) {
+std::string bodies_text(const Scene& frame) {
   const int bodies = frame.material.empty() ? 0 : -*std::min_element(frame.material.begin(), frame.material.end());
   std::string scene;
   for (int body = 1; body <= bodies; ++body) {
@@ -134,7 +134,7 @@ std::string bodies_text(const Frame& frame) {
 }  // namespace
 
 std::string povray_scene(const std::string& path, const PictureOptions& options) {
-  const Frame frame = read_frame(path);
+  const Scene frame = read_frame(path);
   Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (std::size_t i = 0; i < frame.point.size(); ++i) {
     if (frame.material[i] < 0) continue;  // bodies may reach far above the powder

@@ -6,7 +6,8 @@ drum_table.py DEMCAL [--designs 200] [--others 100] [--jobs 1] [--seed 1] [--err
 
 Each of N designs of data/drum-table in turn is the truth: its rows at the three speeds are the observations, as they
 stand (their own scatter is the noise), with the standard errors of make_data.py, or with PERCENT of every output. The
-runs are those of M other designs of the same sphere size, drawn at random. `demcal calibrate` gives draws and verdicts
+runs are those of M other designs of the same sphere size, drawn at random; with --others 0 they are those of all
+designs but the N truths, which the surrogates are fitted to once (they stay in FOLDER/study-J of each job). `demcal calibrate` gives draws and verdicts
 of both cases. Results are appended to FOLDER/results.jsonl, so that a campaign that was cut off goes on; --summary
 only prints the tables.
 
@@ -26,6 +27,7 @@ import importlib.util
 import json
 import math
 import pathlib
+import queue
 import random
 import shutil
 import subprocess
@@ -141,6 +143,23 @@ def filtered(rows, truth, maker):
     return found
 
 
+def one_of_all(program, table, truths, truth, arguments, folders):
+    """A truth beside all designs that are no truth of the N."""
+    maker = load_maker()
+    if arguments.errors != "roughness":
+        with_percent(maker, float(arguments.errors))
+    rows = [r for r in table if maker.design_of(r) not in truths]
+    own = [r for r in table if maker.design_of(r) == truth]
+    folder = folders.get()
+    try:
+        found = ours(program, folder, rows + own, truth, maker)
+    finally:
+        folders.put(folder)
+    same = [r for r in rows if r["psd_mm"] == truth[0]]
+    return {"truth": dict(zip(maker.DESIGN, map(float, truth))), "others": arguments.others, "seed": arguments.seed, "errors": arguments.errors,
+            "truths": arguments.truths, "ours": found, "filter": filtered(same + own, truth, maker)}
+
+
 def one_design(program, table, truth, arguments):
     maker = load_maker()
     if arguments.errors != "roughness":
@@ -206,7 +225,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("demcal")
     parser.add_argument("--designs", type=int, default=200)
-    parser.add_argument("--others", type=int, default=100, help="other designs that are the runs")
+    parser.add_argument("--others", type=int, default=100, help="other designs that are the runs; 0: all that are no truth")
     parser.add_argument("--errors", default="roughness")
     parser.add_argument("--truths", choices=["all", "inner"], default="all",
                         help="inner: designs with no parameter at an end of its range")
@@ -230,7 +249,15 @@ def main():
         known = {tuple(r["truth"].values()) for r in results}
         missing = [d for d in designs[:arguments.designs] if tuple(map(float, d)) not in known]
         with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool, kept.open("a") as file:
-            jobs = [pool.submit(one_design, arguments.demcal, table, truth, arguments) for truth in missing]
+            if arguments.others == 0:
+                folders = queue.Queue()
+                for job in range(arguments.jobs):
+                    folders.put(arguments.out / f"study-{job}")
+                    (arguments.out / f"study-{job}").mkdir(exist_ok=True)
+                truths = set(designs[:arguments.designs])
+                jobs = [pool.submit(one_of_all, arguments.demcal, table, truths, truth, arguments, folders) for truth in missing]
+            else:
+                jobs = [pool.submit(one_design, arguments.demcal, table, truth, arguments) for truth in missing]
             for job in concurrent.futures.as_completed(jobs):
                 results.append(job.result())
                 file.write(json.dumps(results[-1]) + "\n")

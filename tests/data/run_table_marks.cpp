@@ -27,7 +27,7 @@ data::TableRead read(const std::string& rows, const std::string& training = "", 
 
 const data::Finding* find(const data::TableRead& read, const std::string& kind) {
   for (const data::Finding& finding : read.findings)
-    if (finding.kind == kind) return &finding;
+    if (data::to_text(finding.kind) == kind) return &finding;
   return nullptr;
 }
 

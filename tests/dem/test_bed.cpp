@@ -12,7 +12,7 @@
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 dem::Case sand_and_steel() {
   dem::Case c;

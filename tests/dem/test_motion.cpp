@@ -7,7 +7,7 @@
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Everything at once: a speed programme, an orbit, and a swing about another axis.
 dem::Motion busy() {

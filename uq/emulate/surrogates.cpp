@@ -45,8 +45,8 @@ FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const Surro
   fitted.report = report_of(study, fitted, options);
   if (many.y.size() < all)
     fitted.report.notes.push_back(fmt::format(
-        "{} of {} runs train, chosen at random: a fit takes the cube of their number; [surrogate] runs_most "
-        "raises it",
+        "{} of {} runs train, chosen at random: a fit takes the cube of their number and a prediction its square; "
+        "[surrogate] runs_most raises it",
         many.y.size(), all));
   // Samplers ask the surrogate some hundred thousand times, at a cost of the square of its runs.
   constexpr std::size_t many_inputs = 8;

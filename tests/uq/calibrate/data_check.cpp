@@ -91,10 +91,11 @@ Looked look(const Files& files) {
 data::Finding only(const Files& files, const std::string& kind) {
   const Looked looked = look(files);
   std::string all;
-  for (const data::Finding& finding : looked.findings) all += finding.kind + ": " + data::describe(finding) + "\n";
+  for (const data::Finding& finding : looked.findings)
+    all += data::to_text(finding.kind) + (": " + data::describe(finding)) + "\n";
   INFO(all);
   REQUIRE(looked.findings.size() == 1);
-  CHECK(looked.findings[0].kind == kind);
+  CHECK(data::to_text(looked.findings[0].kind) == kind);
   return looked.findings[0];
 }
 
