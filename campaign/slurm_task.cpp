@@ -40,7 +40,7 @@ void write_task_list(const Workspace& workspace, const std::string& path, const 
 }
 
 TaskOutcome run_task(const Workspace& workspace, const std::string& list, int task, int runs_per_task,
-                     std::stop_token stop) {
+                     const std::stop_token& stop) {
   const data::Csv csv = data::read_csv(list);
   const std::vector<Point> points = read_points(workspace, list);
   const TaskRuns own_runs = runs_of_task(task, runs_per_task, points.size());

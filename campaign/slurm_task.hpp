@@ -20,6 +20,6 @@ struct TaskOutcome {
 /// have made is not made again, so a task may be started any number of times. Throws InputError (78) where the study
 /// was changed since the list was written.
 TaskOutcome run_task(const Workspace& workspace, const std::string& list, int task, int runs_per_task,
-                     std::stop_token stop);
+                     const std::stop_token& stop);
 
 }  // namespace campaign

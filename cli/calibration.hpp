@@ -1,6 +1,7 @@
 #pragma once
 // What `fit`, `sample` and `calibrate` share: options from the command line, the rows to learn from, and the files
 // written.
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,7 +55,9 @@ class JobProgress {
  public:
   JobProgress(const Common& common, const std::string& what)
       : progress_(what, 1000, {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic}) {}
-  void operator()(const std::string&, double share) { progress_.set(static_cast<std::uint64_t>(1000.0 * share + 0.5)); }
+  void operator()(const std::string&, double share) {
+    progress_.set(static_cast<std::uint64_t>(std::lround(1000.0 * share)));
+  }
 
  private:
   data::Progress progress_;

@@ -63,8 +63,8 @@ Action add_check(CLI::App& program) {
       const dem::Case c = case_at(workspace, middle);
       const Foretold told = foretell(workspace, middle);
       const Cost cost = cost_of(c, told.derived);
-      const auto runs =
-          std::count_if(missing.begin(), missing.end(), [&](const Point& p) { return p.material == material; });
+      const auto runs = std::count_if(missing.begin(), missing.end(),
+                                      [&, of = material](const Point& p) { return p.material == of; });
       campaign_seconds += static_cast<double>(runs) * cost.seconds;
       answer(*common, material.empty() ? "simulation, amid its ranges:" : material + ", amid its ranges:");
       for (const std::string& line : dem::describe(c, told.derived)) answer(*common, "  " + line);

@@ -101,12 +101,54 @@ data::MeanTorque observed_torque(const data::Plateau& plateau, const Idle& idle,
   return found;
 }
 
-std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus) {
+/// What the meter reads at standstill, where no idle torque is taken off and it is more than the rows' errors allow.
+std::string standstill_reading(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
+                               const data::PlateauOptions& options) {
+  double fastest = 0.0, least_error = INFINITY;
+  for (const double speed : log.speed) fastest = std::max(fastest, std::abs(speed));
+  for (const data::Plateau& plateau : plateaus) least_error = std::min(least_error, plateau.torque.standard_error);
+  const auto stands = [&](std::size_t i) {
+    return i < log.time.size() && std::abs(log.speed[i]) <= 0.01 * fastest && log.time[i] >= options.from &&
+           log.time[i] <= options.to;
+  };
+  std::vector<std::string> readings;
+  double first_mean = 0.0;
+  bool matters = false;
+  for (std::size_t first = 0; first < log.time.size(); ++first) {
+    if (!stands(first)) continue;
+    std::size_t last = first;
+    while (stands(last + 1)) ++last;
+    if (log.time[last] - log.time[first] >= options.shortest) {
+      const data::SeriesMean zero = data::mean_with_error({log.torque.data() + first, last - first + 1});
+      matters = matters || std::abs(zero.mean) > 3.0 * std::hypot(zero.standard_error, least_error);
+      if (readings.empty()) first_mean = log.torque_unit.from_si(zero.mean);
+      readings.push_back(fmt::format("{:.4g} +- {:.2g} {} from {:.4g} s on", log.torque_unit.from_si(zero.mean),
+                                     zero.standard_error / log.torque_unit.factor, log.torque_unit.symbol,
+                                     log.time[first]));
+    }
+    first = last;
+  }
+  if (!matters) return {};
+  return fmt::format(
+      "at standstill the meter reads {}, and nothing is taken off: if that is its zero and not powder that leans on "
+      "the "
+      "mixer, take it off (--idle {:.4g})",
+      fmt::join(readings, ", "), first_mean);
+}
+
+std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
+                                     const Idle& idle) {
   std::vector<std::string> warnings;
   for (const data::Plateau& plateau : plateaus)
     for (std::string& fault : data::plateau_faults(log, plateau)) warnings.push_back(std::move(fault));
-  if (std::all_of(plateaus.begin(), plateaus.end(), [](const data::Plateau& one) { return one.torque.mean < 0.0; }))
-    warnings.push_back("every torque is negative: is the sign of the sensor right?");
+  std::size_t negative = 0;
+  for (std::size_t i = 0; i < plateaus.size(); ++i) negative += observed_torque(plateaus[i], idle, i).value < 0.0;
+  if (negative > 0)
+    warnings.push_back(fmt::format("{} negative: is the sign of the sensor right{}?",
+                                   negative == plateaus.size()
+                                       ? "every torque is"
+                                       : fmt::format("{} of {} torques are", negative, plateaus.size()),
+                                   idle.kind == Idle::Kind::none ? "" : ", and is so much idle torque meant"));
   if (log.missing > 0) warnings.push_back(fmt::format("{} samples without all three values are left out", log.missing));
   if (log.uneven_share > 0.05)
     warnings.push_back(
@@ -271,7 +313,10 @@ data::ExitStatus observe(ObserveOptions options) {
                             {"from_s", log.time[plateau.used_from]},
                             {"left_out_s", log.time[plateau.used_from] - log.time[plateau.first]}});
   }
-  for (std::string& warning : warnings_of(log, plateaus)) warnings.push_back(std::move(warning));
+  if (idle.kind == Idle::Kind::none)
+    if (std::string zero = standstill_reading(log, plateaus, options.plateaus); !zero.empty())
+      warnings.push_back(std::move(zero));
+  for (std::string& warning : warnings_of(log, plateaus, idle)) warnings.push_back(std::move(warning));
   std::vector<std::string> notes;
   for (const data::Plateau& plateau : plateaus)
     for (std::string& note : data::plateau_notes(log, plateau)) notes.push_back(std::move(note));

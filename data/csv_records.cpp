@@ -51,7 +51,7 @@ class Reader {
     skip_blanks();
     if (at_end() || text_[at_] != '"') {
       const auto end = std::min(text_.find_first_of(stops_, at_), text_.size());
-      const std::string value(trimmed(text_.substr(at_, end - at_)));
+      std::string value(trimmed(text_.substr(at_, end - at_)));
       at_ = end;
       return value;
     }

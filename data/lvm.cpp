@@ -109,7 +109,7 @@ struct Segment {
   std::size_t samples = 0;         ///< of a packet
 };
 
-std::optional<double> stamp_of(std::string date, std::string time) {
+std::optional<double> stamp_of(const std::string& date, std::string time) {
   std::replace(time.begin(), time.end(), ',', '.');
   int year = 0, hours = 0, minutes = 0;
   unsigned month = 0, day = 0;

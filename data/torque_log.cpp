@@ -1,6 +1,7 @@
 // Plateaus. A sample belongs to the running plateau while its speed lies within the tolerance of the plateau's mean so
 // far. One to `lone` samples further away are a logger's dropouts and stay in the torque series, whose even spacing the
-// autocorrelation needs; more in a row end the plateau, as does a gap in time of over `lone` intervals.
+// autocorrelation needs; more in a row end the plateau. A gap in time, where a logger lost samples, ends it where another
+// plateau could have been in it: from the shortest one's length on.
 #include "data/torque_log.hpp"
 
 #include <algorithm>
@@ -111,7 +112,7 @@ std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& 
     double sum = log.speed[first];
     std::size_t members = 1, last = first;
     for (std::size_t i = first + 1; i < n && i - last <= lone && inside(i); ++i) {
-      if (log.time[i] - log.time[i - 1] > static_cast<double>(lone) * log.interval) break;
+      if (log.time[i] - log.time[i - 1] > std::max(static_cast<double>(lone) * log.interval, options.shortest)) break;
       const double mean = sum / static_cast<double>(members);
       if (std::abs(log.speed[i] - mean) > options.tolerance * std::abs(mean)) continue;
       sum += log.speed[i];
@@ -122,8 +123,8 @@ std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& 
     const bool turning = std::abs(mean) > standstill * fastest;
     const bool long_enough = log.time[last] - log.time[first] >= std::max(options.shortest, options.dead_time);
     if (turning && long_enough && last > first) {
-      Plateau plateau = reduce(log, first, last - first + 1, mean, options);
-      if (plateau.used_from <= last) plateaus.push_back(std::move(plateau));
+      const Plateau plateau = reduce(log, first, last - first + 1, mean, options);
+      if (plateau.used_from <= last) plateaus.push_back(plateau);
     }
     first = !turning || long_enough ? last + 1 : first + 1;
   }

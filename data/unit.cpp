@@ -103,7 +103,9 @@ std::string Unit::digits(double si) const {
     text = fmt::format("{:.{}g}", value, count);
     if (to_si(text) == si) break;
   }
-  return text;
+  // "300", not "3e+02", where no digit is made up for it.
+  const std::string plain = fmt::format("{:.15g}", value);
+  return plain.size() <= text.size() && to_si(plain) == si ? plain : text;
 }
 
 }  // namespace data

@@ -79,10 +79,10 @@ std::optional<Unit> known(const std::string& symbol, std::string_view dimension)
 }  // namespace
 
 std::optional<Unit> unit_meant(std::string_view given, std::string_view dimension) {
-  if (const auto as_written = known(std::string(trimmed(given)), dimension)) return as_written;
+  if (auto as_written = known(std::string(trimmed(given)), dimension)) return as_written;
   const std::string text = normalised(given);
-  if (const auto unit = known(text, dimension)) return unit;
-  if (const auto unit = known(torque_spelling(text), dimension)) return unit;
+  if (auto unit = known(text, dimension)) return unit;
+  if (auto unit = known(torque_spelling(text), dimension)) return unit;
   if (text == "-" && convertible(dimension, "1")) return parse_unit("1");
   if (convertible(dimension, "rpm")) {
     std::string word = lower_case(text);

@@ -80,11 +80,10 @@ struct Square {
   Four row[4];
 };
 DEMCAL_INLINE Square transpose(Four a, Four b, Four c, Four d) {
-  typedef long long Index __attribute__((vector_size(32)));
-  const Four ab0 = __builtin_shuffle(a, b, Index{0, 4, 2, 6}), ab1 = __builtin_shuffle(a, b, Index{1, 5, 3, 7});
-  const Four cd0 = __builtin_shuffle(c, d, Index{0, 4, 2, 6}), cd1 = __builtin_shuffle(c, d, Index{1, 5, 3, 7});
-  return {{__builtin_shuffle(ab0, cd0, Index{0, 1, 4, 5}), __builtin_shuffle(ab1, cd1, Index{0, 1, 4, 5}),
-           __builtin_shuffle(ab0, cd0, Index{2, 3, 6, 7}), __builtin_shuffle(ab1, cd1, Index{2, 3, 6, 7})}};
+  const Four ab0 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab1 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four cd0 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return {{__builtin_shufflevector(ab0, cd0, 0, 1, 4, 5), __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5),
+           __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7), __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7)}};
 }
 /// One component of every lane, as fours.
 template <class L>

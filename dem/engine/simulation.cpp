@@ -150,8 +150,9 @@ void Simulation::integrate() {
   const Channels& channels = setup_.channels;
   team_.for_each(chunks, [&](std::size_t c) {
     // Whole rows at once; what rides in the fourth places of motion and load stays as it is.
-    typedef long long Places __attribute__((vector_size(32)));
-    const Places fourth_of_second{0, 1, 2, 7};
+    const auto with_fourth_of = [](Four rest, Four fourth_from) {
+      return __builtin_shufflevector(rest, fourth_from, 0, 1, 2, 7);
+    };
     const Four step{dt, dt, dt, 0.0}, fourth{0.0, 0.0, 0.0, 1.0};
     const Four gravity{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z, 0.0};
     Four late{};  // force * (v*(n) - v(n)) and the same of torque and spin
@@ -168,8 +169,8 @@ void Simulation::integrate() {
               torque * (spin_seen - four(half.spin) - 0.5 * twist);
       const Four velocity = four(half.velocity) + kick, spin = four(half.spin) + twist;
       half = {three(velocity), three(spin)};
-      four(motion.velocity.x) = __builtin_shuffle(velocity + 0.5 * kick, velocity_seen, fourth_of_second);
-      four(motion.spin.x) = __builtin_shuffle(spin + 0.5 * twist, spin_seen, fourth_of_second);
+      four(motion.velocity.x) = with_fourth_of(velocity + 0.5 * kick, velocity_seen);
+      four(motion.spin.x) = with_fourth_of(spin + 0.5 * twist, spin_seen);
       const Four at = four(s.position[i].at.x) + step * velocity;
       four(s.position[i].at.x) = at;
       const Four moved = at - four(s.reference[i]), squared = moved * moved;

@@ -26,8 +26,8 @@ Setup lattice(const Case& c, const Derived& d) {
   data::RandomStream random(1, data::Purpose::packing, 3);
   const double speed = std::sqrt(2.0 * c.run.gravity * size);
   for (int k = 0; k < side * side * side; ++k) {
-    s.spheres.position.push_back(
-        {(k / (side * side) + 0.5) * step, (k / side % side + 0.5) * step, (k % side + 0.5) * up});
+    const int x = k / (side * side), y = k / side % side, z = k % side;
+    s.spheres.position.push_back({(x + 0.5) * step, (y + 0.5) * step, (z + 0.5) * up});
     s.spheres.velocity.push_back(speed *
                                  Vec3{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)});
     if (d.bed.equal_radius > 0.0) continue;

@@ -217,8 +217,8 @@ void check_sweeps(const Case& c, const BuiltRig& rig, Forecast& f) {
     const Motion& motion = rig.bodies[e.body].motion;
     if (!turns(motion) || e.least > 0.9 * e.most) continue;
     f.problems.push_back({"rig.mesh." + meshes[e.body].name,
-                          fmt::format("leaves the box as it turns: {:.2g} % of its surface is inside at one time, "
-                                      "{:.2g} % at another",
+                          fmt::format("leaves the box as it turns: {:.0f} % of its surface is inside at one time, "
+                                      "{:.0f} % at another",
                                       100.0 * e.most, 100.0 * e.least),
                           axis_hint(meshes[e.body]) + ", or make rig.box larger"});
   }

@@ -137,9 +137,9 @@ std::vector<Vec3> place(const Parcels& parcels, const std::vector<Vec3>& sites, 
     const int n = parcels.along[p];
     const double step = room * largest / n, back = 0.5 * (n - 1) * step;
     for (std::size_t k = 0; k < parcels.first[p + 1] - parcels.first[p]; ++k) {
-      const auto row = static_cast<int>(k);
-      position.push_back(sites[p] +
-                         Vec3{row % n * step - back, row / n % n * step - back, row / (n * n) * step - back});
+      const auto site = static_cast<int>(k);
+      const int x = site % n, y = site / n % n, z = site / (n * n);
+      position.push_back(sites[p] + Vec3{x * step - back, y * step - back, z * step - back});
     }
   }
   return position;

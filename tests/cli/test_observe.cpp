@@ -97,6 +97,30 @@ TEST_CASE("what is left out of a hold stands in the words and in the JSON") {
   CHECK(json["rows"][0]["torque"].get<double>() == Approx(2.0).epsilon(0.005));
 }
 
+TEST_CASE("what the meter reads at standstill is said where nothing is taken off") {
+  const Folder folder;
+  const auto write_log = [&](const std::string& name, double zero) {
+    data::RandomStream random(7, data::Purpose::test);
+    std::string text = "time [s],torque [mN m],rpm\n";
+    for (int i = 0; i < 600; ++i)
+      text += fmt::format("{:.1f},{:.5f},{}\n", 0.1 * i, zero + (i < 200 ? 0.0 : 2.0) + 0.05 * random.normal(),
+                          i < 200 ? 0 : 50);
+    write(folder, name, text);
+  };
+  write_log("shifted.csv", 0.3);
+  const auto shifted = folder.demcal({"observe", "shifted.csv"});
+  CHECK(shifted.status == 2);
+  CHECK_THAT(shifted.err, Contains("at standstill the meter reads 0.") && Contains("--idle 0."));
+  const auto mended = folder.demcal({"observe", "shifted.csv", "--idle", "0.3", "--out", "mended.csv"});
+  CHECK(mended.status == 0);
+  CHECK(mended.err.find("at standstill") == std::string::npos);
+  write_log("zeroed.csv", 0.0);
+  CHECK(folder.demcal({"observe", "zeroed.csv"}).status == 0);
+  const auto negative = folder.demcal({"observe", "zeroed.csv", "--idle", "5", "--out", "negative.csv"});
+  CHECK(negative.status == 2);
+  CHECK_THAT(negative.err, Contains("every torque is negative") && Contains("so much idle torque"));
+}
+
 TEST_CASE("a log that cannot be used is refused with what to do, and is never overwritten") {
   const Folder folder;
   write(folder, "log.csv", log_text(2.0, 0.0, 4));

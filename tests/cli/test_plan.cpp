@@ -58,6 +58,18 @@ TEST_CASE("a plan takes candidates, errors and costs from the study") {
   CHECK(of_two == 1);
 }
 
+TEST_CASE("before any measurement nothing is measured again") {
+  const Folder folder;
+  for (const bool prior : {false, true}) {
+    std::vector<std::string> command{"plan", study, "--out", "o", "--json"};
+    if (prior) command.push_back("--prior");
+    const nlohmann::json plan = nlohmann::json::parse(folder.demcal(command).out)["plans"][0];
+    bool again = false;
+    for (const auto& candidate : plan["candidates"]) again = again || candidate["kind"] == "repeat";
+    CHECK(again == !prior);
+  }
+}
+
 TEST_CASE("a plan refuses what cannot be planned, with place and remedy") {
   const Folder folder;
   CHECK(folder.demcal({"plan", study, "--about", "no-such"}).status == 64);

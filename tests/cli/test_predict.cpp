@@ -47,6 +47,9 @@ TEST_CASE("data that the calibration does not predict are a warning") {
   CHECK(outcome.status == 2);
   CHECK_THAT(outcome.out, Contains("The calibration does not predict them."));
   CHECK_THAT(outcome.out, Contains("torque at speed 275"));
+  const nlohmann::json of = nlohmann::json::parse(folder.read("out/report.json"))["cases"][0];
+  CHECK_THAT(of["consequence"].get<std::string>(), Contains("and not held out"));
+  CHECK_THAT(of["remedy"].get<std::string>(), Contains("First find out what differs at held out"));
 }
 
 TEST_CASE("what informs the case is no prediction, and what is not there is named") {

@@ -83,6 +83,28 @@ TEST_CASE("dead time is dropped from the front, and a window leaves out what lie
   CHECK(reduced(made, 2, {.shortest = 41.0}).empty());
 }
 
+TEST_CASE("samples that a logger loses end no plateau, and a gap in which another could have been does") {
+  const auto holds = [](double lost_from, double lost_to, int of_each_fifty) {
+    data::RandomStream random(5, data::Purpose::test);
+    std::string text = "time,Torque [mN m],rpm\n";
+    for (int i = 0; i < 600; ++i) {
+      const double t = 0.1 * i;
+      if (i % 50 < of_each_fifty || (t >= lost_from && t < lost_to)) continue;
+      text += fmt::format("{:.1f},{:.5f},{:.3f}\n", t, 2.0 + 0.05 * random.normal(), 50.0 + 0.05 * random.normal());
+    }
+    const TemporaryFolder folder;
+    return data::find_plateaus(data::read_torque_log(folder.write("log.csv", text)));
+  };
+  for (const int lost : {0, 1, 3, 4, 10}) {
+    INFO(lost << " of each 50 samples are lost");
+    const std::vector<data::Plateau> found = holds(0.0, 0.0, lost);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].count == static_cast<std::size_t>(600 - 12 * lost));
+  }
+  CHECK(holds(20.0, 24.0, 0).size() == 1);
+  CHECK(holds(20.0, 30.0, 0).size() == 2);
+}
+
 TEST_CASE("headers carry units in brackets, parentheses or after a slash, and an option overrides them") {
   for (const std::string head :
        {"time [s],torque [mN m],rpm", "Time,TORQUE (mN m),rpm", "time,torque / mN m,rpm [rpm]"}) {

@@ -23,6 +23,14 @@ TEST_CASE("a unit converts back what it converted") {
   }
 }
 
+TEST_CASE("a value's digits are those that a person would write") {
+  const data::Unit rpm = data::parse_unit("rpm"), joule = data::parse_unit("J");
+  for (const char* text : {"300", "50", "1200.5", "0", "0.05", "1000000"})
+    CHECK(rpm.digits(rpm.to_si(std::string_view(text))) == text);
+  CHECK(joule.digits(2e-18) == "2e-18");
+  CHECK(joule.digits(1.0 / 3.0) == "0.3333333333333333");
+}
+
 TEST_CASE("the SI unit of a unit is itself a unit that maps to itself") {
   for (const char* symbol : {"mN m", "rpm", "degC", "mJ/m2", "kg/m3", "", "%"}) {
     const data::Unit si = data::parse_unit(data::parse_unit(symbol).si_symbol);

@@ -37,6 +37,16 @@ void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& 
     }
 }
 
+/// Values that fail a prediction are no values to be used there, however well they are known.
+void put_failed_prediction_first(CaseReport& report, const std::string& name) {
+  report.consequence =
+      fmt::format("The values describe the data that they come from, and not {}. {}", name, report.consequence);
+  report.remedy = fmt::format(
+      "First find out what differs at {}: calibrate with it, too; where nothing fits both, the "
+      "model lacks what acts there. Then: {}",
+      name, report.remedy);
+}
+
 /// The surrogates again without the runs that the others contradict; none where there are no such runs, or too few
 /// others.
 std::vector<FittedSurrogate> without_outlying(const data::Study& study, const data::RunTable& table,
@@ -223,8 +233,9 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
     for (const data::Prediction& wanted : study.predictions) {
       if (wanted.case_index != index || made.unusable || sampled.draws.chains.empty()) continue;
       made.predictions.push_back(predict_unused(study, emulators, wanted, *sampled.model, sampled.draws.pooled()));
-      if (!made.predictions.back().predicts)
-        made.warnings.push_back(fmt::format("case {}: {}", made.name, made.predictions.back().sentence));
+      if (made.predictions.back().predicts) continue;
+      made.warnings.push_back(fmt::format("case {}: {}", made.name, made.predictions.back().sentence));
+      put_failed_prediction_first(made, made.predictions.back().name);
     }
     if (made.doubt.empty()) made.comparisons = compare_models(study, sampled, index, own);
     report.warnings.insert(report.warnings.end(), made.warnings.begin(), made.warnings.end());

@@ -98,7 +98,7 @@ std::optional<Finding> other_readings(const data::Study& study, const data::RunT
                           "Is another unit meant there, {}?",
                           places.size(), set.points.size(), study.outputs[k].name, factor->between),
       .remedy = "write all readings in one unit",
-      .places = std::move(places)};
+      .places = places};
 }
 
 }  // namespace

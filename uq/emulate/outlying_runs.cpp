@@ -78,8 +78,9 @@ std::vector<int> repeated_outputs(const surrogate::TrainingSet& training) {
   for (int i = 0; i < training.y.size(); ++i) runs_of[training.y[i]].push_back(i);
   std::vector<int> repeated;
   for (const auto& [unused, runs] : runs_of) {
-    const bool elsewhere =
-        std::any_of(runs.begin(), runs.end(), [&](int i) { return training.x.row(i) != training.x.row(runs.front()); });
+    const bool elsewhere = std::any_of(runs.begin(), runs.end(), [&, first = runs.front()](int i) {
+      return training.x.row(i) != training.x.row(first);
+    });
     if (runs.size() >= 3 && elsewhere) repeated.insert(repeated.end(), runs.begin(), runs.end());
   }
   std::sort(repeated.begin(), repeated.end());

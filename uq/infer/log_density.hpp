@@ -76,8 +76,9 @@ Eigen::VectorXd evaluate(const Target& target, const Eigen::MatrixXd& points);
 
 /// Wraps any density; `density` is copied. Use std::ref-like wrappers of your own for heavy ones.
 template <LogDensity D>
-Target make_target(const D& density, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper, Reference reference) {
-  Target target{.dimension = density.dimension(), .lower = lower, .upper = upper, .reference = std::move(reference)};
+Target make_target(const D& density, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
+                   const Reference& reference) {
+  Target target{.dimension = density.dimension(), .lower = lower, .upper = upper, .reference = reference};
   target.log_density = [density](const Eigen::VectorXd& x) -> double { return density.log_density(x); };
   if constexpr (DifferentiableLogDensity<D>)
     target.log_density_gradient = [density](const Eigen::VectorXd& x) -> Evaluation {

@@ -71,7 +71,7 @@ void extend(const Moves& moves, Walker& walker, Chain& chain, int draws) {
     for (int i = 0; i < count; ++i) {
       double acceptance = 0.0;
       for (int step = 0; step < moves.per_draw; ++step) {
-        if (local[static_cast<std::size_t>(i * moves.per_draw + step)]) {
+        if (local[i * moves.per_draw + step]) {
           acceptance += local_move(moves, walker);
           continue;
         }

@@ -170,7 +170,7 @@ class Usual {
 
   /// Of many settings, a dozen.
   static std::vector<std::vector<double>> few(const std::set<std::vector<double>>& observed) {
-    const std::vector<std::vector<double>> all(observed.begin(), observed.end());
+    std::vector<std::vector<double>> all(observed.begin(), observed.end());
     constexpr std::size_t most = 12;
     if (all.size() <= most) return all;
     std::vector<std::vector<double>> some;
@@ -230,7 +230,7 @@ class Entry {
     for (Candidate& one : found) {
       const bool repeat =
           one.kind == CandidateKind::setting &&
-          std::all_of(one.settings.begin(), one.settings.end(), [&](const auto& p) { return is_observed(p); });
+          std::all_of(one.settings.begin(), one.settings.end(), [&](const auto& p) { return is_observed(p, one); });
       if (repeat) one.kind = CandidateKind::repeat;
       one.name = name_of(study_, one, false);
       if (!entry_.name.empty()) one.name = found.size() == 1 ? entry_.name : entry_.name + ": " + one.name;
@@ -243,11 +243,17 @@ class Entry {
     problems_.push_back({entry_.place, std::move(what), std::move(remedy)});
   }
 
-  bool is_observed(const std::vector<double>& controls) const {
-    for (const std::size_t index : sets_)
-      for (const data::Observation& point : study_.observations[index].points)
-        if (point.controls == controls) return true;
-    return false;
+  /// Whether the case's data have every output of a candidate there, of its material.
+  bool is_observed(const std::vector<double>& controls, const Candidate& candidate) const {
+    return std::all_of(candidate.outputs.begin(), candidate.outputs.end(), [&](std::size_t output) {
+      return std::any_of(sets_.begin(), sets_.end(), [&](std::size_t index) {
+        const data::ObservationSet& set = study_.observations[index];
+        return set.material == candidate.material &&
+               std::find(set.outputs.begin(), set.outputs.end(), output) != set.outputs.end() &&
+               std::any_of(set.points.begin(), set.points.end(),
+                           [&](const data::Observation& point) { return point.controls == controls; });
+      });
+    });
   }
 
   /// All combinations of the values stated; a control without any has the one value that the case's data have.

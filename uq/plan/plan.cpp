@@ -103,6 +103,9 @@ class Planner {
     about_ = parameter_index(study, case_index, model, options.about.empty() ? section.about : options.about,
                              found_ ? &*found_ : nullptr);
     candidates_ = candidates_of(study, emulators, case_index, section, options.candidates);
+    if (options.prior)  // nothing is measured yet, so nothing is measured again
+      for (Candidate& one : candidates_)
+        if (one.kind == CandidateKind::repeat) one.kind = CandidateKind::setting;
     if (options.budget) std::erase_if(candidates_, [&](const Candidate& one) { return one.cost > *options.budget; });
     VectorXd centre(model.dimension());
     for (Index s = 0; s < centre.size(); ++s)

@@ -84,7 +84,7 @@ Eigen::MatrixXd with_held(const Eigen::MatrixXd& rest, const std::vector<Held>& 
   return all;
 }
 
-Target held_target(std::shared_ptr<const CaseModel> model, const std::vector<Held>& held) {
+Target held_target(const std::shared_ptr<const CaseModel>& model, const std::vector<Held>& held) {
   const std::vector<int> left = unknowns_left(model->dimension(), held);
   const auto prior_of = [model, left](Eigen::Index k) -> const ScaledPrior& {
     return model->slots[static_cast<std::size_t>(left[k])].prior;

@@ -23,7 +23,7 @@
 namespace uq {
 
 /// `held`: unknowns and their values in u. At least one unknown must be left.
-Target held_target(std::shared_ptr<const CaseModel> model, const std::vector<Held>& held);
+Target held_target(const std::shared_ptr<const CaseModel>& model, const std::vector<Held>& held);
 
 /// Points of all unknowns from points of the rest.
 Eigen::MatrixXd with_held(const Eigen::MatrixXd& rest, const std::vector<Held>& held);

@@ -22,13 +22,13 @@ void place_rows(const RowGroup& group, const Eigen::VectorXd& u, Eigen::MatrixXd
   if (group.measurement.shifts() > 0) place_shifts(group.measurement, points, first, group.base.rows());
 }
 
-double log_normal(Eigen::VectorXd residual, const Eigen::MatrixXd& covariance) {
+double log_normal(const Eigen::VectorXd& residual, const Eigen::MatrixXd& covariance) {
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success) return nowhere;
-  factor.matrixL().solveInPlace(residual);
+  const Eigen::VectorXd whitened = factor.matrixL().solve(residual);
   const double log_root = factor.matrixLLT().diagonal().array().log().sum();
   const double rows = static_cast<double>(residual.size());
-  return -0.5 * residual.squaredNorm() - log_root - 0.5 * rows * std::log(2.0 * std::numbers::pi);
+  return -0.5 * whitened.squaredNorm() - log_root - 0.5 * rows * std::log(2.0 * std::numbers::pi);
 }
 
 /// Log density of a group's numbers without what repeats say of their own scatter.
@@ -307,7 +307,7 @@ Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u) {
   return sum;
 }
 
-Target posterior_target(std::shared_ptr<const CaseModel> model) {
+Target posterior_target(const std::shared_ptr<const CaseModel>& model) {
   Target target{.dimension = model->dimension(), .lower = model->lower(), .upper = model->upper()};
   target.reference.draw = [model](data::RandomStream& random) {
     Eigen::VectorXd u(model->dimension());

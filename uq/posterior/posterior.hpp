@@ -77,7 +77,7 @@ double chi_squared(const CaseModel& model, const std::vector<GroupLaw>& laws, co
 Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u);
 
 /// The posterior for the samplers; the prior is its reference. The model is shared.
-Target posterior_target(std::shared_ptr<const CaseModel> model);
+Target posterior_target(const std::shared_ptr<const CaseModel>& model);
 
 /// d mean / du of all rows, rows x unknowns.
 Eigen::MatrixXd sensitivity(const CaseModel& model, const Eigen::VectorXd& u);

@@ -35,11 +35,11 @@ CurveRows curve_rows(const data::Study& study, const RowGroup& group, std::size_
     low = std::min(low, point.controls[control_index]);
     high = std::max(high, point.controls[control_index]);
   }
-  CurveRows rows{.base = group.base.row(static_cast<Eigen::Index>(row)).replicate(points, 1),
-                 .slot = group.slot.row(static_cast<Eigen::Index>(row)).transpose(),
-                 .x = Eigen::VectorXd::LinSpaced(points, 0.0, 1.0).unaryExpr([&](double u) {
-                   return data::Axis{low, high, control.scale}.from_unit(u);
-                 })};
+  const data::Axis shown{low, high, control.scale};
+  CurveRows rows{
+      .base = group.base.row(static_cast<Eigen::Index>(row)).replicate(points, 1),
+      .slot = group.slot.row(static_cast<Eigen::Index>(row)).transpose(),
+      .x = Eigen::VectorXd::LinSpaced(points, 0.0, 1.0).unaryExpr([shown](double u) { return shown.from_unit(u); })};
   rows.base.col(static_cast<Eigen::Index>(control_column)) =
       rows.x.unaryExpr([axis = control.axis()](double x) { return axis.to_unit(x); });
   return rows;

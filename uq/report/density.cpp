@@ -57,7 +57,7 @@ void add_kernel(std::vector<double>& density, int cells, std::pair<double, doubl
   const int x_first = cell(centre.first - reach_x), x_last = cell(centre.first + reach_x);
   const int y_first = cell(centre.second - reach_y), y_last = cell(centre.second + reach_y);
   std::vector<double> kernel;
-  kernel.reserve(static_cast<std::size_t>((x_last - x_first + 1) * (y_last - y_first + 1)));
+  kernel.reserve((x_last - x_first + 1) * (y_last - y_first + 1));
   double sum = 0.0;
   for (int i = x_first; i <= x_last; ++i) {
     const double dx = (i + 0.5) / cells - centre.first;
@@ -71,8 +71,7 @@ void add_kernel(std::vector<double>& density, int cells, std::pair<double, doubl
   if (!(sum > 0.0)) return;
   std::size_t k = 0;
   for (int i = x_first; i <= x_last; ++i) {
-    for (int j = y_first; j <= y_last; ++j)
-      density[static_cast<std::size_t>(i * cells + j)] += weight / sum * kernel[k++];
+    for (int j = y_first; j <= y_last; ++j) density[i * cells + j] += weight / sum * kernel[k++];
   }
 }
 
@@ -111,7 +110,7 @@ DensityGrid joint_density(const std::vector<double>& x, const std::vector<double
   const auto neighbours =
       std::clamp(static_cast<std::size_t>(options.neighbour_share * static_cast<double>(n)), std::size_t{10}, n - 1);
   DensityGrid grid;
-  grid.density.assign(static_cast<std::size_t>(cells * cells), 0.0);
+  grid.density.assign(cells * cells, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
     Covariance shape = neighbourhood(points, i, neighbours);
     shape = {bandwidth2 * shape.xx + floor, bandwidth2 * shape.xy, bandwidth2 * shape.yy + floor};

@@ -114,8 +114,8 @@ Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t
   const std::size_t points_drawn = size == FigureSize::wide ? points_drawn_wide : points_drawn_wide / 2;
   const double step = std::max(1.0, static_cast<double>(x.size()) / static_cast<double>(points_drawn));
   for (double at = 0.0; at < static_cast<double>(x.size()); at += step) {
-    x_shown.push_back(x[at]);
-    y_shown.push_back(y[at]);
+    x_shown.push_back(x[static_cast<std::size_t>(at)]);
+    y_shown.push_back(y[static_cast<std::size_t>(at)]);
   }
   const auto equivalent = equivalent_columns(result, a, b);
   const Axis horizontal = plot::axis_for(a.name, a.unit, x_view.largest());
