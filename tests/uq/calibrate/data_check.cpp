@@ -239,7 +239,7 @@ TEST_CASE("rows of one output in another unit than the others are named, and a m
     files.each_run([](Row& row) {
       if (row.friction > 0.4) row.torque *= 1000.0, row.error *= 1000.0;
     });
-    for (const data::Finding& one : look(files).findings) CHECK(one.kind != "unit");
+    for (const data::Finding& one : look(files).findings) CHECK(one.kind != data::FindingKind::unit);
   }
 }
 
@@ -283,7 +283,7 @@ TEST_CASE("standard errors in percent are suspected from the scatter, and as sha
           row.torque = curve(row.speed / 150.0) * (1.0 + share * scatter[i]);
           row.error = share * row.torque;
         }
-        for (const data::Finding& finding : look(files).findings) CHECK(finding.kind != "standard errors");
+        for (const data::Finding& finding : look(files).findings) CHECK(finding.kind != data::FindingKind::standard_errors);
       }
     }
   }
