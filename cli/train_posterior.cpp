@@ -207,8 +207,11 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
     write_posterior_runs(
         workspace, {.runs = pending, .left = most ? std::optional(*most - static_cast<int>(made)) : std::nullopt});
     if (batch.error) std::rethrow_exception(batch.error);
-    if (batch.with_slurm + batch.cancelled + batch.refused > 0) left_there = std::move(batch);
-    if (left_there || interrupt.interrupted()) break;
+    if (batch.with_slurm + batch.cancelled + batch.refused > 0) {
+      left_there = std::move(batch);
+      break;
+    }
+    if (interrupt.interrupted()) break;
     if (batch.finished == 0 && failed > 20) {
       ending = "too many runs failed";
       break;
