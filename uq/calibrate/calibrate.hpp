@@ -57,7 +57,7 @@ std::uint64_t seed_of(const data::Study& study, const CalibrateOptions& options)
 
 /// Draws of `model`, which is the sampled case's own or the same for other data; `draws` per chain in the first round
 /// instead of the sampler's own.
-Draws sample_model(const data::Study& study, const SampledCase& sampled, std::shared_ptr<const CaseModel> model,
+Draws sample_model(const data::Study& study, const SampledCase& sampled, const std::shared_ptr<const CaseModel>& model,
                    const CalibrateOptions& options, std::optional<int> draws = {});
 
 /// A case whose parameter is another's posterior, cut, has that case sampled first.

@@ -53,9 +53,9 @@ std::uint64_t seed_of(const data::Study& study, const CalibrateOptions& options)
   return options.seed.value_or(study.seed);
 }
 
-Draws sample_model(const data::Study& study, const SampledCase& sampled, std::shared_ptr<const CaseModel> model,
+Draws sample_model(const data::Study& study, const SampledCase& sampled, const std::shared_ptr<const CaseModel>& model,
                    const CalibrateOptions& options, std::optional<int> draws) {
-  const Target target = posterior_target(std::move(model));
+  const Target target = posterior_target(model);
   const std::uint64_t seed = seed_of(study, options);
   if (!sampled.cut_sources.empty()) {
     CutOptions cut = options.cut;
