@@ -38,7 +38,7 @@ Holder read_holder(int file) {
   return holder;
 }
 
-[[noreturn]] void cannot_write(const std::string& path, int error) {
+[[noreturn]] void cannot_lock(const std::string& path, int error) {
   throw InputError(ExitStatus::cannot_write, Problem{path, fmt::format("cannot be written: {}", std::strerror(error)),
                                                      "choose another folder with --out, or make room or rights there"});
 }
@@ -72,10 +72,10 @@ FolderLock::FolderLock(const std::string& folder, const std::string& name, const
     : path_((fs::path(folder) / ("." + name + ".lock")).string()) {
   std::error_code failure;
   fs::create_directories(folder, failure);
-  if (failure) cannot_write(folder, failure.value());
+  if (failure) cannot_lock(folder, failure.value());
   for (;;) {
     file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (file_ < 0) cannot_write(folder, errno);
+    if (file_ < 0) cannot_lock(folder, errno);
     struct stat mine {
     }, there{};
     ::fstat(file_, &mine);
@@ -95,7 +95,7 @@ FolderLock::FolderLock(const std::string& folder, const std::string& name, const
     const int error = errno;
     ::unlink(path_.c_str());
     ::close(file_);
-    cannot_write(folder, error != 0 ? error : ENOSPC);
+    cannot_lock(folder, error != 0 ? error : ENOSPC);
   }
 }
 

@@ -24,11 +24,11 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-struct Spread {
+struct MedianSpread {
   double median = 0.0, sd = 0.0;
 };
-Spread spread_of(const std::vector<double>& values) {
-  Spread spread{median_of(values), 0.0};
+MedianSpread spread_of(const std::vector<double>& values) {
+  MedianSpread spread{median_of(values), 0.0};
   std::vector<double> away;
   for (const double value : values) away.push_back(std::abs(value - spread.median));
   spread.sd = 1.4826 * median_of(std::move(away));
@@ -43,7 +43,7 @@ bool is_code(double value) {
 /// Marks the codes among values (in the log's own unit); returns which there are, and how often.
 std::map<double, std::size_t> mark_codes(const std::vector<double>& values, std::vector<bool>& out) {
   std::map<double, std::size_t> found;
-  const Spread spread = spread_of(values);
+  const MedianSpread spread = spread_of(values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!is_code(values[i])) continue;
     if (std::abs(values[i] - spread.median) <= 10.0 * std::max(spread.sd, 0.1 * std::abs(spread.median))) continue;
@@ -196,7 +196,7 @@ std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& pla
   if (values.size() < 20) return words;
   const std::map<double, std::size_t> levels = levels_of(values);
   const auto count = static_cast<double>(values.size());
-  const Spread spread = spread_of(values);
+  const MedianSpread spread = spread_of(values);
   if (levels.size() > 1) {
     for (const bool largest : {false, true}) {
       const Level level = extreme(levels, largest);

@@ -61,7 +61,7 @@ bool is_blank(const Fields& fields) {
   return std::all_of(fields.begin(), fields.end(), [](const std::string& one) { return one.empty(); });
 }
 
-struct Reader {
+struct PacketReader {
   Csv csv;
   Lines lines;
   char separator = '\t';
@@ -83,7 +83,7 @@ struct Reader {
 };
 
 /// Tags up to the end of a header, the line at hand among them.
-Tags read_tags(Reader& reader) {
+Tags read_tags(PacketReader& reader) {
   Tags tags;
   const int first = reader.lines.line();
   do {
@@ -123,7 +123,7 @@ std::optional<double> stamp_of(const std::string& date, std::string time) {
          60.0 * minutes + seconds;
 }
 
-Segment begin_segment(Reader& reader) {
+Segment begin_segment(PacketReader& reader) {
   Segment segment;
   segment.tags = read_tags(reader);
   while (reader.next() && is_blank(reader.fields)) {
@@ -153,7 +153,7 @@ std::string names_of(const Segment& segment) {
 }
 
 /// The X value of a row [s], NaN where it has none; all that it has must agree.
-double x_of(const Reader& reader, const Segment& segment) {
+double x_of(const PacketReader& reader, const Segment& segment) {
   double x = std::numeric_limits<double>::quiet_NaN();
   for (const std::size_t i : segment.x) {
     const auto value = reader.number(reader.fields[i]);
@@ -171,7 +171,7 @@ double x_of(const Reader& reader, const Segment& segment) {
   return x;
 }
 
-void read_file_header(Reader& reader, std::string_view text) {
+void read_file_header(PacketReader& reader, std::string_view text) {
   // The separator is known from the line behind the tag of its own.
   const std::size_t at = text.find("Separator"), end = at == std::string_view::npos ? at : at + 9;
   reader.separator = end < text.size() && text[end] == ',' ? ',' : '\t';
@@ -194,7 +194,7 @@ void read_file_header(Reader& reader, std::string_view text) {
 bool is_lvm(std::string_view text) { return trimmed(text.substr(0, 64)).starts_with(magic); }
 
 Csv read_lvm(std::string_view text, const std::string& file) {
-  Reader reader{.csv = {}, .lines = Lines(text)};
+  PacketReader reader{.csv = {}, .lines = Lines(text)};
   Csv& csv = reader.csv;
   csv.file = file;
   csv.took.emplace_back("a LabVIEW measurement file");

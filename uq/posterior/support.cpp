@@ -20,17 +20,17 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// How the runs lie along one input, in the unit cube.
-struct Line {
+struct InputLine {
   double low = 0.0, high = 1.0, slack = 0.0;
   std::vector<std::pair<double, double>> gaps;
 };
 
-Line line_of(const VectorXd& column, const SupportThresholds& t) {
+InputLine line_of(const VectorXd& column, const SupportThresholds& t) {
   std::vector<double> values(column.begin(), column.end());
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < 1e-6; }),
                values.end());
-  Line line{.low = values.front(), .high = values.back(), .slack = t.slack_most, .gaps = {}};
+  InputLine line{.low = values.front(), .high = values.back(), .slack = t.slack_most, .gaps = {}};
   const std::size_t spacings = values.size() - 1;
   if (spacings == 0) return line;
   const double mean = (line.high - line.low) / static_cast<double>(spacings);
@@ -83,7 +83,7 @@ bool is_empty(const Plane& plane, const Eigen::Vector2d& at, double factor) {
 /// One emulator's runs as the posterior meets them.
 struct Ground {
   const RowGroup* group = nullptr;
-  std::vector<Line> lines;
+  std::vector<InputLine> lines;
   std::vector<Plane> planes;
   std::vector<Index> rows;  ///< observed settings that are looked at
 };
@@ -142,7 +142,7 @@ Meeting meet(const Ground& ground, const VectorXd& u, const SupportThresholds& t
     bool bad = false;
     for (Index k = 0; k < inputs; ++k) {
       const auto at = static_cast<std::size_t>(k);
-      const Line& line = ground.lines[at];
+      const InputLine& line = ground.lines[at];
       const double value = points(i, k);
       const bool beyond = value < line.low - line.slack || value > line.high + line.slack;
       bool inside_gap = false;

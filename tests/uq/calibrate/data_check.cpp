@@ -283,7 +283,8 @@ TEST_CASE("standard errors in percent are suspected from the scatter, and as sha
           row.torque = curve(row.speed / 150.0) * (1.0 + share * scatter[i]);
           row.error = share * row.torque;
         }
-        for (const data::Finding& finding : look(files).findings) CHECK(finding.kind != data::FindingKind::standard_errors);
+        for (const data::Finding& finding : look(files).findings)
+          CHECK(finding.kind != data::FindingKind::standard_errors);
       }
     }
   }
