@@ -104,11 +104,11 @@ data::MeanTorque observed_torque(const data::Plateau& plateau, const Idle& idle,
 /// What the meter reads at standstill, where no idle torque is taken off and it is more than the rows' errors allow.
 std::string standstill_reading(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
                                const data::PlateauOptions& options) {
-  double fastest = 0.0, least_error = INFINITY;
-  for (const double speed : log.speed) fastest = std::max(fastest, std::abs(speed));
+  const double standstill = data::standstill_speed(log);
+  double least_error = INFINITY;
   for (const data::Plateau& plateau : plateaus) least_error = std::min(least_error, plateau.torque.standard_error);
   const auto stands = [&](std::size_t i) {
-    return i < log.time.size() && std::abs(log.speed[i]) <= 0.01 * fastest && log.time[i] >= options.from &&
+    return i < log.time.size() && std::abs(log.speed[i]) <= standstill && log.time[i] >= options.from &&
            log.time[i] <= options.to;
   };
   std::vector<std::string> readings;
@@ -130,9 +130,8 @@ std::string standstill_reading(const data::TorqueLog& log, const std::vector<dat
   }
   if (!matters) return {};
   return fmt::format(
-      "at standstill the meter reads {}, and nothing is taken off: if that is its zero and not powder that leans on "
-      "the "
-      "mixer, take it off (--idle {:.4g})",
+      "at standstill the meter reads {}, and nothing is taken off: if that is its zero, and not powder that "
+      "leans on the mixer, take it off (--idle {:.4g})",
       fmt::join(readings, ", "), first_mean);
 }
 
@@ -226,18 +225,17 @@ double take_ramps(const data::TorqueLog& log, std::vector<data::Plateau>& platea
 /// Where less than two thirds of the turning belong to a plateau: by how much, and the remedy.
 std::string left_over(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
                       const data::PlateauOptions& options, double ramps) {
-  double fastest = 0.0, turning = 0.0, held = 0.0;
-  for (const double speed : log.speed) fastest = std::max(fastest, std::abs(speed));
+  const double standstill = data::standstill_speed(log);
+  double turning = 0.0, held = 0.0;
   for (std::size_t i = 1; i < log.time.size(); ++i)
-    if (std::abs(log.speed[i]) > 0.01 * fastest && log.time[i] >= options.from && log.time[i] <= options.to)
+    if (std::abs(log.speed[i]) > standstill && log.time[i] >= options.from && log.time[i] <= options.to)
       turning += log.time[i] - log.time[i - 1];
   for (const data::Plateau& plateau : plateaus)
     held += log.time[plateau.first + plateau.count - 1] - log.time[plateau.first];
   if (turning - ramps < 1.5 * held) return {};
   return fmt::format(
       "{:.3g} s of {:.3g} s of turning belong to no speed that stays within {:g} %: where the tachometer scatters by "
-      "more, "
-      "widen that (--tolerance {:g})",
+      "more, widen that (--tolerance {:g})",
       turning - held, turning, 100.0 * options.tolerance, 500.0 * options.tolerance);
 }
 

@@ -11,7 +11,6 @@ namespace data {
 namespace {
 
 constexpr std::size_t lone = 4;
-constexpr double standstill = 0.01;  // of the largest speed
 
 /// The straight line through a stretch's speeds.
 struct Trend {
@@ -90,6 +89,12 @@ Plateau reduce(const TorqueLog& log, std::size_t first, std::size_t count, doubl
 
 }  // namespace
 
+double standstill_speed(const TorqueLog& log) {
+  double fastest = 0.0;
+  for (const double speed : log.speed) fastest = std::max(fastest, std::abs(speed));
+  return 0.01 * fastest;
+}
+
 std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& options) {
   std::vector<Plateau> found = find_stretches(log, options);
   std::erase_if(found, [](const Plateau& plateau) { return plateau.ramp; });
@@ -97,8 +102,7 @@ std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& o
 }
 
 std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& options) {
-  double fastest = 0.0;
-  for (const double speed : log.speed) fastest = std::max(fastest, std::abs(speed));
+  const double standstill = standstill_speed(log);
   const auto inside = [&](std::size_t i) { return log.time[i] >= options.from && log.time[i] <= options.to; };
 
   std::vector<Plateau> plateaus;
@@ -120,7 +124,7 @@ std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& 
       last = i;
     }
     const double mean = sum / static_cast<double>(members);
-    const bool turning = std::abs(mean) > standstill * fastest;
+    const bool turning = std::abs(mean) > standstill;
     const bool long_enough = log.time[last] - log.time[first] >= std::max(options.shortest, options.dead_time);
     if (turning && long_enough && last > first) {
       const Plateau plateau = reduce(log, first, last - first + 1, mean, options);

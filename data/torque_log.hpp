@@ -70,7 +70,10 @@ struct Plateau {
   SeriesMean torque;                   ///< N m
 };
 
-/// The plateaus in the order of time; standstill (below a hundredth of the log's largest speed) is none.
+/// At this speed and below the machine stands still: a hundredth of the log's largest [rad/s].
+double standstill_speed(const TorqueLog& log);
+
+/// The plateaus in the order of time; standstill is none.
 std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& options = {});
 
 /// The plateaus, and among them the pieces of slow ramps.

@@ -8,7 +8,7 @@
 //   estimate = "maximum a posteriori"   # also "maximum likelihood"
 //   hyper_parameters = "plugged in"     # also "integrated": for few runs (surrogate/marginal.hpp)
 //   between_runs = "doubted"            # also "trusted": what gaps.hpp adds where few values of an input were run
-//   runs_most = 600                     # of a table with more runs, so many train
+//   runs_most = 1000                    # of a table with more runs, so many train
 //   starts = 8
 // all of it optional. The cheaper level's rows are [training] low (data/study.hpp).
 #include "data/study.hpp"

@@ -42,7 +42,7 @@ struct SurrogateOptions {
   surrogate::FitOptions fit = {.between_runs = surrogate::BetweenRuns::doubted};
   std::vector<std::string> log_outputs = {};     ///< outputs that are learnt as logarithms, whatever fit.scale
   surrogate::ValidationOptions validation = {};  ///< its seed is that of the fit
-  int runs_most = 600;                           ///< of a table with more, so many train, chosen at random
+  int runs_most = 1000;                          ///< of a table with more, so many train, chosen at random
   bool observed_only = false;                    ///< leave out the outputs that no case observes
   std::optional<data::RunTable> low = {};        ///< runs of the cheaper level
   std::vector<FittedSurrogate> known = {};       ///< fitted before under the same options: not fitted again
