@@ -63,7 +63,8 @@ minimum_separation = "1.5 nm"  # only hamaker / minimum_separation^2 matters
 # restitution = 0.5
 
 [run]                          # each run ends when its mean torque is known well enough and is that of the steady flow
-shortest_turns = 2             # measured at least, after the start-up
+shortest = "1 s"               # measured at least, after the start-up, and
+shortest_turns = 2             # turns at least
 longest = "6 s"                # of turning; a run that is not steady by then says so and trains nothing
 
 [parameters.friction]          # what is to be calibrated

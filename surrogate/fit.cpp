@@ -177,7 +177,9 @@ GaussianProcess fit(const TrainingSet& training, const FitOptions& options) {
   diagnostics.bound_hits = find_bound_hits(objective, best.end, data);
 
   std::vector<HyperNode> nodes{{best.end, 1.0}};
-  if (options.hyper_uncertainty == HyperUncertainty::integrated)
+  const bool few = data.points.rows() < enough_points * data.points.cols();
+  if (options.hyper_uncertainty == HyperUncertainty::integrated ||
+      (options.hyper_uncertainty == HyperUncertainty::integrated_if_few && few))
     nodes =
         integration_nodes(hyper_posterior(objective, best.end), integration_options(data.points.rows(), options.seed));
   std::vector<Conditioned> parts;

@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::int64_t format = 3;
+constexpr std::int64_t format = 4;
 
 void write(const data::Hdf5Group& group, const std::string& name, const MatrixXd& matrix) {
   const RowMatrix rows = matrix;

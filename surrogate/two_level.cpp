@@ -18,11 +18,10 @@ using Eigen::VectorXd;
 
 MatrixXd discrepancy_correlations(const GaussianProcess& low, const MatrixXd& a, const MatrixXd& b,
                                   double length_factor) {
-  const VectorXd lengths = length_factor * low.hyper_parameters().length_scales;  // infinite: no influence
+  const VectorXd lengths = length_factor * low.hyper_parameters().length_scales.cwiseMin(longest_discrepancy);
   MatrixXd square = MatrixXd::Zero(a.rows(), b.rows()), value(a.rows(), b.rows());
   for (Index j = 0; j < b.rows(); ++j)
-    for (Index k = 0; k < a.cols(); ++k)
-      if (std::isfinite(lengths[k])) square.col(j).array() += ((a.col(k).array() - b(j, k)) / lengths[k]).square();
+    for (Index k = 0; k < a.cols(); ++k) square.col(j).array() += ((a.col(k).array() - b(j, k)) / lengths[k]).square();
   correlate(low.kernel(), {{square.data(), square.size()}, {value.data(), value.size()}, {nullptr, 0}});
   return value;
 }

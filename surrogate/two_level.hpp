@@ -5,12 +5,15 @@
 // Autoregression (M. C. Kennedy & A. O'Hagan, Biometrika 87:1 (2000), eq. 1): y_high(x) = rho y_low(x) + delta(x),
 // delta a Gaussian process independent of the low level. The low level is fitted to its own runs; given them, y_low at
 // any points is normal with mean m(x) and covariance S(x, x') (gaussian_process.hpp), so that for the high level
-//   mean   rho m(x) + h(x)' b,   covariance   rho^2 S(x, x') + s^2 c(x, x'; l_k = q l_k,low),
+//   mean   rho m(x) + h(x)' b,   covariance   rho^2 S(x, x') + s^2 c(x, x'; l_k = q min(l_k,low, 1)),
 // noise and nugget on top, b with a flat prior: co-kriging with every run of both levels in it, whether or not the high
 // runs' points are among the low ones (the recursive form is that of L. Le Gratiet & J. Garnier, Int. J. Uncertainty
-// Quantification 4:365 (2014)). rho, q (one factor on the low level's length scales: a handful of runs cannot tell d of
-// them), s and the nugget have the priors below and, since a handful of runs leaves them vague, are integrated over
-// (marginal.hpp). Deviation: the low level's hyper-parameters are not fitted again to the high runs.
+// Quantification 4:365 (2014)). rho, q, s and the nugget have the priors below and, since a handful of runs leaves them
+// vague, are integrated over (marginal.hpp). q is one factor on all length scales, since a handful of runs cannot tell d
+// of them. They start from the low level's, but not from more than the range of an input: where the model is smooth, its
+// scales are several ranges long, and a discrepancy as smooth as that is a plane, so that what two inputs do together
+// would count as scatter of the runs (COVERAGE.md). Deviation: the low level's hyper-parameters are not fitted again to
+// the high runs.
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,8 +24,8 @@
 namespace surrogate {
 
 /// Of the fit of the high level. Priors, with r the ratio of the two levels' spreads over the high runs and t the
-/// spread of the high runs: rho/r ~ N(1, 1), log q ~ N(log 2, 1) (a correction varies more slowly than the model), log
-/// s/t ~ N(log 0.3, 1.5), log(nugget sd/t) ~ N(log 0.03, 1.5).
+/// spread of the high runs: rho/r ~ N(1, 1), log q ~ N(0, 1), log s/t ~ N(log 0.3, 1.5), log(nugget sd/t) ~
+/// N(log 0.03, 1.5).
 struct TwoLevelOptions {
   MeanBasis discrepancy_mean = MeanBasis::constant;  ///< h: zero or constant
   bool nugget = true;                                ///< run-to-run scatter of the high runs beyond their known noise

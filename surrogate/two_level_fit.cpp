@@ -70,7 +70,7 @@ struct Named {
   double low, high, prior_mean, prior_sd;
 };
 const Named components[] = {{"rho", -5.0, 5.0, 1.0, 1.0},
-                            {"length factor of the discrepancy", std::log(0.1), std::log(50.0), std::log(2.0), 1.0},
+                            {"length factor of the discrepancy", std::log(0.1), std::log(50.0), 0.0, 1.0},
                             {"discrepancy", std::log(1e-5), std::log(10.0), std::log(0.3), 1.5},
                             {"nugget", std::log(1e-5), std::log(3.0), std::log(0.03), 1.5}};
 

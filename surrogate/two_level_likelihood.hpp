@@ -4,6 +4,8 @@
 
 namespace surrogate {
 
+constexpr double longest_discrepancy = 1.0;  ///< unit cube: its length scales at q = 1 are the low level's up to this
+
 /// Correlations of the discrepancy between the rows of `a` and `b`.
 Eigen::MatrixXd discrepancy_correlations(const GaussianProcess& low, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
                                          double length_factor);

@@ -154,7 +154,7 @@ struct RunControl {
   double sample_interval = 0.2e-3;  ///< s between samples; each is the mean over the steps since the last
   double window = 20e-3;            ///< s, torque_fluctuation is the deviation of torque averaged over it
   double standard_error = 0.02;     ///< wanted relative standard error of the mean torque
-  double shortest = 0.3;            ///< s of measured turning at least, and
+  double shortest = 1.0;            ///< s of measured turning at least, and
   double shortest_turns = 2.0;      ///< turns at least
   double longest = 6.0;             ///< s of turning at most, start-up included
 };

@@ -1,8 +1,9 @@
 // Do the posteriors hold the truth as often as they say, where the truth is no draw from the surrogate?
-//   bench_coverage ridge [--sets N] [--first N] [--runs N] [--kernel K] [--mean M] [--scale S] [--integrated]
+//   bench_coverage ridge [--sets N] [--first N] [--runs N] [--kernel K] [--mean M] [--scale S] [--integrated|--plugged-in]
 //   bench_coverage levels [--sets N] [--first N] [--trusted]
 //   bench_coverage check
 //   bench_coverage faults [--sets N]
+//   bench_coverage few|two_levels [--sets N] [--first N]
 // ridge: ten smooth torques of friction, cohesion and speed, most of them with a ridge in friction and cohesion that no
 //   speed breaks; each set is a scrambled Sobol design with runs of 2 % noise, a fit, and six measured speeds of 2 %,
 //   for six truths drawn uniformly from the prior.
@@ -12,6 +13,9 @@
 // 48 x 48 points, interpolated five times finer where the density counts. check: that this is the posterior of the
 // tool's own sampler. faults: how often the surrogate's validation notices misstated errors, a kink and a wave, and
 // how often the posterior still holds the truth.
+// few: predictions of 6 to 60 runs of 1 %, with the hyper-parameters plugged in and integrated over.
+// two_levels: predictions and posteriors of 8, 14 or 30 runs of 1 % over 80 runs of 2 % of a cheaper level that differs
+//   from them by a factor, an interplay, a power or a threshold, beside the same dear runs alone.
 // Printed: the share of truths inside the central 50 % and 90 % intervals of both parameters, and per function.
 #include <fmt/core.h>
 
@@ -29,6 +33,7 @@
 #include "data/random.hpp"
 #include "surrogate/design.hpp"
 #include "surrogate/fit.hpp"
+#include "surrogate/two_level.hpp"
 #include "surrogate/validation.hpp"
 
 #ifdef WITH_SAMPLER
@@ -157,7 +162,8 @@ class GridPosterior {
  public:
   static constexpr int coarse = 48, finer = 5, fine = coarse * finer;
 
-  explicit GridPosterior(const surrogate::GaussianProcess& process) {
+  template <class Process>
+  explicit GridPosterior(const Process& process) {
     MatrixXd points(coarse * coarse * speeds, 3);
     for (int i = 0; i < coarse; ++i)
       for (int j = 0; j < coarse; ++j)
@@ -253,7 +259,9 @@ struct Count {
 
 struct Options {
   int sets = 20, first = 0, runs = 60;
-  surrogate::FitOptions fit = {.starts = 4, .between_runs = surrogate::BetweenRuns::doubted};
+  surrogate::FitOptions fit = {.starts = 4,
+                               .hyper_uncertainty = surrogate::HyperUncertainty::integrated_if_few,
+                               .between_runs = surrogate::BetweenRuns::doubted};
 };
 
 void ridge(const Options& options) {
@@ -375,6 +383,104 @@ void faults(const Options& options) {
   }
 }
 
+/// How predictions hold functions that are no draws from the model, at points drawn uniformly.
+struct Held {
+  int n = 0, nine = 0;
+  double squares = 0.0;
+  template <class Process>
+  void add(const Process& process, const Torque& torque, std::uint64_t seed) {
+    const MatrixXd points = surrogate::scrambled_sobol(64, 3, seed);
+    const Prediction found = process.predict(points);
+    for (Index i = 0; i < points.rows(); ++i, ++n) {
+      const double z =
+          (torque(points(i, 0), points(i, 1), points(i, 2)) - found.mean[i]) / std::sqrt(found.covariance(i, i));
+      nine += std::abs(z) < 1.6449;
+      squares += z * z;
+    }
+  }
+  std::string text() const {
+    return fmt::format("{:.3f}, {:.2f}", static_cast<double>(nine) / n, std::sqrt(squares / n));
+  }
+};
+
+/// The torques of `ridge`, and one whose friction and cohesion are told apart.
+std::vector<Case> all_torques() {
+  std::vector<Case> cases = ridges();
+  cases.push_back({"told apart", [](double a, double b, double v) {
+                     const double c = 10.0 / 6.0 * b, s = 2.0 * v - 1.0;
+                     return 8.0 * std::sqrt((1.0 + c) * (0.25 + 1.75 * a)) * (1.0 + 0.12 * s - 0.3 * s * c);
+                   }});
+  return cases;
+}
+
+/// Few runs, with their hyper-parameters plugged in and integrated over.
+void few(const Options& options) {
+  const std::vector<Case> cases = all_torques();
+  fmt::print("| runs | plugged in: 90 % hold, rms z | integrated |\n|---|---|---|\n");
+  for (const int runs : {6, 8, 10, 14, 20, 30, 60}) {
+    Held plugged, integrated;
+    for (int set = options.first; set < options.first + options.sets; ++set)
+      for (std::size_t k = 0; k < cases.size(); ++k) {
+        data::RandomStream random(5000 + set, data::Purpose::test, 77 + static_cast<std::uint32_t>(k));
+        const std::uint64_t seed = 9000 + 100 * set + k;
+        const surrogate::TrainingSet training =
+            runs_of(cases[k].torque, surrogate::scrambled_sobol(runs, 3, seed), 0.01, random);
+        surrogate::FitOptions one = options.fit;
+        one.hyper_uncertainty = surrogate::HyperUncertainty::plug_in;
+        plugged.add(surrogate::fit(training, one), cases[k].torque, seed + 1000);
+        one.hyper_uncertainty = surrogate::HyperUncertainty::integrated;
+        integrated.add(surrogate::fit(training, one), cases[k].torque, seed + 1000);
+      }
+    fmt::print("| {} | {} | {} |\n", runs, plugged.text(), integrated.text());
+    std::fflush(stdout);
+  }
+}
+
+/// Few dear runs over many cheap ones, beside the dear ones alone.
+void two_levels(const Options& options) {
+  constexpr int truths = 6, cheap_runs = 80;
+  struct Kind {
+    std::string name;
+    std::function<double(double dear, double a, double b, double v)> cheap;
+  };
+  const std::vector<Kind> kinds{
+      {"a factor", [](double y, double, double, double) { return 0.8 * y; }},
+      {"an interplay",
+       [](double y, double a, double, double v) { return 0.8 * y + 1.0 + 0.5 * (0.1 + 0.7 * a) * (2.0 * v - 1.0); }},
+      {"a power", [](double y, double, double, double) { return 3.0 * std::pow(y, 0.6); }},
+      {"a threshold", [](double y, double, double b, double v) { return 0.8 * y - 1.5 * std::max(b - 0.5, 0.0) * v; }},
+      {"cohesion left out", [](double y, double, double b, double) { return 0.8 * y - 3.0 * b; }}};
+  const std::vector<Case> cases = all_torques();
+  fmt::print(
+      "| the levels differ by | dear runs | dear alone: 90 % hold, rms z | both levels | posteriors of the torque told "
+      "apart: 90 % hold, mean sd |\n|---|---|---|---|---|\n");
+  for (const Kind& kind : kinds)
+    for (const int dear_runs : {8, 14, 30}) {
+      Held alone, both;
+      Count posteriors;
+      for (int set = options.first; set < options.first + options.sets; ++set)
+        for (std::size_t k = 0; k < cases.size(); ++k) {
+          data::RandomStream random(4000 + set, data::Purpose::test, 77 + static_cast<std::uint32_t>(k));
+          const Torque& torque = cases[k].torque;
+          const Torque cheap = [&](double a, double b, double v) { return kind.cheap(torque(a, b, v), a, b, v); };
+          const std::uint64_t seed = 7000 + 100 * set + k;
+          const surrogate::TrainingSet dear =
+              runs_of(torque, surrogate::scrambled_sobol(dear_runs, 3, seed), 0.01, random);
+          const surrogate::TrainingSet many =
+              runs_of(cheap, surrogate::scrambled_sobol(cheap_runs, 3, seed + 1), 0.02, random);
+          const surrogate::TwoLevelProcess two = surrogate::fit_two_level(surrogate::fit(many, options.fit), dear);
+          alone.add(surrogate::fit(dear, options.fit), torque, seed + 1000);
+          both.add(two, torque, seed + 1000);
+          if (k + 1 < cases.size()) continue;
+          const GridPosterior posterior(two);
+          for (int t = 0; t < truths; ++t) posteriors.add(posterior.at(draw_truth(torque, random)));
+        }
+      fmt::print("| {} | {} | {} | {} | {:.3f}, {:.3f} |\n", kind.name, dear_runs, alone.text(), both.text(),
+                 posteriors.share(posteriors.nine), posteriors.sd / posteriors.n);
+      std::fflush(stdout);
+    }
+}
+
 #ifdef WITH_SAMPLER
 /// The grid beside the tool's own likelihood and sampler.
 void check() {
@@ -419,6 +525,7 @@ int main(int count, char** arguments) {
     if (key == "--runs") options.runs = std::stoi(next());
     if (key == "--trusted") options.fit.between_runs = BetweenRuns::trusted;
     if (key == "--integrated") options.fit.hyper_uncertainty = HyperUncertainty::integrated;
+    if (key == "--plugged-in") options.fit.hyper_uncertainty = HyperUncertainty::plug_in;
     if (key == "--scale") options.fit.scale = next() == "log" ? OutputScale::log : OutputScale::linear;
     if (key == "--kernel") options.fit.kernel = next() == "se" ? Kernel::squared_exponential : Kernel::matern52;
     if (key == "--mean") {
@@ -432,6 +539,8 @@ int main(int count, char** arguments) {
   if (what == "ridge") ridge(options);
   if (what == "levels") levels(options);
   if (what == "faults") faults(options);
+  if (what == "few") few(options);
+  if (what == "two_levels") two_levels(options);
 #ifdef WITH_SAMPLER
   if (what == "check") check();
 #endif

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 
 #include "data/error.hpp"
 #include "data/random.hpp"
@@ -19,9 +20,10 @@ double slice(const VectorXd& x) { return 1.0 + std::sin(5.0 * x[0]) * (0.5 + x[1
 double machine(const VectorXd& x) { return 2.5 * slice(x) + 0.4 * x[0] + 0.3 * x[1] * x[1]; }
 
 template <class Function>
-TrainingSet runs_of(Function function, int runs, double noise_sd, std::uint64_t seed) {
+TrainingSet runs_of(Function function, int runs, double noise_sd, std::uint64_t seed, int inputs = 2) {
   data::RandomStream random(seed, data::Purpose::test, 3);
-  TrainingSet training{scrambled_sobol(runs, 2, seed), VectorXd(runs), VectorXd::Constant(runs, noise_sd * noise_sd)};
+  TrainingSet training{scrambled_sobol(runs, inputs, seed), VectorXd(runs),
+                       VectorXd::Constant(runs, noise_sd * noise_sd)};
   for (int i = 0; i < runs; ++i) training.y[i] = function(VectorXd(training.x.row(i))) + noise_sd * random.normal();
   return training;
 }
@@ -101,6 +103,36 @@ TEST_CASE("90 % intervals of the dear level cover 90 %, integrated over its para
   CHECK(integrated > plugged);
   CHECK(integrated > 0.88);
   CHECK(integrated < 0.94);
+}
+
+TEST_CASE("90 % intervals hold where the levels differ by what is no draw from the model", "[slow]") {
+  // Torques of friction, cohesion and speed, and a cheaper level of an interplay or of another power.
+  using Law = double (*)(const VectorXd&);
+  const std::vector<Law> torques{
+      [](const VectorXd& x) {
+        const double speed = 2.0 * x[2] - 1.0, cohesion = 10.0 / 6.0 * x[1];
+        return 8.0 * std::sqrt((1.0 + cohesion) * (0.25 + 1.75 * x[0])) * (1.0 + 0.12 * speed - 0.3 * speed * cohesion);
+      },
+      [](const VectorXd& x) {
+        return 12.0 * std::pow(0.1 + 0.7 * x[0] + 0.5 * x[1], 0.6) * (1.0 + 0.2 / (0.63 + 1.67 * x[2]));
+      }};
+  const std::vector<std::function<double(double, const VectorXd&)>> cheaper{
+      [](double y, const VectorXd& x) { return 0.8 * y + 1.0 + (0.05 + 0.35 * x[0]) * (2.0 * x[2] - 1.0); },
+      [](double y, const VectorXd&) { return 3.0 * std::pow(y, 0.6); }};
+  int inside = 0, all = 0;
+  for (const Law torque : torques)
+    for (const auto& other : cheaper)
+      for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const TrainingSet low =
+            runs_of([&](const VectorXd& x) { return other(torque(x), x); }, 80, 0.15, seed + 100, 3);
+        const TrainingSet high = runs_of(torque, 14, 0.08, seed, 3);
+        const MatrixXd points = scrambled_sobol(64, 3, seed + 500);
+        const Prediction found = fit_two_level(fit(low, {.starts = 2}), high).predict(points);
+        for (int i = 0; i < points.rows(); ++i, ++all)
+          inside += std::abs(torque(points.row(i)) - found.mean[i]) < 1.6449 * std::sqrt(found.covariance(i, i));
+      }
+  CAPTURE(inside, all);
+  CHECK(inside > 0.89 * all);
 }
 
 TEST_CASE("a two-level prediction is that of the joint normal density of all runs of both levels") {

@@ -38,8 +38,10 @@ struct FittedSurrogate {
 };
 
 struct SurrogateOptions {
-  /// Matern 5/2 about a constant, plugged in, and between the runs doubted: surrogate/COVERAGE.md says why.
-  surrogate::FitOptions fit = {.between_runs = surrogate::BetweenRuns::doubted};
+  /// Matern 5/2 about a constant, integrated over where runs are few, between the runs doubted: surrogate/COVERAGE.md
+  /// says why.
+  surrogate::FitOptions fit = {.hyper_uncertainty = surrogate::HyperUncertainty::integrated_if_few,
+                               .between_runs = surrogate::BetweenRuns::doubted};
   std::vector<std::string> log_outputs = {};     ///< outputs that are learnt as logarithms, whatever fit.scale
   surrogate::ValidationOptions validation = {};  ///< its seed is that of the fit
   int runs_most = 1000;                          ///< of a table with more, so many train, chosen at random
