@@ -9,19 +9,42 @@
 #include "dem/rig/rig.hpp"
 #include "uq/calibrate/data_check.hpp"
 #include "uq/emulate/surrogates.hpp"
+#include "uq/plan/candidates.hpp"
 
 namespace cli {
 namespace {
 
-/// What a calibration would refuse of the runs that there are.
-std::vector<std::string> too_few_runs(const data::Study& study, const TrainingRows& rows) {
-  if (data::used_rows(rows.table) == 0) return {};
+/// What something refuses, one text per problem.
+template <class Action>
+std::vector<std::string> refusals(const Action& action) {
+  std::vector<std::string> texts;
   try {
-    uq::training_rows(study, rows.table, rows.low);
+    action();
   } catch (const data::InputError& error) {
-    return {error.what()};
+    for (const data::Problem& problem : error.problems) texts.push_back(data::describe({problem}));
   }
-  return {};
+  return texts;
+}
+
+/// What a calibration would refuse of the runs that there are, and a plan of the candidates that [plan] lists.
+std::vector<std::string> refused_later(const Workspace& workspace, const TrainingRows& rows) {
+  const data::Study& study = workspace.study;
+  if (data::used_rows(rows.table) == 0) return {};
+  std::vector<uq::Emulator> outlines;  // what there are runs of; nothing is fitted
+  std::vector<std::string> found = refusals([&] {
+    for (uq::TrainingRows& one : uq::training_rows(study, rows.table, rows.low))
+      outlines.push_back({.material = std::move(one.material),
+                          .output = one.output,
+                          .inputs = std::move(one.inputs),
+                          .constants = std::move(one.constants),
+                          .control_range = std::move(one.control_range),
+                          .predict = {}});
+  });
+  if (!found.empty() || workspace.plan.candidates.empty()) return found;
+  for (std::size_t i = 0; i < study.cases.size(); ++i)
+    for (std::string& text : refusals([&] { uq::plan::candidates_of(study, outlines, i, workspace.plan); }))
+      if (std::find(found.begin(), found.end(), text) == found.end()) found.push_back(std::move(text));
+  return found;
 }
 
 /// "1 case", "2 cases".
@@ -53,7 +76,7 @@ Action add_check(CLI::App& program) {
     }
     for (const data::Problem& problem : data::outside_training_range(study))
       warnings.push_back(data::describe({problem}));
-    for (std::string& warning : too_few_runs(study, rows)) warnings.push_back(std::move(warning));
+    for (std::string& warning : refused_later(workspace, rows)) warnings.push_back(std::move(warning));
     nlohmann::json materials = nlohmann::json::array();
     const std::vector<Point> missing =
         workspace.cases.empty() ? std::vector<Point>{} : plan_campaign(workspace, rows.all, 0).points;

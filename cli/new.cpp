@@ -71,7 +71,7 @@ longest = "6 s"                # of turning; a run that is not steady by then sa
 target = "contact.friction"
 low = 0.1
 high = 0.8
-prior = {{ kind = "uniform" }}   # also normal, truncated_normal, log_normal, beta
+prior = {{ kind = "uniform" }}   # also log_uniform, normal, truncated_normal, log_normal, beta
 
 [parameters.hamaker]
 target = "contact.hamaker"

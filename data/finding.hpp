@@ -36,6 +36,7 @@ enum class FindingKind {
   no_response,                ///< an output that does not vary
   copied_observations,        ///< the same readings more than once
   standard_errors,            ///< of readings, too small or too large to be meant
+  prior_not_stated,           ///< of a parameter whose range spans decades
 };
 template <>
 inline constexpr std::array texts_of<FindingKind> = {"copied rows",
@@ -54,7 +55,8 @@ inline constexpr std::array texts_of<FindingKind> = {"copied rows",
                                                      "no logarithm",
                                                      "no response",
                                                      "copied observations",
-                                                     "standard errors"};
+                                                     "standard errors",
+                                                     "prior not stated"};
 
 struct Finding {
   FindingKind kind = FindingKind::unit;

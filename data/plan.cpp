@@ -72,7 +72,13 @@ PlanSection read_plan(const StudyFile& file, const Study& study) {
   plan.about = section.text("about", "");
   if (!plan.about.empty()) index_of(section, "about", plan.about, names_of(study.parameters), "parameter");
   plan.cost_unit = section.text("cost_unit", "");
-  for (const Section& entry : section.array("candidates")) plan.candidates.push_back(read_entry(entry, study));
+  for (const Section& entry : section.array("candidates")) {
+    plan.candidates.push_back(read_entry(entry, study));
+    const std::string& name = plan.candidates.back().name;
+    const auto same = std::count_if(plan.candidates.begin(), plan.candidates.end(),
+                                    [&](const PlanEntry& one) { return !name.empty() && one.name == name; });
+    if (same > 1) entry.problem("name", fmt::format("'{}' is the name of another candidate, too", name), "rename one");
+  }
   return plan;
 }
 

@@ -15,12 +15,13 @@
 
 namespace data {
 
-enum class PriorKind { uniform, normal, truncated_normal, log_normal, beta, posterior };
+enum class PriorKind { uniform, log_uniform, normal, truncated_normal, log_normal, beta, posterior };
 
 /// A prior density of one parameter, zero outside [low, high], which is never wider than the parameter's range: a
 /// surrogate knows nothing beyond it. uniform: low, high. normal: mean, sd, cut off at the parameter's range.
 /// truncated_normal: mean, sd on [low, high]. log_normal: median `mean`, sd of the logarithm `sd` (dimensionless), cut
-/// off at the parameter's range. beta: alpha, beta on [low, high]. posterior: that of another case.
+/// off at the parameter's range. beta: alpha, beta on [low, high]. log_uniform: of the logarithm, on [low, high].
+/// posterior: that of another case.
 struct Prior {
   PriorKind kind = PriorKind::uniform;
   double low = 0.0;   ///< SI; by default the parameter's range
@@ -32,6 +33,7 @@ struct Prior {
   std::string posterior_of;  ///< name of a case, kind posterior
   bool cut = false;          ///< kind posterior: taken without feedback, the case's data do not change it
   std::string place;
+  bool stated = true;  ///< false: the study says nothing, and uniform is assumed
 };
 
 /// A quantity to be calibrated.

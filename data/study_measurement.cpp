@@ -38,7 +38,8 @@ void find_range(const Section& section, Parameter& parameter, const Usual& usual
                             : otherwise;
   };
   const bool logarithmic = prior.kind == PriorKind::log_normal;
-  const bool own_range = prior.kind == PriorKind::uniform || prior.kind == PriorKind::beta;
+  const bool own_range =
+      prior.kind == PriorKind::uniform || prior.kind == PriorKind::log_uniform || prior.kind == PriorKind::beta;
   if (own_range)
     for (const char* key : {"low", "high"})
       if (!section.has(key))
@@ -47,7 +48,7 @@ void find_range(const Section& section, Parameter& parameter, const Usual& usual
   const double high = logarithmic ? prior.mean * std::exp(6.0 * prior.sd) : prior.mean + 6.0 * prior.sd;
   parameter.low = std::max(bound("low", own_range ? 0.0 : low), usual.low);
   parameter.high = bound("high", own_range ? 1.0 : high);
-  if (logarithmic) parameter.scale = Scale::log;
+  if (logarithmic || (prior.kind == PriorKind::log_uniform && parameter.low > 0.0)) parameter.scale = Scale::log;
   if (!(parameter.low < parameter.high))
     section.problem("low", "leaves nothing below high", "choose low < high, and high above what is physical");
 }

@@ -92,16 +92,25 @@ const std::set<std::string>& reserved_columns() {
 
 Prior read_prior(const Section& section, const Parameter& parameter, PriorOf owner) {
   Prior prior{.low = parameter.low, .high = parameter.high, .place = section.place()};
-  if (!section.exists()) return prior;
+  prior.stated = section.exists();
+  if (!prior.stated) return prior;
   if (owner == PriorOf::case_ && section.has("posterior")) {
     prior.kind = PriorKind::posterior;
     prior.posterior_of = section.text("posterior");
     prior.cut = section.flag("cut", false);
     return prior;
   }
-  const std::string kind = section.choice("kind", {"uniform", "normal", "truncated_normal", "log_normal", "beta"});
+  const std::string kind =
+      section.choice("kind", {"uniform", "log_uniform", "normal", "truncated_normal", "log_normal", "beta"});
   if (kind == "uniform") {
     read_limits(section, prior, parameter);
+  } else if (kind == "log_uniform") {
+    prior.kind = PriorKind::log_uniform;
+    read_limits(section, prior, parameter);
+    if (!(prior.low > 0.0))
+      section.problem("kind",
+                      fmt::format("is log_uniform, but the prior begins at {}", shown(prior.low, parameter.unit)),
+                      "give the prior a low above 0");
   } else if (kind == "normal") {
     prior.kind = PriorKind::normal;
     read_mean_and_sd(section, prior, parameter);

@@ -21,9 +21,8 @@ enum class Estimate { maximum_likelihood, maximum_a_posteriori };
 /// integrated over where there are fewer than `enough_points` distinct points per input that changes.
 enum class HyperUncertainty { plug_in, integrated, integrated_if_few };
 
-/// The usual size of a design (J. L. Loeppky, J. Sacks & W. J. Welch, Technometrics 51:366 (2009)). With 6 to 10 runs of
-/// three inputs the settings plugged in give errors too small by 1.2 to 1.4, with 30 by 1.03 (COVERAGE.md).
-constexpr int enough_points = 10;
+/// Below so many, settings plugged in give errors too small by 1.1 to 1.3 (COVERAGE.md).
+constexpr int enough_points = 5;
 
 /// Where no run speaks for an input: the process alone, or with what gaps.hpp adds.
 enum class BetweenRuns { trusted, doubted };

@@ -77,12 +77,18 @@ TEST_CASE("a plan refuses what cannot be planned, with place and remedy") {
   CHECK(folder.demcal({"plan", study, "--budget", "nan"}).status == 64);
   const std::string place = folder.study("other-code").string(), file = "study/study.toml", toml = folder.read(file);
   for (const auto& [entry, what] : std::vector<std::pair<std::string, std::string>>{
-           {"settings = { speed = \"900 rpm\" }", "speed"}, {"outputs = [\"angle\"]", "angle"}, {"cots = 1", "cots"}}) {
+           {"settings = { speed = \"900 rpm\" }", "speed"},
+           {"outputs = [\"angle\"]", "angle"},
+           {"cots = 1", "cots"},
+           {"name = \"a\"\n[[plan.candidates]]\nname = \"a\"", "another candidate"}}) {
     folder.write(file, toml + "\n[plan]\n[[plan.candidates]]\n" + entry + "\n");
     const auto outcome = folder.demcal({"plan", place, "--out", "o"});
     INFO(entry << ": " << outcome.err);
     CHECK(outcome.status == 78);
     CHECK_THAT(outcome.err, Contains(what));
+    const auto checked = folder.demcal({"check", place});
+    CHECK(checked.status != 0);
+    CHECK_THAT(checked.err, Contains(what));
   }
 }
 

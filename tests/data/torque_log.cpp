@@ -27,7 +27,7 @@ struct Made {
     for (const double wanted : speeds)
       for (int i = 0; i * interval < seconds; ++i, t += interval) {
         speed += std::clamp(wanted - speed, -40.0 * interval, 40.0 * interval);
-        sensor += (torque(speed) - sensor) * interval / 0.3;
+        sensor += (torque(speed) - sensor) * std::min(1.0, interval / 0.3);
         powder = memory * powder + std::sqrt(1.0 - memory * memory) * noise * random.normal();
         const double shown = random.uniform() < 0.002 ? 0.0 : speed + 0.1 * random.normal();
         text += fmt::format("{:.3f},{:.6f},{:.3f}\n", t, sensor + powder, shown);
@@ -71,8 +71,26 @@ TEST_CASE("the means of a log lie within their errors of the truth as often as t
     within_one += std::abs(z) < 1.0;
     within_two += std::abs(z) < 2.0;
   }
+  CAPTURE(within_one, within_two);
   CHECK(std::abs(within_one - 0.683 * logs) < 3.0 * std::sqrt(logs * 0.683 * 0.317));
   CHECK(std::abs(within_two - 0.954 * logs) < 4.0 * std::sqrt(logs * 0.954 * 0.046));
+}
+
+TEST_CASE("the error of a hold of few independent samples is not too small") {
+  // Holds of one minute at a sample a second, correlated over 3 s: twenty independent samples. Errors from the
+  // integrated time alone give 1.4.
+  const Made made{.speeds = {120}, .seconds = 75.0, .interval = 1.0, .memory = 0.5};
+  double squares = 0.0;
+  constexpr int logs = 300;
+  for (std::uint64_t seed = 0; seed < logs; ++seed) {
+    const std::vector<data::Plateau> plateaus = reduced(made, seed, {.dead_time = 15.0});
+    REQUIRE(plateaus.size() == 1);
+    squares += std::pow((plateaus[0].torque.mean - 1e-3 * made.torque(120)) / plateaus[0].torque.standard_error, 2);
+  }
+  const double spread = std::sqrt(squares / logs);
+  CAPTURE(spread);
+  CHECK(spread > 0.9);
+  CHECK(spread < 1.25);
 }
 
 TEST_CASE("dead time is dropped from the front, and a window leaves out what lies outside") {

@@ -261,6 +261,34 @@ std::vector<Finding> check_outputs(const data::Study& study, const data::RunTabl
   return findings;
 }
 
+std::vector<Finding> check_priors(const data::Study& study) {
+  constexpr double decade = 10.0;
+  std::vector<Finding> findings;
+  for (const data::Parameter& parameter : study.parameters) {
+    if (parameter.scale != data::Scale::log || parameter.prior.stated || parameter.high < decade * parameter.low)
+      continue;
+    const bool used = std::any_of(study.cases.begin(), study.cases.end(), [&](const data::CalibrationCase& one) {
+      return std::find(one.free.begin(), one.free.end(), parameter.name) != one.free.end() &&
+             !one.priors.contains(parameter.name);
+    });
+    if (!used) continue;
+    const double top = parameter.high / decade, share = (parameter.high - top) / (parameter.high - parameter.low);
+    findings.push_back(
+        {.kind = data::FindingKind::prior_not_stated,
+         .place = parameter.place,
+         .severity = Severity::note,
+         .what = fmt::format(
+             "the prior of {} is not stated, and uniform in its value, with {:.0f} % of it above {:.4g}{}{}",
+             parameter.name, 100.0 * share, parameter.unit.from_si(top), parameter.unit.symbol.empty() ? "" : " ",
+             parameter.unit.symbol),
+         .remedy =
+             "prior = { kind = \"log_uniform\" } gives every decade the same weight; kind = \"uniform\" says that "
+             "this is meant",
+         .places = {}});
+  }
+  return findings;
+}
+
 std::vector<Finding> check_data(const data::Study& study, data::RunTable& table,
                                 const std::optional<data::RunTable>& low, const std::vector<std::string>& log_outputs,
                                 const DataCheckThresholds& thresholds) {
@@ -274,6 +302,7 @@ std::vector<Finding> check_data(const data::Study& study, data::RunTable& table,
     add(check_mixed_units(study, table));
     if (!data::has(all, Severity::refusal)) add(check_design(study, table, thresholds));
   }
+  add(check_priors(study));
   add(check_observations(study, table, thresholds));
   if (!data::has(all, Severity::refusal)) add(check_cases(study, table, low));
   return all;

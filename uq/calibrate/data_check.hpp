@@ -8,6 +8,7 @@
 //   warned    copies, rows outside the ranges, standard errors of 0 among others, an output that no run changes, inputs
 //             that move together, ranges that the runs do not cover, magnitudes that suggest another unit, standard
 //             errors that suggest a percentage
+//   noted     a parameter over decades whose prior, uniform in its value, nobody stated
 // A factor between units is suspected where values times the factor fill their range, or meet the runs, and the values
 // themselves do not; and where some rows or readings of one output are such a factor from the others.
 #include <optional>
@@ -45,6 +46,7 @@ std::vector<data::Finding> check_design(const data::Study& study, const data::Ru
                                         const DataCheckThresholds& thresholds);
 std::vector<data::Finding> check_observations(const data::Study& study, const data::RunTable& table,
                                               const DataCheckThresholds& thresholds);
+std::vector<data::Finding> check_priors(const data::Study& study);
 std::vector<data::Finding> check_cases(const data::Study& study, const data::RunTable& table,
                                        const std::optional<data::RunTable>& low);
 

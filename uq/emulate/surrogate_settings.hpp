@@ -6,7 +6,7 @@
 //   log_outputs = ["torque"]            # outputs that are learnt as logarithms; they must be positive
 //   nugget = true                       # run-to-run scatter beyond the stated standard errors
 //   estimate = "maximum a posteriori"   # also "maximum likelihood"
-//   hyper_parameters = "integrated if few"  # runs, fewer than ten per input; also "plugged in", "integrated"
+//   hyper_parameters = "integrated if few"  # runs, fewer than five per input; also "plugged in", "integrated"
 //   between_runs = "doubted"            # also "trusted": what gaps.hpp adds where few values of an input were run
 //   runs_most = 1000                    # of a table with more runs, so many train
 //   starts = 8

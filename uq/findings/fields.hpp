@@ -355,6 +355,8 @@ void visit_fields(Visit&& visit, T& p) {
   visit("sd_after", p.sd_after);
   visit("words", p.words);
   visit("repeats_needed", p.repeats_needed);
+  visit("repeats_low", p.repeats_low);
+  visit("repeats_high", p.repeats_high);
   visit("floor", p.floor);
 }
 

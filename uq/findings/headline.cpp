@@ -70,7 +70,12 @@ std::string next_step(const CaseReport& result, const Standing& found) {
   if (!result.plan || result.plan->candidates.empty()) return " Next: demcal plan says what to measure.";
   const PlanCandidate& first = result.plan->candidates.front();
   if (!first.teaches) return " No candidate of the plan would teach more of " + result.plan->about + ".";
-  return " Next: measure " + first.name + (first.model_only ? ", if it means the same in the real powder." : ".");
+  const bool never = std::any_of(first.parameters.begin(), first.parameters.end(), [&](const PlannedParameter& one) {
+    return one.name == result.plan->about && !one.repeats_needed && !one.floor.empty();
+  });
+  return " Next: measure " + first.name + (first.model_only ? ", if it means the same in the real powder" : "") +
+         (never ? "; it narrows " + result.plan->about + ", but however often it is read it does not identify it."
+                : ".");
 }
 
 }  // namespace

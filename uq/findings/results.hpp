@@ -77,6 +77,7 @@ struct PlannedParameter {
   double sd_now = 0.0, sd_after = 0.0;                ///< posterior sd, and what it is expected to be
   std::vector<WordProbability> words;                 ///< of the verdict afterwards; empty: not asked
   std::optional<int> repeats_needed;                  ///< readings for "identified" with 90 % probability
+  std::optional<int> repeats_low, repeats_high;       ///< its range; no high: the probability stays near 90 %
   std::string floor;  ///< why no number of readings is enough; empty: some is, or not asked
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "data/random.hpp"
 #include "uq/posterior/posterior.hpp"
@@ -148,12 +149,24 @@ ReadingsNeeded Forecast::readings_needed(const std::vector<Index>& rows, int par
       floor = Floor::range;
     return {.count = {}, .at_most = at_most, .floor = floor};
   }
-  int enough = readings_most, few = 0;
-  while (enough > few + 1) {
-    const int middle = few < enough / 4 ? std::max(few + 1, enough / 4) : (few + enough) / 2;
-    (identified(rows, middle, parameter, Uncertain::all) >= sure ? enough : few) = middle;
-  }
-  return {.count = enough, .at_most = at_most, .floor = Floor::none};
+  std::map<int, double> chance{{readings_most, at_most}};
+  const auto least = [&](double wanted) -> std::optional<int> {
+    if (at_most < wanted) return {};
+    int enough = readings_most, few = 0;
+    while (enough > few + 1) {
+      const int middle = few < enough / 4 ? std::max(few + 1, enough / 4) : (few + enough) / 2;
+      const auto [known, is_new] = chance.try_emplace(middle);
+      if (is_new) known->second = identified(rows, middle, parameter, Uncertain::all);
+      (known->second >= wanted ? enough : few) = middle;
+    }
+    return enough;
+  };
+  const double error = std::sqrt(sure * (1.0 - sure) / std::min<double>(readings_drawn, outlook_.draws()));
+  return {.count = least(sure),
+          .low = least(sure - 2.0 * error),
+          .high = least(sure + 2.0 * error),
+          .at_most = at_most,
+          .floor = Floor::none};
 }
 
 }  // namespace uq::plan

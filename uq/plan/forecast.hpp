@@ -23,6 +23,9 @@ const char* to_text(Floor floor);
 
 struct ReadingsNeeded {
   std::optional<int> count;
+  /// Where the probability, which is counted over drawn readings, is two of its standard errors below and above 90 %:
+  /// the count is known no better. No `high`: it is nowhere so far above.
+  std::optional<int> low, high;
   double at_most = 1.0;  ///< probability of "identified" with as many readings as are ever asked for
   Floor floor = Floor::none;
 };

@@ -227,6 +227,8 @@ class Planner {
                                  .sd_after = about.sd_after.value,
                                  .words = {},
                                  .repeats_needed = {},
+                                 .repeats_low = {},
+                                 .repeats_high = {},
                                  .floor = {}};
       if (k < words.size()) parameter.words = words[k];
       one.parameters.push_back(std::move(parameter));
@@ -261,6 +263,8 @@ class Planner {
       const ReadingsNeeded needed = forecast_->readings_needed(extended_.planned[which], about_);
       PlannedParameter& parameter = all[which].parameters[about_];
       parameter.repeats_needed = needed.count;
+      parameter.repeats_low = needed.low;
+      parameter.repeats_high = needed.high;
       parameter.floor = to_text(needed.floor);
       if (!needed.count && needed.at_most >= 0.005)
         parameter.floor =
@@ -357,6 +361,8 @@ class Planner {
                                         .sd_after = now * std::sqrt(left),
                                         .words = {},
                                         .repeats_needed = {},
+                                        .repeats_low = {},
+                                        .repeats_high = {},
                                         .floor = {}});
     }
   }

@@ -73,6 +73,10 @@ double ScaledPrior::law_cdf(double x, bool upper) const {
       const double p = std::clamp((x - prior_.low) / (prior_.high - prior_.low), 0.0, 1.0);
       return upper ? 1.0 - p : p;
     }
+    case PriorKind::log_uniform: {
+      const double p = std::clamp(std::log(x / prior_.low) / std::log(prior_.high / prior_.low), 0.0, 1.0);
+      return upper ? 1.0 - p : p;
+    }
     case PriorKind::normal:
     case PriorKind::truncated_normal: {
       const double z = (x - prior_.mean) / prior_.sd;
@@ -97,6 +101,8 @@ double ScaledPrior::law_inverse(double probability, bool upper) const {
   switch (prior_.kind) {
     case PriorKind::uniform:
       return prior_.low + (upper ? 1.0 - probability : probability) * (prior_.high - prior_.low);
+    case PriorKind::log_uniform:
+      return prior_.low * std::pow(prior_.high / prior_.low, upper ? 1.0 - probability : probability);
     case PriorKind::normal:
     case PriorKind::truncated_normal:
       return prior_.mean +
@@ -119,6 +125,8 @@ double ScaledPrior::log_density_of_value(double x) const {
   switch (prior_.kind) {
     case PriorKind::uniform:
       return -std::log(prior_.high - prior_.low);
+    case PriorKind::log_uniform:
+      return -std::log(x * std::log(prior_.high / prior_.low));
     case PriorKind::normal:
     case PriorKind::truncated_normal: {
       const double z = (x - prior_.mean) / prior_.sd;
@@ -143,6 +151,8 @@ double ScaledPrior::slope_of_value(double x) const {
   switch (prior_.kind) {
     case PriorKind::uniform:
       return 0.0;
+    case PriorKind::log_uniform:
+      return -1.0 / x;
     case PriorKind::normal:
     case PriorKind::truncated_normal:
       return -(x - prior_.mean) / (prior_.sd * prior_.sd);

@@ -5,6 +5,7 @@
 // A density f(x) is that of data::Prior, cut to [prior.low, prior.high] and to the parameter's range, and normalised
 // there. In u it becomes f(x(u)) dx/du; a uniform prior of a log-scaled parameter is uniform in x, not in log x.
 //   normal, truncated normal: sd s about m.  log normal: log x normal about log(mean) with sd.
+//   log uniform: 1 / x, so that each decade has the same mass.
 //   beta: (x - prior.low) / (prior.high - prior.low) is Beta(alpha, beta).
 #include "data/random.hpp"
 #include "data/study.hpp"

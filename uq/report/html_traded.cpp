@@ -101,6 +101,19 @@ Markup joint_figures(const CaseReport& result, const std::string& id, const Cont
   return wide + side_by_side(small);
 }
 
+/// What must stand beside "not traded" where a pair's errors hang together all the same.
+std::string correlated(const CaseReport& result) {
+  constexpr double much = 0.8;
+  std::string text;
+  for (std::size_t i = 0; i < result.correlation.size(); ++i)
+    for (std::size_t j = 0; j < i && j < result.correlation[i].size(); ++j)
+      if (const double r = result.correlation[i][j]; std::abs(r) > much)
+        text += " The errors of " + result.parameters[j].name + " and " + result.parameters[i].name +
+                " hang together all the same (correlation " + decimals(r, 2) +
+                "): if one is wrong, so is the other. Values of both for a simulation must come from one draw.";
+  return text;
+}
+
 Markup correlation_table(const CaseReport& result) {
   if (result.correlation.size() != result.parameters.size()) return {};
   Table table{.caption = "Posterior correlation.", .columns = {{""}}};
@@ -117,7 +130,8 @@ Markup correlation_table(const CaseReport& result) {
 Markup joint_part(const CaseReport& result, const std::string& id, const Context& context) {
   if (result.parameters.size() < 2) return {};
   Markup all = tag::h3("What is known together") + marginal_figures(result, id, context);
-  all += result.traded.empty() ? tag::p("No parameters are traded against each other.") : each(result.traded, trade);
+  all += result.traded.empty() ? tag::p("No parameters are traded against each other." + correlated(result))
+                               : each(result.traded, trade);
   all += joint_figures(result, id, context);
   for (std::size_t i = 0; i < result.traded.size(); ++i) {
     all += equivalent_table(result, result.traded[i]);

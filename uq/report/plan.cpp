@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
 
 #include "uq/findings/wording.hpp"
 
@@ -69,7 +70,11 @@ std::string words_text(const PlannedParameter& parameter) {
 }
 
 std::string readings_text(const PlannedParameter& parameter) {
-  if (parameter.repeats_needed) return fmt::format("{}", *parameter.repeats_needed);
+  const auto& [count, low, high] = std::tie(parameter.repeats_needed, parameter.repeats_low, parameter.repeats_high);
+  if (count && low && !high)
+    return fmt::format("about {} (at least {}: more readings raise the probability little)", *count, *low);
+  if (count && low && *low < *high) return fmt::format("about {} ({} to {})", *count, *low, *high);
+  if (count) return fmt::format("{}", *count);
   return parameter.floor.empty() ? "" : "never: " + parameter.floor;
 }
 

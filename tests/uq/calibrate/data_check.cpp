@@ -103,6 +103,28 @@ data::Finding only(const Files& files, const std::string& kind) {
 
 TEST_CASE("clean data have no finding", "[uq]") { CHECK(look(Files()).findings.empty()); }
 
+TEST_CASE("of a parameter over decades it is said that its prior is uniform in its value, unless the study says so") {
+  Files files;
+  for (const auto& [high, prior, said] :
+       std::vector<std::tuple<double, std::string, bool>>{{10.0, "", true},
+                                                          {10.0, "prior = { kind = \"uniform\" }\n", false},
+                                                          {10.0, "prior = { kind = \"log_uniform\" }\n", false},
+                                                          {10.0, "scale = \"linear\"\n", false}}) {
+    files.parameters = fmt::format(
+        "[parameters.friction]\nlow = 0.1\nhigh = 0.8\n[parameters.cohesion]\nunit = \"mJ/m2\"\nlow = 0.01\nhigh = "
+        "{}\n{}{}",
+        high, prior.find("scale") == std::string::npos ? "scale = \"log\"\n" : "", prior);
+    INFO(files.parameters);
+    CHECK(look(files).findings.empty() != said);
+  }
+  files.parameters =
+      "[parameters.friction]\nlow = 0.1\nhigh = 0.8\n[parameters.cohesion]\nunit = \"mJ/m2\"\nlow = 0.01\nhigh = "
+      "10\nscale = \"log\"\n";
+  const data::Finding finding = only(files, "prior not stated");
+  CHECK(finding.severity == Severity::note);
+  CHECK_THAT(data::describe(finding), Contains("90 % of it above 1 mJ/m2") && Contains("log_uniform"));
+}
+
 TEST_CASE("a control that the runs hold at another value than the measured one is refused", "[uq]") {
   Files files;
   files.each_run([](Row& row) { row.speed = 150.0; });

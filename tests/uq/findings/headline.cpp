@@ -59,6 +59,14 @@ TEST_CASE("the first choice of a plan is the next step") {
   plan.candidates = {candidate};
   result.plan = plan;
   CHECK(headline(result, plain).ends_with("Next: measure torque at 300 rpm."));
+  PlannedParameter about;
+  about.name = "a";
+  about.floor = "the surrogate's error is the floor";
+  result.plan->about = "a";
+  result.plan->candidates.front().parameters = {about};
+  CHECK(headline(result, plain).ends_with("however often it is read it does not identify it."));
+  result.plan->candidates.front().parameters.front().repeats_needed = 12;
+  CHECK(headline(result, plain).ends_with("Next: measure torque at 300 rpm."));
 }
 
 TEST_CASE("of what does not fit, or rests on a surrogate that cannot be used, no value is said") {

@@ -17,8 +17,11 @@ TEST_CASE("sampler and quadrature agree on every kind of prior and scale", "[uq]
   };
   data::Prior log_normal = prior(data::PriorKind::log_normal);
   log_normal.sd = 0.5;
-  const std::vector<data::Prior> priors = {prior(data::PriorKind::uniform), prior(data::PriorKind::normal),
-                                           prior(data::PriorKind::truncated_normal), log_normal,
+  const std::vector<data::Prior> priors = {prior(data::PriorKind::uniform),
+                                           prior(data::PriorKind::log_uniform),
+                                           prior(data::PriorKind::normal),
+                                           prior(data::PriorKind::truncated_normal),
+                                           log_normal,
                                            prior(data::PriorKind::beta)};
   Eigen::VectorXd x(4);
   x << 0.0, 0.3, 0.6, 1.0;

@@ -112,8 +112,8 @@ TEST_CASE("the gradient of the posterior is that of central differences, with a 
 }
 
 TEST_CASE("priors are normalised on their support and give their own moments", "[uq]") {
-  for (const auto kind : {data::PriorKind::uniform, data::PriorKind::normal, data::PriorKind::truncated_normal,
-                          data::PriorKind::log_normal, data::PriorKind::beta})
+  for (const auto kind : {data::PriorKind::uniform, data::PriorKind::log_uniform, data::PriorKind::normal,
+                          data::PriorKind::truncated_normal, data::PriorKind::log_normal, data::PriorKind::beta})
     for (const auto scale : {data::Scale::linear, data::Scale::log}) {
       data::Parameter parameter;
       parameter.low = 0.5e-18;

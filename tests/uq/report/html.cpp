@@ -145,6 +145,19 @@ TEST_CASE("four parameters give six joint figures, the traded pair first and wid
   CHECK(page.find("joint posterior of friction and cohesion") < page.find("joint posterior of friction and rolling"));
 }
 
+TEST_CASE("parameters that are not traded, but whose errors hang together, are said to") {
+  CalibrationReport report = report_fixture::three_cases();
+  CaseReport& first = report.cases.back();
+  REQUIRE(first.parameters.size() >= 2);
+  const std::size_t count = first.parameters.size();
+  first.traded.clear();
+  for (const double r : {0.5, -0.96}) {
+    first.correlation.assign(count, std::vector<double>(count, 0.0));
+    first.correlation[0][1] = first.correlation[1][0] = r;
+    CHECK(has(page_of(report), "hang together all the same") == (r < -0.9));
+  }
+}
+
 TEST_CASE("an empty report and empty cases give a page") {
   CHECK(has(page_of({}), "No case was calibrated."));
   CalibrationReport report;
