@@ -57,11 +57,12 @@ struct Spread {
 };
 
 /// How well a control is known. Where all points of a set have one value of it (a fill), its error is common to them;
-/// where it differs from point to point (a speed), it is set anew at each.
+/// where it differs from point to point (a speed), it is set anew at each, unless it is `shared`.
 struct SettingError {
   std::size_t control = 0;  ///< index into Study::controls
   Spread spread;
   bool unknown = false;  ///< sampled as an unknown, instead of first order in the covariance
+  bool shared = false;   ///< one error of all points, whatever their values: a tachometer's
   std::string place;
 };
 

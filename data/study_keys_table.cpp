@@ -53,8 +53,11 @@ const std::vector<StudyKey>& study_keys() {
        "how well the experiment knows the setting: a standard deviation, a share, or a table", "\"1 %\""},
       {"controls.NAME.uncertainty.sd", "quantity", "rad s-1", "above 0", "",
        "standard deviation of the setting, with its unit or as a share", "\"2 rpm\""},
-      {"controls.NAME.uncertainty.as", "choice", "", "covariance, unknown", "covariance",
-       "whether the error is different at each point (covariance) or one unknown of all points", "\"unknown\""},
+      {"controls.NAME.uncertainty.as", "choice", "", "covariance, shared, unknown", "covariance",
+       "whether each point has its own error (covariance; where the control has one value, all have the same), all "
+       "share "
+       "one whatever their values (shared), or the one value's error is sampled (unknown)",
+       "\"shared\""},
       {"outputs.NAME.unit", "text", "", "", "N m",
        "unit of the output's column and of the report; NAME is torque unless more is measured", "\"mN m\""},
       {"rig.kind", "choice", "", "slice, machine, drum, stl", "slice",
@@ -335,8 +338,11 @@ const std::vector<StudyKey>& study_keys() {
        "standard deviation of the setting, a share, or a table", "\"1 rpm\""},
       {"observe.uncertainty.NAME.sd", "quantity", "rad s-1", "above 0", "", "standard deviation of the setting",
        "\"1 rpm\""},
-      {"observe.uncertainty.NAME.as", "choice", "", "covariance, unknown", "covariance",
-       "whether the error is different at each point (covariance) or one unknown of all points", "\"unknown\""},
+      {"observe.uncertainty.NAME.as", "choice", "", "covariance, shared, unknown", "covariance",
+       "whether each point has its own error (covariance; where the control has one value, all have the same), all "
+       "share "
+       "one whatever their values (shared), or the one value's error is sampled (unknown)",
+       "\"shared\""},
       {"calibrate.name", "text", "", "", "", "name of the case, for the report and posterior-NAME.nc", "\"powder\""},
       {"calibrate.observe", "list of texts", "", "", "", "measurements that the case is calibrated against",
        "[\"bench\"]"},

@@ -167,7 +167,7 @@ void read_rig_scale(const Section& root, Study& study) {
 
 std::optional<SettingError> read_uncertainty(const Section& section, std::string_view key, const Control& control,
                                              const Unit* section_unit) {
-  SettingError error{.control = 0, .spread = {}, .unknown = false, .place = section.place(key)};
+  SettingError error{.control = 0, .spread = {}, .place = section.place(key)};
   switch (section.kind(key)) {
     case ValueKind::missing:
       return {};
@@ -178,7 +178,9 @@ std::optional<SettingError> read_uncertainty(const Section& section, std::string
         return {};
       }
       error.spread = read_spread(table, "sd", control.unit, BareNumber::value, section_unit);
-      error.unknown = table.choice("as", {"covariance", "unknown"}, "covariance") == "unknown";
+      const std::string as = table.choice("as", {"covariance", "shared", "unknown"}, "covariance");
+      error.unknown = as == "unknown";
+      error.shared = as == "shared";
       return error;
     }
     default:
@@ -230,7 +232,7 @@ void read_measurement(const Section& root, const Section& section, const Study& 
       section.problem(
           "uncertainty",
           fmt::format("{} differs from point to point of '{}', so it is not one unknown", control.name, set.name),
-          "leave out as = \"unknown\": its errors then enter the covariance");
+          "as = \"shared\" is one error of all points, as a tachometer has; without as, each point has its own");
     set.setting_errors.push_back(*error);
   }
 }

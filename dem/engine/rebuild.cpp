@@ -107,7 +107,7 @@ void Simulation::wrap() {
       case Place::outside:
         throw Fault(
             fmt::format("particle {} is outside the rig, at ({:.4g}, {:.4g}, {:.4g}) m, at {:.6g} s (thrown out over "
-                        "the rim, or pushed through a wall)",
+                        "the rim, through a mesh that demcal check finds open, or pushed through a wall)",
                         s.id[i], p.x, p.y, p.z, time()));
     }
   }

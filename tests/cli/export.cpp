@@ -103,7 +103,7 @@ TEST_CASE("the mean that comes back is that of the samples after the start-up, a
   write(500);
   CHECK(folder.demcal({"export", quick, "case", "--collect", "--out", "back"}).status == 65);
   CHECK_FALSE(fs::exists(folder.path / "back" / "liggghts.csv"));
-  write(6000);
+  write(12000);
   const auto outcome = folder.demcal({"export", quick, "case", "--collect", "--out", "back", "--json"});
   INFO(outcome.err);
   CHECK(outcome.status == 0);

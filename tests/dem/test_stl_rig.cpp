@@ -253,6 +253,7 @@ TEST_CASE("what is wrong with a rig from STL is named with its place, value and 
   CHECK(said(folder, rig + rest) == "");
   CHECK_THAT(with("mixer.stl", "shaft.stl"), Contains("shaft.stl") && Contains("no such file"));
   CHECK_THAT(with("unit = \"m\"", "unit = \"mm\""), Contains("rig.mesh.mixer") && Contains("smaller than a sphere"));
+  CHECK_THAT(with("unit = \"m\"", "unit = \"km\""), Contains("rig.mesh.mixer") && Contains("correct the mesh's unit"));
   CHECK_THAT(with("unit = \"m\"", "unit = \"kg\""), Contains("'kg' is not a length"));
   CHECK_THAT(with("unit = \"m\"", ""), Contains("unit") && Contains("missing"));
   CHECK_THAT(with("\"12 mm\", \"7.1 mm\", \"60 mm\"", "\"6.5 mm\", \"7.1 mm\", \"60 mm\""),

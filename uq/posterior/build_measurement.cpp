@@ -18,7 +18,7 @@ std::optional<int> column_of(const Emulator& emulator, std::size_t control) {
   return static_cast<int>(found - emulator.inputs.begin());
 }
 
-/// A control's error as a covariance: common to all rows where the control has one value.
+/// A control's error as a covariance: common to all rows where the control has one value, or where it is said to be.
 SettingShift shift_of(const data::Control& control, const data::ObservationSet& set, const data::SettingError& error,
                       int column) {
   const auto rows = static_cast<Eigen::Index>(set.points.size());
@@ -27,7 +27,7 @@ SettingShift shift_of(const data::Control& control, const data::ObservationSet& 
     const double value = set.points[i].controls[error.control];
     const data::Axis axis = control.axis();
     shift.error[i] = std::hypot(error.spread.absolute, error.spread.relative * value) / axis.slope(axis.to_unit(value));
-    shift.common = shift.common && value == set.points.front().controls[error.control];
+    shift.common = shift.common && (error.shared || value == set.points.front().controls[error.control]);
   }
   return shift;
 }

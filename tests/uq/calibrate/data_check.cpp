@@ -341,7 +341,7 @@ TEST_CASE("a row of 0 on a log scale is left out with file, line and cause, and 
   SECTION("parameter") {
     files.parameters =
         "[parameters.friction]\nlow = 0.1\nhigh = 0.8\n[parameters.cohesion]\nunit = \"mJ/m2\"\nlow = "
-        "0.1\nhigh = 10\nscale = \"log\"\n";
+        "0.1\nhigh = 10\nscale = \"log\"\nprior = { kind = \"log_uniform\" }\n";
     files.each_run([](Row& row) { row.cohesion = std::max(row.cohesion, 0.1); });
     files.runs[4].cohesion = 0.0;
     const Looked looked = look(files);

@@ -142,6 +142,19 @@ TEST_CASE("a setting known within an uncertainty widens the posterior alike as a
              Catch::Contains("78: ") && Catch::Contains("do not vary speed, so its uncertainty's effect is not known"));
 }
 
+TEST_CASE("a setting's error at points of several values is each point's own, or one that all share", "[uq]") {
+  const TemporaryFolder folder;
+  folder.write("bench.csv",
+               "speed,fill,torque,torque_se\n1,70,0.44,0.04\n2,90,0.51,0.04\n3,110,0.54,0.04\n4,130,0.51,0.04\n");
+  const auto with = [&](const std::string& as) {
+    return sample(
+        read(folder, head + observe("bench", "uncertainty = { fill = { sd = \"30 g\", as = \"" + as + "\" } }\n") +
+                         calibrate("powder", "bench")));
+  };
+  check_moments(with("shared"), "friction", {0.5, std::hypot(mean_sd, 0.03)});
+  check_moments(with("covariance"), "friction", {0.5, std::hypot(reading_sd, 0.03) / 2.0});
+}
+
 TEST_CASE("linked cases keep a meter's offset each, or share it, and the posterior is the joint one", "[uq]") {
   const TemporaryFolder folder;
   folder.write("first.csv", readings);
