@@ -17,13 +17,6 @@ constexpr std::size_t coarse_levels = 3;
 constexpr std::array codes{999.0,   999.9,   999.99,  9999.0, 9999.9, 9999.99, 99999.0, 99999.9, 999999.0, 9999999.0,
                            32767.0, 32768.0, 65535.0, 1e10,   1e30,   9.9e37,  1e37,    1e38,    3.4e38};
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return NAN;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct MedianSpread {
   double median = 0.0, sd = 0.0;
 };

@@ -16,11 +16,6 @@ bool reads_as_number(std::string_view text) {
   return !text.empty() && rest == text.data() + text.size() && error != std::errc::invalid_argument;
 }
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-}
-
 /// Whether what stands before `end` is digits in groups of three behind `mark`, the first group shorter.
 bool in_groups(std::string_view text, char mark, std::size_t end) {
   if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
@@ -147,6 +142,11 @@ Evidence decimal_evidence(std::string_view text) {
   if (groups) return commas > 0 ? Evidence::maybe_comma : Evidence::maybe_point;
   if (!plain_number(text, commas > 0 ? DecimalMark::comma : DecimalMark::point)) return Evidence::none;
   return commas > 0 ? Evidence::comma : Evidence::point;
+}
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
 }
 
 }  // namespace data

@@ -32,4 +32,7 @@ std::string_view trimmed(std::string_view text);
 /// Letters of ASCII made small; all other bytes as they are.
 std::string lower_case(std::string_view text);
 
+/// Every `from` becomes `to`.
+void replace_all(std::string& text, std::string_view from, std::string_view to);
+
 }  // namespace data

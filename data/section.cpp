@@ -221,7 +221,7 @@ double Section::difference(std::string_view key, std::string_view si_unit, Range
   return read_one(*node_, key, si_unit, fallback, {range, default_unit, true});
 }
 
-std::string Section::text(std::string_view key, std::optional<std::string> fallback) const {
+std::string Section::text(std::string_view key, const std::optional<std::string>& fallback) const {
   node_->note(key, {"text", "", {}, fallback.value_or(""), {}});
   const toml::node* node = fallback ? node_->ask(key) : node_->demand(key, "\"...\"");
   if (node == nullptr) return fallback.value_or("");
@@ -231,10 +231,10 @@ std::string Section::text(std::string_view key, std::optional<std::string> fallb
 }
 
 std::string Section::choice(std::string_view key, const std::vector<std::string>& options,
-                            std::optional<std::string> fallback) const {
+                            const std::optional<std::string>& fallback) const {
   node_->note(key, {"choice", "", {}, fallback.value_or(""), options});
   const toml::node* node = fallback ? node_->ask(key) : node_->demand(key, fmt::format("\"{}\"", options.front()));
-  const std::string otherwise = fallback.value_or(options.front());
+  std::string otherwise = fallback.value_or(options.front());
   if (node == nullptr) return otherwise;
   const auto* text = node->as_string();
   if (text != nullptr && std::find(options.begin(), options.end(), text->get()) != options.end()) return text->get();

@@ -64,10 +64,10 @@ class Section {
   /// `default_unit` is of differences.
   double difference(std::string_view key, std::string_view si_unit, Range range, std::optional<double> fallback = {},
                     const Unit* default_unit = nullptr) const;
-  std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
+  std::string text(std::string_view key, const std::optional<std::string>& fallback = {}) const;
   /// One of `options`; anything else is an error that lists them.
   std::string choice(std::string_view key, const std::vector<std::string>& options,
-                     std::optional<std::string> fallback = {}) const;
+                     const std::optional<std::string>& fallback = {}) const;
   bool flag(std::string_view key, bool fallback) const;
   std::vector<std::string> texts(std::string_view key, bool required = false) const;
   /// A list of texts or whole numbers, as texts: [31, "runs.csv:44"].

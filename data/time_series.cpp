@@ -117,12 +117,6 @@ double median_deviation(const std::vector<double>& sorted) {
   return farthest;
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Number of batches that MSER drops, at most `most`.
 std::size_t mser(const std::vector<double>& z, std::size_t most) {
   const double centre = mean_of(z);
@@ -182,6 +176,13 @@ Despiked without_spikes(std::span<const double> series) {
     clean.spikes.push_back(i);
   }
   return clean;
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 SeriesMean mean_with_error(std::span<const double> series, const SeriesOptions& options) {

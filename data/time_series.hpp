@@ -24,6 +24,9 @@ struct SeriesMean {
       true;  ///< false when the series is too short for its correlation (n < 20 tau) or its start-up does not end
 };
 
+/// The value in the middle (of an even number the upper one); not a number where there is none.
+double median_of(std::vector<double> values);
+
 /// A series whose spikes hold the median of their neighbours.
 struct Despiked {
   std::vector<double> series;

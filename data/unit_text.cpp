@@ -10,11 +10,6 @@
 namespace data {
 namespace {
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-}
-
 /// One spelling for the signs of micro, product, power and the blank.
 std::string normalised(std::string_view given) {
   std::string text(trimmed(given));

@@ -139,10 +139,10 @@ void check_mesh_in_box(const RigMesh& m, const Case& c, std::vector<data::Proble
         {place, fmt::format("is {:g} m across, smaller than a sphere", length(high - low)), "correct the mesh's unit"});
   }
   if (constexpr double most = 30.0; length(high - low) > most * length(rig.high - rig.low)) {
-    found.push_back({place,
-                     fmt::format("is {:.3g} m across, but the box is {:.3g} m", length(high - low),
-                                 length(rig.high - rig.low)),
-                     "correct the mesh's unit, or the box"});
+    found.push_back(
+        {place,
+         fmt::format("is {:.3g} m across, but the box is {:.3g} m", length(high - low), length(rig.high - rig.low)),
+         "correct the mesh's unit, or the box"});
     return;
   }
   const auto from = components(low), to = components(high), first = components(rig.low), last = components(rig.high);

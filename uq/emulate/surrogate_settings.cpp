@@ -38,11 +38,10 @@ SurrogateOptions read_surrogate_options(const data::StudyFile& file, const data:
   fit.estimate = choose<Estimate>(
       section, "estimate",
       {{"maximum a posteriori", Estimate::maximum_a_posteriori}, {"maximum likelihood", Estimate::maximum_likelihood}});
-  fit.hyper_uncertainty = choose<HyperUncertainty>(
-      section, "hyper_parameters",
-      {{"integrated if few", HyperUncertainty::integrated_if_few},
-       {"plugged in", HyperUncertainty::plug_in},
-       {"integrated", HyperUncertainty::integrated}});
+  fit.hyper_uncertainty = choose<HyperUncertainty>(section, "hyper_parameters",
+                                                   {{"integrated if few", HyperUncertainty::integrated_if_few},
+                                                    {"plugged in", HyperUncertainty::plug_in},
+                                                    {"integrated", HyperUncertainty::integrated}});
   fit.between_runs = choose<BetweenRuns>(section, "between_runs",
                                          {{"doubted", BetweenRuns::doubted}, {"trusted", BetweenRuns::trusted}});
   fit.nugget = section.flag("nugget", fit.nugget);

@@ -23,7 +23,7 @@ class Climber {
     if (!(value_ > nowhere)) return end(false);
     const auto arrived = [&] { return value_ >= knowledge.log_bulk && knowledge.knows(x_, value_); };
     if (arrived()) return end(true);
-    Eigen::VectorXd slope = slope_at(x_, value_);
+    Eigen::VectorXd slope = slope_at(x_);
     const Eigen::Index d = x_.size();
     // The first model: a step of the radius would take the slope to zero.
     Eigen::MatrixXd curvature = Eigen::MatrixXd::Identity(d, d) * std::max(slope.norm() / first_radius, 1e-6);
@@ -41,7 +41,7 @@ class Climber {
       }
       // The slope there teaches the model even where the step is refused, unless the place is out of the world.
       if (!std::isfinite(found)) continue;
-      const Eigen::VectorXd there = slope_at(next, found);
+      const Eigen::VectorXd there = slope_at(next);
       learn(curvature, step, slope - there);
       if (!(ratio > 1e-4)) continue;
       x_ = next;
@@ -61,12 +61,12 @@ class Climber {
   }
 
   /// d log p / dz, z = x / width; central differences where there is no gradient, one-sided at the faces.
-  Eigen::VectorXd slope_at(const Eigen::VectorXd& x, double value) {
+  Eigen::VectorXd slope_at(const Eigen::VectorXd& x) {
     const Eigen::Index d = x.size();
     if (target_.log_density_gradient) {
       evaluations_ += 2;
-      const Eigen::VectorXd slope = target_.log_density_gradient(x).gradient.cwiseProduct(width_);
-      if (slope.allFinite()) return slope;
+      Eigen::VectorXd known = target_.log_density_gradient(x).gradient.cwiseProduct(width_);
+      if (known.allFinite()) return known;
     }
     constexpr double step = 1e-6;
     Eigen::VectorXd slope(d);
@@ -78,7 +78,6 @@ class Climber {
       const double apart = (high[k] - low[k]) / width_[k];
       slope[k] = std::isfinite(above) && std::isfinite(below) ? (above - below) / apart : 0.0;
     }
-    static_cast<void>(value);
     return slope;
   }
 

@@ -12,7 +12,7 @@ double fitted_shape(const std::vector<double>& excess) {
   const auto n = excess.size();
   const double count = static_cast<double>(n);
   const auto points = 30 + static_cast<std::size_t>(std::sqrt(count));
-  const double quarter = excess[static_cast<std::size_t>(count / 4.0 + 0.5) - 1];
+  const double quarter = excess[static_cast<std::size_t>(std::lround(count / 4.0)) - 1];
   const auto shape_at = [&](double theta) {
     double sum = 0.0;
     for (const double value : excess) sum += std::log1p(-theta * value);

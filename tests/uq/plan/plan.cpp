@@ -95,6 +95,23 @@ TEST_CASE("a reading made again teaches less where the surrogate's error is what
   CHECK(std::abs(about.information - truth) <= about.information_error + 0.005);
 }
 
+TEST_CASE("the readings needed for a word have a range, and are no fewer than the width asks for", "[plan]") {
+  // One unknown a, uniform on 0 to 1, one reading of error e. "identified" asks for a tenth of the prior's variance, so
+  // for 1 + n readings with e / (slope sqrt(1 + n)) at most sqrt(1/120).
+  const double e = 1.0, slope = 5.0 + 0.3 * 0.5;
+  data::Study study = formula::study({0.5}, {formula::torque(0.5, 0.5, 0.5)}, e);
+  study.cases[0].free = {"a"};
+  study.cases[0].fixed = {{"b", 0.5}};
+  const PlanReport plan = plan_of(study, formula::emulators(), {}, {.about = "a"});
+  const auto& about = named(plan, "torque at 0.5").parameters[0];
+  REQUIRE(about.repeats_needed);
+  REQUIRE(about.repeats_low);
+  CAPTURE(*about.repeats_low, *about.repeats_needed, about.repeats_high.value_or(-1));
+  CHECK(*about.repeats_needed >= std::ceil(std::pow(e / slope, 2) * 120.0 - 1.0));
+  CHECK(*about.repeats_low <= *about.repeats_needed);
+  CHECK(about.repeats_high.value_or(1025) >= *about.repeats_needed);
+}
+
 TEST_CASE("before any measurement the information is that of the prior", "[plan]") {
   const data::Study study = measured(0.5, 0.5, 0.1, 2);
   const PlanReport plan = plan_of(study, formula::emulators(), {}, {.about = "a", .prior = true});
