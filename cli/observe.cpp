@@ -119,7 +119,7 @@ std::string standstill_reading(const data::TorqueLog& log, const std::vector<dat
     std::size_t last = first;
     while (stands(last + 1)) ++last;
     if (log.time[last] - log.time[first] >= options.shortest) {
-      const data::SeriesMean zero = data::mean_with_error({log.torque.data() + first, last - first + 1});
+      const data::SeriesMean zero = data::mean_of_hold({log.torque.data() + first, last - first + 1});
       matters = matters || std::abs(zero.mean) > 3.0 * std::hypot(zero.standard_error, least_error);
       if (readings.empty()) first_mean = log.torque_unit.from_si(zero.mean);
       readings.push_back(fmt::format("{:.4g} +- {:.2g} {} from {:.4g} s on", log.torque_unit.from_si(zero.mean),

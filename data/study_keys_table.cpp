@@ -54,9 +54,9 @@ const std::vector<StudyKey>& study_keys() {
       {"controls.NAME.uncertainty.sd", "quantity", "rad s-1", "above 0", "",
        "standard deviation of the setting, with its unit or as a share", "\"2 rpm\""},
       {"controls.NAME.uncertainty.as", "choice", "", "covariance, shared, unknown", "covariance",
-       "whether each point has its own error (covariance; where the control has one value, all have the same), all "
-       "share "
-       "one whatever their values (shared), or the one value's error is sampled (unknown)",
+       "covariance: each point has its own error, or all the same where the control has one value; shared: one error "
+       "of "
+       "all points of the set; unknown: the error of the set's one value is sampled",
        "\"shared\""},
       {"outputs.NAME.unit", "text", "", "", "N m",
        "unit of the output's column and of the report; NAME is torque unless more is measured", "\"mN m\""},
@@ -339,9 +339,9 @@ const std::vector<StudyKey>& study_keys() {
       {"observe.uncertainty.NAME.sd", "quantity", "rad s-1", "above 0", "", "standard deviation of the setting",
        "\"1 rpm\""},
       {"observe.uncertainty.NAME.as", "choice", "", "covariance, shared, unknown", "covariance",
-       "whether each point has its own error (covariance; where the control has one value, all have the same), all "
-       "share "
-       "one whatever their values (shared), or the one value's error is sampled (unknown)",
+       "covariance: each point has its own error, or all the same where the control has one value; shared: one error "
+       "of "
+       "all points of the set; unknown: the error of the set's one value is sampled",
        "\"shared\""},
       {"calibrate.name", "text", "", "", "", "name of the case, for the report and posterior-NAME.nc", "\"powder\""},
       {"calibrate.observe", "list of texts", "", "", "", "measurements that the case is calibrated against",

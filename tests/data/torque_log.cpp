@@ -78,7 +78,7 @@ TEST_CASE("the means of a log lie within their errors of the truth as often as t
 
 TEST_CASE("the error of a hold of few independent samples is not too small") {
   // Holds of one minute at a sample a second, correlated over 3 s: twenty independent samples. Errors from the
-  // integrated time alone give 1.4.
+  // integrated time alone give 1.33.
   const Made made{.speeds = {120}, .seconds = 75.0, .interval = 1.0, .memory = 0.5};
   double squares = 0.0;
   constexpr int logs = 300;
