@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -15,9 +16,6 @@
 
 namespace campaign {
 namespace {
-
-/// The value that is typed with five digits in the unit, so that table, terminal and simulation mean the same point.
-double rounded(double si, const data::Unit& unit) { return unit.to_si(fmt::format("{:.5g}", unit.from_si(si))); }
 
 std::string key_of(const Workspace& workspace, const Point& point, const std::string& settings) {
   // Another code's rows have no seed and settings of ours: the point alone tells them apart.
@@ -40,6 +38,13 @@ std::string design_path(const Workspace& workspace) {
   return (std::filesystem::path(workspace.out) / "design.csv").string();
 }
 
+constexpr const char* seed_column = "seed";
+
+std::string made_again(const std::string& path) {
+  return fmt::format("correct the line, or remove {}: it is made again",
+                     std::filesystem::path(path).filename().string());
+}
+
 }  // namespace
 
 std::vector<Point> training_design(const Workspace& workspace, const std::string& material, int first, int runs) {
@@ -54,11 +59,12 @@ std::vector<Point> training_design(const Workspace& workspace, const std::string
     int column = 0;
     for (const data::Parameter& p : study.parameters) {
       const auto fixed = rows.fixed.find(p.name);
-      point.inputs.push_back(fixed != rows.fixed.end() ? fixed->second
-                                                       : rounded(p.axis().from_unit(cube(run, column++)), p.unit));
+      point.inputs.push_back(fixed != rows.fixed.end()
+                                 ? fixed->second
+                                 : p.unit.rounded(p.axis().from_unit(cube(run, column++)), point_digits));
     }
     for (const data::Control& c : study.controls)
-      point.inputs.push_back(rounded(c.axis().from_unit(cube(run, column++)), c.unit));
+      point.inputs.push_back(c.unit.rounded(c.axis().from_unit(cube(run, column++)), point_digits));
     points.push_back(std::move(point));
   }
   return points;
@@ -120,9 +126,9 @@ std::vector<Point> read_points(const Workspace& workspace, const std::string& pa
     const auto read = [&](const std::string& name, const data::Unit& unit) {
       const std::size_t column = csv.column(name);
       if (!std::isfinite(csv.number(row, column)))
-        throw data::InputError(data::ExitStatus::bad_data,
-                               {csv.place(row, column), fmt::format("'{}' is not a value", row.fields[column]),
-                                "correct the line, or remove design.csv: it is made again"});
+        throw data::InputError(
+            data::ExitStatus::bad_data,
+            {csv.place(row, column), fmt::format("'{}' is not a value", row.fields[column]), made_again(path)});
       point.inputs.push_back(csv.unit(column, unit).to_si(row.fields[column]));
     };
     for (const data::Parameter& p : study.parameters) read(p.name, p.unit);
@@ -155,7 +161,7 @@ Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& tab
 }
 
 void write_points(const Workspace& workspace, const std::string& path, const std::vector<Point>& points,
-                  const std::vector<PointColumn>& more) {
+                  const std::vector<PointColumn>& more, const std::string& head) {
   const data::Study& study = workspace.study;
   const bool has_materials = study.materials.size() > 1 || !study.materials.front().name.empty();
   std::vector<std::string> fields;
@@ -163,7 +169,8 @@ void write_points(const Workspace& workspace, const std::string& path, const std
   for (const data::Parameter& p : study.parameters) fields.push_back(p.name);
   for (const data::Control& c : study.controls) fields.push_back(c.name);
   for (const PointColumn& one : more) fields.push_back(one.name);
-  std::string text = fmt::format("{}\n", fmt::join(fields, ","));
+  for (std::string& field : fields) field = data::csv_field(field);
+  std::string text = head + fmt::format("{}\n", fmt::join(fields, ","));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& point = points[i];
     fields.clear();
@@ -175,6 +182,35 @@ void write_points(const Workspace& workspace, const std::string& path, const std
     text += fmt::format("{}\n", fmt::join(fields, ","));
   }
   data::write_atomically(path, text);
+}
+
+std::vector<Point> points_of(const std::vector<PlannedRun>& runs) {
+  std::vector<Point> points;
+  for (const PlannedRun& run : runs) points.push_back(run.point);
+  return points;
+}
+
+PointColumn seeds_of(const std::vector<PlannedRun>& runs) {
+  PointColumn seeds{seed_column, {}};
+  for (const PlannedRun& run : runs) seeds.values.push_back(std::to_string(run.seed));
+  return seeds;
+}
+
+std::vector<PlannedRun> read_runs(const Workspace& workspace, const std::string& path) {
+  const std::vector<Point> points = read_points(workspace, path);
+  const data::Csv csv = data::read_csv(path);
+  const std::size_t column = csv.column(seed_column);
+  std::vector<PlannedRun> runs;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::string& text = csv.rows[i].fields[column];
+    PlannedRun run{points[i]};
+    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), run.seed);
+    if (error != std::errc{} || rest != text.data() + text.size())
+      throw data::InputError(data::ExitStatus::bad_data,
+                             {csv.place(csv.rows[i], column), fmt::format("'{}' is no seed", text), made_again(path)});
+    runs.push_back(std::move(run));
+  }
+  return runs;
 }
 
 std::string run_name(const Workspace& workspace, const Point& point) {

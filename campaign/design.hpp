@@ -1,11 +1,14 @@
 #pragma once
 // The training campaign: which points are to be simulated, and which of them are still missing.
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "campaign/point.hpp"
 
 namespace campaign {
+
+constexpr int point_digits = 5;  ///< significant ones of a point's values in their units
 
 /// Points first .. first + runs - 1 of the material's training design: scrambled Sobol' over what its runs vary
 /// (parameters on their scale, controls linearly), each value rounded to five digits in its unit, so that a point that
@@ -30,8 +33,20 @@ struct PointColumn {
   std::string name;
   std::vector<std::string> values;  ///< one a point
 };
+/// `head`: lines of comment above the columns' names.
 void write_points(const Workspace& workspace, const std::string& path, const std::vector<Point>& points,
-                  const std::vector<PointColumn>& more = {});
+                  const std::vector<PointColumn>& more = {}, const std::string& head = "");
+
+/// A run to make. Runs at one point with other seeds are replicates: they share nothing but the point.
+struct PlannedRun {
+  Point point;
+  std::uint64_t seed = 0;  ///< of its random streams and of its row
+};
+std::vector<Point> points_of(const std::vector<PlannedRun>& runs);
+/// The column that `read_runs` takes their seeds from.
+PointColumn seeds_of(const std::vector<PlannedRun>& runs);
+/// Points with their seeds. Throws data::InputError (65) where one is no whole number.
+std::vector<PlannedRun> read_runs(const Workspace& workspace, const std::string& path);
 std::string next_runs_path(const Workspace& workspace);  ///< OUT/next-runs.csv, points of the posterior
 
 /// The first `runs` of OUT/next-runs.csv that have no row yet. Throws InputError (66) when there is no such file.

@@ -3,16 +3,16 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/drive.hpp"
 #include "dem/run/looks.hpp"
 
 namespace campaign {
 Foretold foretell(const Workspace& workspace, const Point& point) {
-  const dem::Case c = case_at(workspace, point);
-  if (auto found = dem::problems(c); !found.empty())
-    throw data::InputError(data::ExitStatus::bad_study, std::move(found));
-  Foretold told{dem::derive(c), dem::forecast(c, workspace.study.seed)};
+  dem::PreparedCase prepared = dem::prepare(case_at(workspace, point));
+  dem::Forecast forecast = dem::forecast(prepared, workspace.study.seed);
+  Foretold told{std::move(prepared), std::move(forecast)};
   if (!told.forecast.problems.empty())
     throw data::InputError(data::ExitStatus::bad_study, std::move(told.forecast.problems));
   if (std::string short_of = too_short(workspace, {point}); !short_of.empty())
@@ -20,7 +20,9 @@ Foretold foretell(const Workspace& workspace, const Point& point) {
   return told;
 }
 
-Cost cost_of(const dem::Case& c, const dem::Derived& derived) {
+Cost cost_of(const dem::PreparedCase& prepared) {
+  const dem::Case& c = prepared.given();
+  const dem::Derived& derived = prepared.derived();
   Cost cost;
   cost.effort = dem::measure_effort(c, derived);
   const double spheres = static_cast<double>(derived.spheres);
@@ -48,12 +50,12 @@ std::string duration_text(double seconds) {
 
 std::vector<std::string> problems_at_ends(const Workspace& workspace, const Point& middle) {
   std::vector<std::string> found;
-  const std::vector<Input> inputs = inputs_of(workspace.study);
+  const std::vector<data::Input> inputs = data::inputs_of(workspace.study);
   const auto& fixed = workspace.study.material(middle.material).fixed;
   const bool short_amid = !too_short(workspace, {middle}).empty();  // then `foretell` says so once
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     if (fixed.count(inputs[i].name) > 0) continue;
-    for (const double end : {inputs[i].low, inputs[i].high}) {
+    for (const double end : {inputs[i].axis.low, inputs[i].axis.high}) {
       // No run is made at a standstill: the design's points lie inside.
       if (end == 0.0 && dem::target(inputs[i].target).name == "rig.rpm") continue;
       Point point = middle;
@@ -92,19 +94,19 @@ std::string too_short(const Workspace& workspace, const std::vector<Point>& poin
 
 std::vector<std::string> outside_ranges(const Workspace& workspace, const Point& point) {
   std::vector<std::string> notes;
-  const std::vector<Input> inputs = inputs_of(workspace.study);
+  const std::vector<data::Input> inputs = data::inputs_of(workspace.study);
   const auto& fixed = workspace.study.material(point.material).fixed;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const Input& in = inputs[i];
+    const data::Input& in = inputs[i];
     const double x = point.inputs[i];
     if (const auto held = fixed.find(in.name); held != fixed.end()) {
       if (x != held->second)
         notes.push_back(fmt::format("{} {} is not what the study holds it at for this material, {}", in.name,
                                     with_unit(x, in.unit), with_unit(held->second, in.unit)));
-    } else if (x < in.low || x > in.high) {
+    } else if (x < in.axis.low || x > in.axis.high) {
       notes.push_back(fmt::format("{} {} lies outside the study's range, {} to {}: no training run is made there",
-                                  in.name, with_unit(x, in.unit), with_unit(in.low, in.unit),
-                                  with_unit(in.high, in.unit)));
+                                  in.name, with_unit(x, in.unit), with_unit(in.axis.low, in.unit),
+                                  with_unit(in.axis.high, in.unit)));
     }
   }
   return notes;
@@ -114,9 +116,9 @@ nlohmann::json to_json(const Foretold& told, const Cost& cost) {
   const dem::Forecast& f = told.forecast;
   nlohmann::json json{{"spheres", f.spheres},
                       {"mass_kg", f.mass},
-                      {"bond_number", told.derived.bond},
-                      {"wall_bond_number", told.derived.wall_bond},
-                      {"time_step_s", told.derived.time_step},
+                      {"bond_number", told.prepared.derived().bond},
+                      {"wall_bond_number", told.prepared.derived().wall_bond},
+                      {"time_step_s", told.prepared.derived().time_step},
                       {"steps", cost.steps},
                       {"cpu_seconds_at_most", cost.seconds},
                       {"memory_bytes", cost.bytes},

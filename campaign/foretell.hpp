@@ -13,7 +13,7 @@
 namespace campaign {
 
 struct Foretold {
-  dem::Derived derived;
+  dem::PreparedCase prepared;
   dem::Forecast forecast;
 };
 /// Of the point's run. Throws data::InputError (78) with every problem that makes it nonsense.
@@ -27,7 +27,7 @@ struct Cost {
   dem::Effort effort;
   std::vector<std::string> warnings;  ///< beyond this machine's memory, or a day
 };
-Cost cost_of(const dem::Case& c, const dem::Derived& derived);
+Cost cost_of(const dem::PreparedCase& prepared);
 
 /// "2 min", "5.3 h".
 std::string duration_text(double seconds);

@@ -24,7 +24,7 @@ void Ledger::take(std::size_t index, const Workspace& own, const Point& point, c
     result.table.rows.push_back(std::move(row));
   else
     result.table.rows[place->second] = std::move(row);
-  if (run.summary.state != dem::Steady::yes) ++result.unsteady;
+  if (run.summary.state != data::FlowState::steady) ++result.unsteady;
   ++result.finished;
   result.ended[index] = true;
   if (progress != nullptr) progress->advance();

@@ -10,27 +10,20 @@
 
 namespace campaign {
 
-std::vector<Input> inputs_of(const data::Study& study) {
-  std::vector<Input> inputs;
-  for (const data::Parameter& p : study.parameters) inputs.push_back({p.name, p.target, p.unit, p.low, p.high});
-  for (const data::Control& c : study.controls) inputs.push_back({c.name, c.target, c.unit, c.low, c.high});
-  return inputs;
-}
-
 namespace {
 
 data::InputError usage(std::string place, std::string what, std::string remedy) {
   return {data::ExitStatus::usage, data::Problem{std::move(place), std::move(what), std::move(remedy)}};
 }
 
-std::string names_of(const std::vector<Input>& inputs) {
-  std::string names;
-  for (const Input& input : inputs) names += (names.empty() ? "" : ", ") + input.name;
-  return names;
+std::string names_of(const std::vector<data::Input>& inputs) {
+  std::vector<std::string> names;
+  for (const data::Input& input : inputs) names.push_back(input.name);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// "2e-18 J" or, in the input's unit, "2e-18".
-double parse_value(const std::string& text, const Input& input, const std::string& place) {
+double parse_value(const std::string& text, const data::Input& input, const std::string& place) {
   std::size_t used = 0;
   try {
     std::stod(text, &used);
@@ -62,18 +55,18 @@ std::string choose_material(const data::Study& study, const std::string& wanted)
 }
 
 Point parse_point(const Workspace& workspace, const std::string& material, const std::vector<std::string>& at) {
-  const std::vector<Input> inputs = inputs_of(workspace.study);
+  const std::vector<data::Input> inputs = data::inputs_of(workspace.study);
   const data::Material& rows = workspace.study.material(material);
   Point point{material, {}};
-  for (const Input& input : inputs) {
+  for (const data::Input& input : inputs) {
     const auto fixed = rows.fixed.find(input.name);
-    point.inputs.push_back(fixed != rows.fixed.end() ? fixed->second : 0.5 * (input.low + input.high));
+    point.inputs.push_back(fixed != rows.fixed.end() ? fixed->second : 0.5 * (input.axis.low + input.axis.high));
   }
   for (const std::string& assignment : at) {
     const std::size_t equals = assignment.find('=');
     const std::string name = assignment.substr(0, equals);
     const auto found =
-        std::find_if(inputs.begin(), inputs.end(), [&](const Input& input) { return input.name == name; });
+        std::find_if(inputs.begin(), inputs.end(), [&](const data::Input& input) { return input.name == name; });
     if (equals == std::string::npos || found == inputs.end())
       throw usage("--at", fmt::format("'{}' sets no parameter or control", assignment),
                   fmt::format("write NAME=VALUE with one of: {}", names_of(inputs)));
@@ -92,7 +85,7 @@ Point parse_point(const Workspace& workspace, const std::string& material, const
 
 std::string describe(const data::Study& study, const Point& point) {
   std::string text;
-  const std::vector<Input> inputs = inputs_of(study);
+  const std::vector<data::Input> inputs = data::inputs_of(study);
   for (std::size_t i = 0; i < inputs.size(); ++i)
     text += fmt::format("{}{} {}", i == 0 ? "" : ", ", inputs[i].name, with_unit(point.inputs[i], inputs[i].unit));
   return text;
@@ -100,7 +93,7 @@ std::string describe(const data::Study& study, const Point& point) {
 
 dem::Case case_at(const Workspace& workspace, const Point& point) {
   dem::Case result = workspace.cases.at(point.material);
-  const std::vector<Input> inputs = inputs_of(workspace.study);
+  const std::vector<data::Input> inputs = data::inputs_of(workspace.study);
   for (std::size_t i = 0; i < inputs.size(); ++i) dem::set_target(result, inputs[i].target, point.inputs[i]);
   return result;
 }
@@ -111,7 +104,7 @@ namespace {
 /// moved. How long a run is decides its standard error, not what it estimates: rows of any length stay good.
 dem::Case settings_of(const Workspace& workspace, const std::string& material) {
   dem::Case settings = workspace.cases.at(material);
-  for (const Input& input : inputs_of(workspace.study)) {
+  for (const data::Input& input : data::inputs_of(workspace.study)) {
     const dem::Target target = dem::target(input.target);
     dem::set_target(settings, input.target, std::clamp(1.0, target.low, target.high));
   }
@@ -157,7 +150,7 @@ data::RunRow to_row(const Workspace& workspace, const Point& point, const dem::R
                    .isa = result.diagnostics.isa,
                    .origin = "demcal " + data::program_version(),
                    .cpu_seconds = result.summary.cpu_seconds,
-                   .state = std::string(dem::name_of(result.summary.state)),
+                   .state = data::to_text(result.summary.state),
                    .unreliable = ""};
   for (const data::Output& output : workspace.study.outputs) {
     const data::SeriesMean& mean = dem::output(result, output.name);

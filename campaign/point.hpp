@@ -15,15 +15,6 @@ struct Point {
   std::vector<double> inputs;  ///< SI: parameters, then controls, in the study's order
 };
 
-/// An input of the study, parameter or control, in the point's order; it refers to the study.
-struct Input {
-  const std::string& name;
-  const std::string& target;
-  const data::Unit& unit;
-  double low, high;
-};
-std::vector<Input> inputs_of(const data::Study& study);
-
 /// "friction=0.4", "hamaker=2e-18 J": a bare number is in the unit of the parameter or control. What is not given is
 /// the material's fixed value or the middle of the range. Throws InputError (64) on an unknown name, unit or a value
 /// outside the target's physical range.

@@ -11,6 +11,7 @@
 #include "campaign/design.hpp"
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
+#include "data/time_series.hpp"
 #include "uq/posterior/control_reach.hpp"
 
 namespace campaign {
@@ -26,12 +27,6 @@ data::RunTable in_order(data::RunTable table) {
     return std::tie(a.material, a.inputs, a.seed, a.settings) < std::tie(b.material, b.inputs, b.seed, b.settings);
   });
   return table;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
 }
 
 /// The surrogate that gives an emulator.
@@ -51,7 +46,7 @@ uq::RunNoise noise_of(const uq::FittedSurrogate& fitted) {
     known.push_back(set.noise_variance[i] / (log ? set.y[i] * set.y[i] : 1.0));
   const double nugget_sd =
       fitted.two_level ? fitted.two_level->parameters().nugget_sd : fitted.process->hyper_parameters().nugget_sd;
-  const double variance = median(known) + nugget_sd * nugget_sd;
+  const double variance = (known.empty() ? 0.0 : data::median_of(std::move(known))) + nugget_sd * nugget_sd;
   return log ? uq::RunNoise{.absolute = 0.0, .relative = variance}
              : uq::RunNoise{.absolute = variance, .relative = 0.0};
 }
@@ -71,11 +66,13 @@ Point to_point(const Workspace& workspace, const std::vector<uq::FittedSurrogate
   }
   for (std::size_t p = 0; p < study.parameters.size(); ++p)
     if (varied_parameter[p] && static_cast<Index>(p) < run.parameters.size())
-      point.inputs[p] = five_digits(study.parameters[p].axis().from_unit(run.parameters[p]), study.parameters[p].unit);
+      point.inputs[p] =
+          study.parameters[p].unit.rounded(study.parameters[p].axis().from_unit(run.parameters[p]), point_digits);
   for (std::size_t c = 0; c < study.controls.size(); ++c)
     if (varied_control[c] && static_cast<Index>(c) < run.controls.size()) {
       const data::Control& control = study.controls[c];
-      point.inputs[study.parameters.size() + c] = five_digits(control.axis().from_unit(run.controls[c]), control.unit);
+      point.inputs[study.parameters.size() + c] =
+          control.unit.rounded(control.axis().from_unit(run.controls[c]), point_digits);
     }
   return point;
 }
@@ -138,8 +135,6 @@ void reach_observations(const Workspace& workspace, const std::string& material,
 }
 
 }  // namespace
-
-double five_digits(double si, const data::Unit& unit) { return unit.to_si(fmt::format("{:.5g}", unit.from_si(si))); }
 
 bool Assessment::settled(double most) const {
   return share() <= most &&
@@ -262,47 +257,17 @@ std::string posterior_runs_path(const Workspace& workspace) {
 }
 
 void write_posterior_runs(const Workspace& workspace, const PosteriorRuns& next) {
-  const data::Study& study = workspace.study;
-  std::string text = next.left ? left_comment + std::to_string(*next.left) + "\n" : "";
-  text += "material";
-  for (const data::Parameter& p : study.parameters) text += "," + data::csv_field(p.name);
-  for (const data::Control& c : study.controls) text += "," + data::csv_field(c.name);
-  text += ",seed\n";
-  for (const PlannedRun& run : next.runs) {
-    text += data::csv_field(run.point.material);
-    std::size_t column = 0;
-    for (const data::Parameter& p : study.parameters)
-      text += fmt::format(",{:.12g}", p.unit.from_si(run.point.inputs[column++]));
-    for (const data::Control& c : study.controls)
-      text += fmt::format(",{:.12g}", c.unit.from_si(run.point.inputs[column++]));
-    text += fmt::format(",{}\n", run.seed);
-  }
-  data::write_atomically(posterior_runs_path(workspace), text);
+  write_points(workspace, posterior_runs_path(workspace), points_of(next.runs), {seeds_of(next.runs)},
+               next.left ? left_comment + std::to_string(*next.left) + "\n" : "");
 }
 
 std::optional<PosteriorRuns> read_posterior_runs(const Workspace& workspace) {
   const std::string path = posterior_runs_path(workspace);
   if (!std::filesystem::exists(path)) return {};
-  const data::Study& study = workspace.study;
-  const data::Csv csv = data::read_csv(path);
-  const std::size_t material = csv.column("material"), seed = csv.column("seed");
-  PosteriorRuns next;
-  for (const std::string& comment : csv.comments)
+  PosteriorRuns next{.runs = read_runs(workspace, path), .left = {}};
+  for (const std::string& comment : data::read_csv(path).comments)
     if (("# " + comment).starts_with(left_comment))
       next.left = std::atoi(("# " + comment).substr(left_comment.size()).c_str());
-  for (const data::CsvRow& row : csv.rows) {
-    PlannedRun run{.point = {choose_material(study, row.fields[material]), {}}, .seed = 0};
-    const auto read = [&](const std::string& name, const data::Unit& unit) {
-      const std::size_t column = csv.column(name);
-      static_cast<void>(csv.number(row, column));  // throws where it is none
-      run.point.inputs.push_back(unit.to_si(row.fields[column]));
-    };
-    for (const data::Parameter& p : study.parameters) read(p.name, p.unit);
-    for (const data::Control& c : study.controls) read(c.name, c.unit);
-    static_cast<void>(csv.number(row, seed));
-    run.seed = std::stoull(row.fields[seed]);
-    next.runs.push_back(std::move(run));
-  }
   return next;
 }
 
@@ -310,7 +275,7 @@ double median_run_time(const data::RunTable& table) {
   std::vector<double> times;
   for (const data::RunRow& row : table.rows)
     if (row.cpu_seconds > 0.0) times.push_back(row.cpu_seconds);
-  return median(times);
+  return times.empty() ? 0.0 : data::median_of(std::move(times));
 }
 
 }  // namespace campaign

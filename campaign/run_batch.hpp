@@ -6,15 +6,10 @@
 #include <stop_token>
 #include <vector>
 
+#include "campaign/design.hpp"
 #include "campaign/ledger.hpp"
 
 namespace campaign {
-
-/// A run to make. Runs at one point with other seeds are replicates: they share nothing but the point.
-struct PlannedRun {
-  Point point;
-  std::uint64_t seed = 0;  ///< of its random streams and of its row
-};
 
 struct BatchOptions {
   int jobs = 1;                         ///< runs at the same time

@@ -6,6 +6,7 @@
 
 #include "data/atomic_file.hpp"
 #include "dem/contact/isa.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/run/frame_file.hpp"
 #include "dem/run/run_file.hpp"
@@ -74,13 +75,14 @@ std::uint64_t steps_made(const Workspace& workspace, const Point& point, const s
 }
 
 dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options) {
-  const dem::Case c = case_at(workspace, point);
+  const dem::PreparedCase prepared = dem::prepare(case_at(workspace, point));
+  const dem::Case& c = prepared.given();
   const std::uint64_t seed = run_seed(workspace, point);
   data::require_replaceable(options.path);
   std::optional<dem::SavedRun> before = earlier(options.path, c, seed);
   if (before && !has_all(*before, workspace.study)) before.reset();
   const std::vector<std::uint64_t> frames =
-      options.frames > 0 ? dem::frame_steps(c, options.frames) : std::vector<std::uint64_t>{};
+      options.frames > 0 ? dem::frame_steps(prepared, options.frames) : std::vector<std::uint64_t>{};
   const auto tag = [&](int index) {
     return dem::FrameTag{.index = index, .count = options.frames, .seed = seed, .settings = dem::settings_text(c)};
   };
@@ -105,8 +107,8 @@ dem::RunResult run_point(const Workspace& workspace, const Point& point, const P
   };
   if (before && before->result.status != dem::RunStatus::failed && !before->result.checkpoint.state.position.empty())
     run.resume = &before->result.checkpoint;
-  dem::RunResult result = dem::run(c, seed, run);
-  const bool steady = result.status == dem::RunStatus::done && result.summary.state == dem::Steady::yes;
+  dem::RunResult result = dem::run(prepared, seed, run);
+  const bool steady = result.status == dem::RunStatus::done && result.summary.state == data::FlowState::steady;
   if (steady && !options.keep_state) result.checkpoint = {};
   dem::write_run(options.path, c, result);
   return result;

@@ -340,7 +340,7 @@ class Follower {
     double seconds = 0.0;
     for (const std::string& material : materials) {
       const Point middle = parse_point(workspace_, material, {});
-      seconds = std::max(seconds, cost_of(case_at(workspace_, middle), foretell(workspace_, middle).derived).seconds);
+      seconds = std::max(seconds, cost_of(foretell(workspace_, middle).prepared).seconds);
     }
     return usual_runs_per_task(seconds, runs);
   }

@@ -90,11 +90,9 @@ std::vector<Index> spread_rows(const uq::RowGroup& group) {
 
 /// Inputs as they are typed: a run of another code is known by them.
 std::string typed(const Workspace& workspace, const std::string& material, const std::vector<double>& inputs) {
-  const data::Study& study = workspace.study;
+  const std::vector<data::Input> named = data::inputs_of(workspace.study);
   std::string text = material;
-  std::size_t column = 0;
-  for (const data::Parameter& p : study.parameters) text += fmt::format(" {:.5g}", p.unit.from_si(inputs[column++]));
-  for (const data::Control& c : study.controls) text += fmt::format(" {:.5g}", c.unit.from_si(inputs[column++]));
+  for (std::size_t i = 0; i < named.size(); ++i) text += fmt::format(" {:.5g}", named[i].unit.from_si(inputs[i]));
   return text;
 }
 
@@ -133,46 +131,25 @@ std::string verify_runs_path(const Workspace& workspace) {
 }
 
 void write_verify_runs(const Workspace& workspace, const std::vector<ListedRun>& runs) {
-  const data::Study& study = workspace.study;
-  std::string text;
-  for (const data::Parameter& p : study.parameters) text += data::csv_field(p.name) + ",";
-  for (const data::Control& c : study.controls) text += data::csv_field(c.name) + ",";
-  text += "material,seed,case,point\n";
+  std::vector<PlannedRun> planned;
+  PointColumn cases{"case", {}}, labels{"point", {}};
   for (const ListedRun& one : runs) {
-    std::size_t column = 0;
-    for (const data::Parameter& p : study.parameters)
-      text += fmt::format("{:.12g},", p.unit.from_si(one.run.point.inputs[column++]));
-    for (const data::Control& c : study.controls)
-      text += fmt::format("{:.12g},", c.unit.from_si(one.run.point.inputs[column++]));
-    text += fmt::format("{},{},{},{}\n", data::csv_field(one.run.point.material), one.run.seed,
-                        data::csv_field(one.case_name), data::csv_field(one.label));
+    planned.push_back(one.run);
+    cases.values.push_back(one.case_name);
+    labels.values.push_back(one.label);
   }
-  data::write_atomically(verify_runs_path(workspace), text);
+  write_points(workspace, verify_runs_path(workspace), points_of(planned), {seeds_of(planned), cases, labels});
 }
 
 std::vector<ListedRun> read_verify_runs(const Workspace& workspace) {
   const std::string path = verify_runs_path(workspace);
   if (!std::filesystem::exists(path)) return {};
-  const data::Study& study = workspace.study;
+  const std::vector<PlannedRun> planned = read_runs(workspace, path);
   const data::Csv csv = data::read_csv(path);
-  const std::size_t material = csv.column("material"), seed = csv.column("seed"), of_case = csv.column("case"),
-                    label = csv.column("point");
+  const std::size_t of_case = csv.column("case"), label = csv.column("point");
   std::vector<ListedRun> runs;
-  for (const data::CsvRow& row : csv.rows) {
-    ListedRun one{.run = {.point = {choose_material(study, row.fields[material]), {}}, .seed = 0},
-                  .case_name = row.fields[of_case],
-                  .label = row.fields[label]};
-    const auto read = [&](const std::string& name, const data::Unit& unit) {
-      const std::size_t column = csv.column(name);
-      static_cast<void>(csv.number(row, column));  // throws where it is none
-      one.run.point.inputs.push_back(unit.to_si(row.fields[column]));
-    };
-    for (const data::Parameter& p : study.parameters) read(p.name, p.unit);
-    for (const data::Control& c : study.controls) read(c.name, c.unit);
-    static_cast<void>(csv.number(row, seed));
-    one.run.seed = std::stoull(row.fields[seed]);
-    runs.push_back(std::move(one));
-  }
+  for (std::size_t i = 0; i < planned.size(); ++i)
+    runs.push_back({.run = planned[i], .case_name = csv.rows[i].fields[of_case], .label = csv.rows[i].fields[label]});
   return runs;
 }
 

@@ -21,13 +21,13 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Each parameter and control must name something the DEM has, in a range and unit that it can take.
-void check_target(const data::Section& section, const std::string& target_name, const data::Unit& unit, double low,
-                  double high) {
-  const std::optional<dem::Target> target = dem::find_target(target_name);
+void check_target(const data::Section& section, const data::Input& input) {
+  const data::Unit& unit = input.unit;
+  const std::optional<dem::Target> target = dem::find_target(input.target);
   if (!target) {
     std::string known;
     for (const dem::Target& t : dem::targets()) known += (known.empty() ? "" : ", ") + t.name;
-    section.problem("target", fmt::format("the simulation has no quantity '{}'", target_name),
+    section.problem("target", fmt::format("the simulation has no quantity '{}'", input.target),
                     "choose one of: " + known + ", contact.A-B.KEY, material.NAME.KEY");
     return;
   }
@@ -43,8 +43,8 @@ void check_target(const data::Section& section, const std::string& target_name, 
                                 unit.from_si(target->low), unit.from_si(target->high), target->name),
                     "choose a bound inside it");
   };
-  outside("low", low);
-  outside("high", high);
+  outside("low", input.axis.low);
+  outside("high", input.axis.high);
 }
 
 std::string default_out(const data::Study& study) {
@@ -67,10 +67,10 @@ Workspace open_workspace(const StudyOptions& options) {
   if (file.root().child("rig").exists()) {
     for (const data::Material& material : study.materials)
       workspace.cases[material.name] = dem::read_case(file, material.name);
-    for (const data::Parameter& p : study.parameters)
-      check_target(file.root().child("parameters").child(p.name), p.target, p.unit, p.low, p.high);
-    for (const data::Control& c : study.controls)
-      check_target(file.root().child("controls").child(c.name), c.target, c.unit, c.low, c.high);
+    for (const data::Input& input : data::inputs_of(study)) {
+      const char* const kind = study.parameter_index(input.name) ? "parameters" : "controls";
+      check_target(file.root().child(kind).child(input.name), input);
+    }
     for (const data::Output& output : study.outputs) {
       const data::Section outputs = file.root().child("outputs");
       if (!dem::has_output(output.name)) {

@@ -69,7 +69,6 @@ void add_rounds(const Rounds& rounds, uq::CalibrationReport& report) {
     one.verification = rounds[i];
     if (rounds[i].empty() || rounds[i].back().agrees || rounds[i].back().values.empty()) continue;
     one.warnings.push_back(fmt::format("case '{}': {}", one.name, rounds[i].back().sentence));
-    report.warnings.push_back(one.warnings.back());
     report.warning = true;
   }
 }
@@ -85,6 +84,7 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const Workspace workspace = open_workspace(common);
   const bool rig = !workspace.cases.empty();
+  data::require_cases(workspace.study);
   TrainingRows rows = rows_to_learn_from(common, workspace);
   make_out(workspace, rig ? "runs" : "");
   const auto results = hold_out(workspace, Writes::results, "calibrate --verify");
@@ -184,6 +184,7 @@ Action add_calibrate(CLI::App& program) {
   return [options] {
     if (options->verify > 0) return calibrate_and_verify(*options);
     const Workspace workspace = open_workspace(options->common);
+    data::require_cases(workspace.study);
     const TrainingRows rows = rows_to_learn_from(options->common, workspace);
     const auto held = hold_out(workspace, Writes::results, "calibrate");
     uq::Calibration result = calibrate_once(*options, workspace, rows);

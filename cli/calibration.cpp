@@ -39,7 +39,6 @@ std::string attraction_note(const std::string& material, const dem::Case& c) {
 }  // namespace
 
 TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace) {
-  data::require_cases(workspace.study);
   TrainingRows rows = training_rows(workspace);
   for (const std::string& note : rows.notes) say(common, "note: " + note);
   require_rows(workspace, rows, common.study);
@@ -68,7 +67,7 @@ std::vector<std::string> say_warnings(const Common& common, const TrainingRows& 
 }
 
 void write_next_runs(const Workspace& workspace, const std::vector<uq::SupportReport>& supports) {
-  const data::Study& study = workspace.study;
+  const std::vector<data::Input> inputs = data::inputs_of(workspace.study);
   std::vector<Point> points;
   for (std::size_t i = 0, left = 1; left > 0; ++i) {  // the cases in turn
     left = 0;
@@ -77,8 +76,7 @@ void write_next_runs(const Workspace& workspace, const std::vector<uq::SupportRe
       ++left;
       const uq::NextRun& run = support.next_runs[i];
       Point point{run.material, {}};
-      for (const data::Parameter& p : study.parameters) point.inputs.push_back(p.unit.to_si(run.point.at(p.name)));
-      for (const data::Control& c : study.controls) point.inputs.push_back(c.unit.to_si(run.point.at(c.name)));
+      for (const data::Input& input : inputs) point.inputs.push_back(input.unit.to_si(run.point.at(input.name)));
       points.push_back(std::move(point));
     }
   }
@@ -141,10 +139,9 @@ void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, c
   for (const std::string& note : study.notes) report.notes.push_back(note);
   for (const auto& [material, settings] : workspace.cases) {
     Point top{material, {}};
-    const data::Material& rows_of = study.material(material);
-    for (const data::Parameter& p : study.parameters)
-      top.inputs.push_back(rows_of.fixed.contains(p.name) ? rows_of.fixed.at(p.name) : p.high);
-    for (const data::Control& c : study.controls) top.inputs.push_back(c.high);
+    const std::map<std::string, double>& fixed = study.material(material).fixed;
+    for (const data::Input& input : data::inputs_of(study))
+      top.inputs.push_back(fixed.contains(input.name) ? fixed.at(input.name) : input.axis.high);
     if (const dem::Case at_top = case_at(workspace, top); at_top.contact.hamaker > 0.0)
       report.notes.push_back(attraction_note(material, at_top));
   }

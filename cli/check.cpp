@@ -31,15 +31,7 @@ std::vector<std::string> refused_later(const Workspace& workspace, const Trainin
   const data::Study& study = workspace.study;
   if (data::used_rows(rows.table) == 0) return {};
   std::vector<uq::Emulator> outlines;  // what there are runs of; nothing is fitted
-  std::vector<std::string> found = refusals([&] {
-    for (uq::TrainingRows& one : uq::training_rows(study, rows.table, rows.low))
-      outlines.push_back({.material = std::move(one.material),
-                          .output = one.output,
-                          .inputs = std::move(one.inputs),
-                          .constants = std::move(one.constants),
-                          .control_range = std::move(one.control_range),
-                          .predict = {}});
-  });
+  std::vector<std::string> found = refusals([&] { outlines = uq::outlines_of(study, rows.table, rows.low); });
   if (!found.empty() || workspace.plan.candidates.empty()) return found;
   for (std::size_t i = 0; i < study.cases.size(); ++i)
     for (std::string& text : refusals([&] { uq::plan::candidates_of(study, outlines, i, workspace.plan); }))
@@ -83,14 +75,14 @@ Action add_check(CLI::App& program) {
     double campaign_seconds = 0.0;
     for (const auto& [material, unused] : workspace.cases) {
       const Point middle = parse_point(workspace, material, {});
-      const dem::Case c = case_at(workspace, middle);
       const Foretold told = foretell(workspace, middle);
-      const Cost cost = cost_of(c, told.derived);
+      const dem::Case& c = told.prepared.given();
+      const Cost cost = cost_of(told.prepared);
       const auto runs = std::count_if(missing.begin(), missing.end(),
                                       [&, of = material](const Point& p) { return p.material == of; });
       campaign_seconds += static_cast<double>(runs) * cost.seconds;
       answer(*common, material.empty() ? "simulation, amid its ranges:" : material + ", amid its ranges:");
-      for (const std::string& line : dem::describe(c, told.derived)) answer(*common, "  " + line);
+      for (const std::string& line : dem::describe(c, told.prepared.derived())) answer(*common, "  " + line);
       for (const std::string& line : dem::describe(told.forecast)) answer(*common, "  " + line);
       answer(*common,
              fmt::format("  a run: at most {:.3g} steps, {} of processor time, {:.2g} MB; {} runs are missing: {} "
@@ -111,7 +103,12 @@ Action add_check(CLI::App& program) {
       answer(*common, fmt::format("the campaign: {} runs are missing, at most {} of processor time", missing.size(),
                                   duration_text(campaign_seconds)));
     if (study.cases.empty())
-      warnings.push_back("there is no [[calibrate]] case yet: the study can train, not calibrate");
+      warnings.push_back(
+          "there is no [[calibrate]] case yet: the study can train and plan (demcal plan --prior), not calibrate");
+    for (const data::CalibrationCase& one : study.cases)
+      if (one.observe.empty())
+        warnings.push_back(fmt::format(
+            "case '{}' observes nothing yet: it can be planned (demcal plan --prior), not calibrated", one.name));
     for (const std::string& warning : warnings) say(*common, "warning: " + warning);
     data::refuse(rows.findings);
     answer(*common,

@@ -30,7 +30,7 @@ constexpr const char* record = "point.json";
 /// "friction=0.4", in the study's units, each with all digits.
 std::vector<std::string> at_of(const Workspace& workspace, const Point& point) {
   std::vector<std::string> at;
-  const std::vector<Input> inputs = inputs_of(workspace.study);
+  const std::vector<data::Input> inputs = data::inputs_of(workspace.study);
   for (std::size_t i = 0; i < inputs.size(); ++i)
     at.push_back(fmt::format("{}={:.17g}", inputs[i].name, inputs[i].unit.from_si(point.inputs[i])));
   return at;
@@ -101,7 +101,7 @@ data::ExitStatus collect(const ExportOptions& options, Workspace workspace) {
                             "let LIGGGHTS run longer: -var nrun N"});
   data::RunRow row{.material = point.material, .inputs = point.inputs, .seed = workspace.study.seed};
   row.origin = "LIGGGHTS";
-  row.state = std::string(dem::name_of(measured.state));
+  row.state = data::to_text(measured.state);
   row.outputs.assign(outputs.size(), std::numeric_limits<double>::quiet_NaN());
   row.standard_errors = row.outputs;
   const auto column = static_cast<std::size_t>(torque - outputs.begin());
@@ -126,7 +126,7 @@ data::ExitStatus collect(const ExportOptions& options, Workspace workspace) {
                                 {"unit", unit.symbol}}},
                               {"state", row.state},
                               {"table", path}});
-  if (measured.state == dem::Steady::yes) return data::ExitStatus::done;
+  if (measured.state == data::FlowState::steady) return data::ExitStatus::done;
   say(options.common,
       "warning: this is not known to be the torque of the steady flow; the row says so, and calibrate leaves it out. "
       "Let LIGGGHTS run longer: -var nrun N");

@@ -11,6 +11,7 @@
 #include "data/provenance.hpp"
 #include "uq/findings/report_file.hpp"
 #include "uq/plan/plan.hpp"
+#include "uq/plan/unmeasured.hpp"
 #include "uq/report/html.hpp"
 #include "uq/report/plan.hpp"
 
@@ -31,7 +32,6 @@ struct PlanOptions {
 
 /// Indices of the cases that are asked for.
 std::vector<std::size_t> chosen_cases(const PlanOptions& options, const Workspace& workspace) {
-  data::require_cases(workspace.study);
   std::vector<std::size_t> chosen;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < workspace.study.cases.size(); ++i) {
@@ -56,15 +56,19 @@ std::vector<std::size_t> chosen_cases(const PlanOptions& options, const Workspac
                                                    fmt::format("choose one of: {}", fmt::join(parameters, ", "))});
 }
 
+/// A plan on a posterior needs one; the error says that a plan on the prior needs none.
+void require_measurements(const Workspace& workspace) {
+  try {
+    data::require_cases(workspace.study);
+  } catch (const data::InputError& error) {
+    std::vector<data::Problem> problems = error.problems;
+    for (data::Problem& problem : problems) problem.remedy += "; before any measurement: demcal plan --prior";
+    throw data::InputError(error.status, std::move(problems));
+  }
+}
+
 std::string text_of(const Workspace& workspace, const Point& point) {
-  const data::Study& study = workspace.study;
-  std::vector<std::string> inputs;
-  for (std::size_t p = 0; p < study.parameters.size(); ++p)
-    inputs.push_back(study.parameters[p].name + " " + with_unit(point.inputs[p], study.parameters[p].unit));
-  for (std::size_t c = 0; c < study.controls.size(); ++c)
-    inputs.push_back(study.controls[c].name + " " +
-                     with_unit(point.inputs[study.parameters.size() + c], study.controls[c].unit));
-  return fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", fmt::join(inputs, ", "));
+  return point.material + (point.material.empty() ? "" : ": ") + describe(workspace.study, point);
 }
 
 /// The training runs that would sharpen the posterior most, and their cost, beside the measurements.
@@ -95,11 +99,15 @@ void add_to_report(const Workspace& workspace, const std::vector<uq::CaseReport>
 
 data::ExitStatus plan(const PlanOptions& options) {
   const Common& common = options.common;
-  const Workspace workspace = open_workspace(common);
+  Workspace workspace = open_workspace(common);
+  if (options.prior)
+    workspace.study = uq::plan::with_cases(workspace.study);
+  else
+    require_measurements(workspace);
   const std::vector<std::size_t> cases = chosen_cases(options, workspace);
   const TrainingRows rows = rows_to_learn_from(common, workspace);
   const auto held = hold_out(workspace, Writes::results, "plan");
-  const data::Study& study = workspace.study;
+  data::Study& study = workspace.study;
   const uq::CalibrateOptions calibrate{.surrogates = surrogate_options(common, workspace, rows), .seed = study.seed};
   Assessment assessment;
   std::vector<uq::CaseReport> planned;
@@ -120,7 +128,8 @@ data::ExitStatus plan(const PlanOptions& options) {
     for (std::size_t n = 0; n < cases.size(); ++n) {
       const double from = 0.2 + 0.8 * static_cast<double>(n) / static_cast<double>(cases.size());
       const double span = 0.8 / static_cast<double>(cases.size());
-      const uq::SampledCase sampled = uq::sample_case(study, emulators, cases[n], calibrate);
+      const uq::SampledCase sampled = options.prior ? uq::plan::unmeasured_case(study, emulators, cases[n])
+                                                    : uq::sample_case(study, emulators, cases[n], calibrate);
       assessment.cases = {sampled};
       how.progress = [&](double share) { progress("", from + span * (0.3 + 0.7 * share)); };
       uq::CaseReport one;
@@ -163,7 +172,8 @@ Action add_plan(CLI::App& program) {
       ->check(number_in(1e-300, 1e300, "a cost above 0"));
   command->add_option("--batch", options->batch, "the best sets of up to so many readings, too")
       ->check(CLI::Range(1, 4));
-  command->add_flag("--prior", options->prior, "as if nothing had been measured yet");
+  command->add_flag("--prior", options->prior,
+                    "as if nothing had been measured yet; a study needs neither [[observe]] nor [[calibrate]] for it");
   return [options] { return plan(*options); };
 }
 

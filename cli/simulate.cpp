@@ -44,8 +44,8 @@ Lap lap_of(const dem::Derived& derived, const dem::RunResult& result) {
   return {time, time * 0.5 * std::hypot(first.standard_error, second.standard_error) / std::abs(flow)};
 }
 
-nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
-  const dem::Derived derived = dem::derive(case_at(workspace, point));
+nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem::Derived& derived,
+                       const dem::RunResult& result) {
   nlohmann::json json{{"material", point.material},
                       {"seed", workspace.study.seed},
                       {"isa", result.diagnostics.isa},
@@ -53,7 +53,7 @@ nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem
                       {"bond_number", derived.bond},
                       {"time_step", {{"s", derived.time_step}, {"from", derived.duration_of}}},
                       {"warnings", result.warnings},
-                      {"state", dem::name_of(result.summary.state)},
+                      {"state", data::to_text(result.summary.state)},
                       {"why", result.summary.why},
                       {"ordering", result.summary.ordering},
                       {"measured", {{"from_s", result.summary.measured_from}, {"turns", result.summary.turns}}}};
@@ -104,12 +104,12 @@ std::string circulation_text(const dem::Derived& derived, const dem::RunResult& 
       uq::format_with_error(lap.time, lap.error, "s", uq::Typography::ascii), round->mixing_index, fill);
 }
 
-std::string summary(const Workspace& workspace, const Point& point, const dem::RunResult& result) {
-  const dem::Case c = case_at(workspace, point);
+std::string summary(const Workspace& workspace, const Point& point, const dem::PreparedCase& prepared,
+                    const dem::RunResult& result) {
   std::string text;
-  for (const std::string& line : dem::describe(c, dem::derive(c))) text += line + "\n";
+  for (const std::string& line : dem::describe(prepared.given(), prepared.derived())) text += line + "\n";
   const dem::Summary& s = result.summary;
-  text += fmt::format("{}: measured from {:.3g} to {:.3g} s of turning, {:.3g} turns\n", dem::name_of(s.state),
+  text += fmt::format("{}: measured from {:.3g} to {:.3g} s of turning, {:.3g} turns\n", data::to_text(s.state),
                       s.measured_from, result.diagnostics.simulated, s.turns);
   const data::RunRow row = to_row(workspace, point, result);
   for (std::size_t i = 0; i < row.outputs.size(); ++i) {
@@ -122,7 +122,7 @@ std::string summary(const Workspace& workspace, const Point& point, const dem::R
         : dem::output(result, output.name).reliable ? ""
                                                     : " (too short to know this error)");
   }
-  return text + circulation_text(dem::derive(c), result);
+  return text + circulation_text(prepared.derived(), result);
 }
 
 /// run.h5, or, where that holds another run or is no run of ours, run-HASH.h5: what is there is never replaced.
@@ -165,8 +165,9 @@ Action add_simulate(CLI::App& program) {
     require_rig(workspace);
     const Point point = point_of(workspace, options->point);
     std::vector<std::string> notes = outside_ranges(workspace, point);
-    for (const std::string& warning : foretell(workspace, point).forecast.warnings) notes.push_back(warning);
-    for (const std::string& warning : dem::rig_warnings(case_at(workspace, point))) notes.push_back(warning);
+    const Foretold told = foretell(workspace, point);
+    for (const std::string& warning : told.forecast.warnings) notes.push_back(warning);
+    for (const std::string& warning : dem::rig_warnings(told.prepared.given())) notes.push_back(warning);
     const auto held = hold_out(workspace, Writes::run, "simulate");
     const std::filesystem::path out = workspace.out;
     const std::string path = file_of(workspace, point);
@@ -175,7 +176,7 @@ Action add_simulate(CLI::App& program) {
                                   std::filesystem::path(path).filename().string()));
     if (options->frames > 0) make_out(workspace, "frames");
     if (options->stl) {
-      for (const dem::NamedMesh& mesh : dem::rig_meshes(case_at(workspace, point)))
+      for (const dem::NamedMesh& mesh : dem::rig_meshes(told.prepared.given()))
         dem::write_stl(mesh.mesh, (out / (data::file_name(mesh.name) + ".stl")).string());
     }
     const std::string at =
@@ -204,8 +205,9 @@ Action add_simulate(CLI::App& program) {
       throw data::InputError(data::ExitStatus::bad_study,
                              {describe(workspace.study, point), result.reason, "its last good state is in " + path});
     for (const std::string& warning : result.warnings) say(common, "warning: " + warning);
-    answer(common, (data::answers_go_elsewhere() ? at + "\n" : "") + summary(workspace, point, result) + path);
-    nlohmann::json json = to_json(workspace, point, result);
+    answer(common,
+           (data::answers_go_elsewhere() ? at + "\n" : "") + summary(workspace, point, told.prepared, result) + path);
+    nlohmann::json json = to_json(workspace, point, told.prepared.derived(), result);
     json["notes"] = notes;
     json["file"] = path;
     print_json(common, json);

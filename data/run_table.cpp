@@ -9,6 +9,7 @@
 
 #include "data/number_text.hpp"
 #include "data/run_table_files.hpp"
+#include "data/steadiness.hpp"
 
 namespace data {
 
@@ -35,7 +36,7 @@ RunTable merge(const RunTable& first, const RunTable& second) {
   return merged;
 }
 
-bool is_unsteady(const RunRow& row) { return !row.state.empty() && row.state != "steady"; }
+bool is_unsteady(const RunRow& row) { return !row.state.empty() && row.state != to_text(FlowState::steady); }
 
 std::vector<std::string> drop_unreliable(RunTable& table) {
   std::vector<std::string> notes;

@@ -17,6 +17,7 @@
 #include "data/error.hpp"
 #include "data/provenance.hpp"
 #include "data/run_table_files.hpp"
+#include "data/steadiness.hpp"
 #include "data/study_parts.hpp"
 
 namespace data {
@@ -67,7 +68,7 @@ struct Columns {
 bool says_steadiness(const Csv& csv, std::size_t column) {
   return std::all_of(csv.rows.begin(), csv.rows.end(), [column](const CsvRow& row) {
     const std::string& state = row.fields[column];
-    return state.empty() || state == "steady" || state == "drifting" || state == "short";
+    return state.empty() || from_text<FlowState>(state);
   });
 }
 
@@ -268,11 +269,12 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
   }
   tell_columns(csv, at, result);
   RowNotes notes(csv);
+  const std::vector<Input> inputs = inputs_of(study);
   for (const CsvRow& line : csv.rows) {
     const Missing missing = not_finite(csv, line, at);
     std::size_t no_logarithm = at.inputs.size();
     for (std::size_t i = at.inputs.size(); i-- > 0;)
-      if (scale_of_input(study, i) == Scale::log && csv.number(line, at.inputs[i]) <= 0.0) no_logarithm = i;
+      if (inputs[i].axis.scale == Scale::log && csv.number(line, at.inputs[i]) <= 0.0) no_logarithm = i;
     if (no_logarithm < at.inputs.size()) {
       notes.add(line, at.inputs[no_logarithm], "which has no logarithm (scale = \"log\"), the row is left out",
                 "which has no logarithm (scale = \"log\"), the rows are left out");

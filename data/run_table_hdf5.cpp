@@ -180,13 +180,12 @@ TableRead read_table_hdf5(const std::string& path, const Study& study) {
                             static_cast<std::size_t>(run_table_head_lines) + r + 1);
   }
   std::size_t number = 0;
+  const std::vector<Input> inputs = inputs_of(study);
   std::erase_if(table.rows, [&](const RunRow& row) {
     ++number;
     for (std::size_t i = 0; i < row.inputs.size(); ++i) {
-      if (scale_of_input(study, i) != Scale::log || row.inputs[i] > 0.0 || std::isnan(row.inputs[i])) continue;
-      const bool is_parameter = i < study.parameters.size();
-      const std::string place = is_parameter ? parameters.place(study.parameters[i].name)
-                                             : controls.place(study.controls[i - study.parameters.size()].name);
+      if (inputs[i].axis.scale != Scale::log || row.inputs[i] > 0.0 || std::isnan(row.inputs[i])) continue;
+      const std::string place = (i < study.parameters.size() ? parameters : controls).place(inputs[i].name);
       result.left_out.push_back(fmt::format(
           "{}: row {} is {}, which has no logarithm (scale = \"log\"), and is left out", place, number, row.inputs[i]));
       return true;

@@ -1,13 +1,24 @@
 #pragma once
 // Whether a series is stationary, and its mean with an error that is true for a correlated one.
+#include <array>
 #include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "data/texts.hpp"
 #include "data/time_series.hpp"
 
 namespace data {
+
+/// What a run says of its means, and a row of the table in its column `state`.
+enum class FlowState {
+  steady,
+  drifting,   ///< it was not steady by the end
+  too_short,  ///< for its correlation: its error is not known, or what seems to drift may be chance
+};
+template <>
+inline constexpr std::array texts_of<FlowState> = {"steady", "drifting", "short"};
 
 struct SteadinessOptions {
   std::size_t error_modes = 8;   ///< of which the error is made: the slowest; with fewer, the series is too short

@@ -69,7 +69,9 @@ void read_training(const Section& root, Study& study) {
   }
 }
 
-std::string observed_material(const Section& section, const Study& study) {
+}  // namespace
+
+std::string material_of(const Section& section, const Study& study) {
   std::vector<std::string> names;
   for (const Material& material : study.materials) names.push_back(material.name);
   if (names.size() == 1) {
@@ -82,6 +84,8 @@ std::string observed_material(const Section& section, const Study& study) {
   }
   return section.choice("material", names);
 }
+
+namespace {
 
 /// What is wrong with the observation files, with the exit status of the first problem; and each set's settings.
 struct ObservationFiles {
@@ -104,7 +108,7 @@ ObservationFiles read_observation_sets(const Section& root, Study& study) {
     if (study.observation_index(name)) {
       section.problem("name", fmt::format("'{}' is taken", name), "give each [[observe]] its own name");
     }
-    const std::string material = observed_material(section, study);
+    const std::string material = material_of(section, study);
     const std::string file = section.text("file");
     ObservationSet set{.file = beside(study, file)};
     const std::map<std::string, double> settings = read_settings(section.child("settings"), study);
@@ -180,9 +184,11 @@ std::optional<std::size_t> Study::control_index(std::string_view control_name) c
   return {};
 }
 
-Scale scale_of_input(const Study& study, std::size_t input) {
-  const std::size_t parameters = study.parameters.size();
-  return input < parameters ? study.parameters[input].scale : study.controls[input - parameters].scale;
+std::vector<Input> inputs_of(const Study& study) {
+  std::vector<Input> inputs;
+  for (const Parameter& p : study.parameters) inputs.push_back({p.name, p.target, p.unit, p.axis()});
+  for (const Control& c : study.controls) inputs.push_back({c.name, c.target, c.unit, c.axis()});
+  return inputs;
 }
 
 std::optional<std::size_t> Study::observation_index(std::string_view set_name) const {
@@ -244,6 +250,10 @@ void require_cases(const Study& study) {
   if (study.cases.empty()) {
     problems.push_back({place, "has no case to calibrate", "add [[calibrate]] with name, observe and free"});
   }
+  for (const CalibrationCase& one : study.cases)
+    if (one.observe.empty() && !study.observations.empty())
+      problems.push_back({one.place, fmt::format("case '{}' observes nothing", one.name),
+                          "name at least one [[observe]] set in `observe`"});
   if (!problems.empty()) throw InputError(ExitStatus::bad_study, std::move(problems));
 }
 

@@ -17,11 +17,16 @@ namespace data {
 
 enum class PriorKind { uniform, log_uniform, normal, truncated_normal, log_normal, beta, posterior };
 
-/// A prior density of one parameter, zero outside [low, high], which is never wider than the parameter's range: a
-/// surrogate knows nothing beyond it. uniform: low, high. normal: mean, sd, cut off at the parameter's range.
-/// truncated_normal: mean, sd on [low, high]. log_normal: median `mean`, sd of the logarithm `sd` (dimensionless), cut
-/// off at the parameter's range. beta: alpha, beta on [low, high]. log_uniform: of the logarithm, on [low, high].
-/// posterior: that of another case.
+/// The prior density of one parameter. It is zero outside [low, high], which lies within the parameter's range, as a
+/// surrogate knows nothing beyond.
+///   kind              fields read                                        support
+///   uniform           -                                                  [low, high]
+///   log_uniform       -                                                  [low, high], uniform in the logarithm
+///   normal            mean, sd                                           the parameter's range
+///   truncated_normal  mean, sd                                           [low, high]
+///   log_normal        mean: the median; sd of the logarithm              the parameter's range
+///   beta              alpha, beta                                        [low, high]
+///   posterior         posterior_of, cut                                  that of the other case
 struct Prior {
   PriorKind kind = PriorKind::uniform;
   double low = 0.0;   ///< SI; by default the parameter's range
@@ -132,6 +137,7 @@ struct ObservationSet {
   std::vector<CommonError> common_errors;
   std::vector<SettingError> setting_errors;
   bool of_machine = false;          ///< measured on the whole machine, of which the runs simulate a slice
+  bool assumed = false;             ///< stands for a measurement before any is made (uq/plan/unmeasured.hpp)
   std::vector<std::string> header;  ///< the comment lines at the head of the file, without '#'
   std::string place;
 };
@@ -160,7 +166,8 @@ enum class Sampler { mixture, nuts };
 /// A calibration case: which parameters are free given which observations.
 struct CalibrationCase {
   std::string name;
-  std::vector<std::string> observe;
+  std::vector<std::string> observe;  ///< names of observation sets; none: nothing is measured yet
+  std::string material;              ///< of a case that observes nothing: whose runs it is planned on
   std::vector<std::string> free;
   std::map<std::string, double> fixed;  ///< SI
   std::map<std::string, double> held;   ///< SI: the case is compared with itself with these free parameters held
@@ -207,16 +214,24 @@ struct Study {
   const Material& material(std::string_view material_name) const;
 };
 
-/// Of the i-th input of a row: parameters, then controls.
-Scale scale_of_input(const Study& study, std::size_t input);
+/// A parameter or a control as an input of a run. It refers to the study.
+struct Input {
+  const std::string& name;
+  const std::string& target;
+  const Unit& unit;
+  Axis axis;
+};
+
+/// Of a run, in the order of RunRow::inputs: parameters, then controls.
+std::vector<Input> inputs_of(const Study& study);
 
 /// Reads the sections above and the observation files. Problems are recorded in `file` (file.finish() throws them) so
 /// that the DEM's sections can be read in the same pass. Missing or malformed observation files throw InputError with
 /// all that was found so far: 66 or 65, or 78 when the study has problems of its own.
 Study read_study(const StudyFile& file);
 
-/// Throws InputError (78) when the study has no observations or no cases, which training does not need but calibration
-/// does.
+/// Throws InputError (78) when the study has no observations or no cases, or a case observes nothing. Training and a plan
+/// on the prior need none of them, calibration does.
 void require_cases(const Study& study);
 
 /// Observed points whose controls lie outside the controls' ranges, where a surrogate extrapolates.

@@ -33,17 +33,16 @@ void check_names(const Section& section, std::string_view key, const std::vector
   }
 }
 
-/// Every parameter must be free, fixed by the case, or fixed by each observed material.
+/// Every parameter must be free, fixed by the case, or fixed by each material that the case is about.
 void check_roles(const Section& section, const CalibrationCase& item, const Study& study) {
+  std::vector<std::string> names = {item.material};
+  for (const std::string& name : item.observe)
+    if (const auto index = study.observation_index(name)) names.push_back(study.observations[*index].material);
+  if (!item.observe.empty()) names.erase(names.begin());
   std::vector<const Material*> materials;
-  for (const std::string& name : item.observe) {
-    if (const auto index = study.observation_index(name)) {
-      const std::string& material = study.observations[*index].material;
-      for (const Material& candidate : study.materials) {
-        if (candidate.name == material) materials.push_back(&candidate);
-      }
-    }
-  }
+  for (const std::string& name : names)
+    for (const Material& candidate : study.materials)
+      if (candidate.name == name) materials.push_back(&candidate);
   if (materials.empty()) return;
   for (const Parameter& parameter : study.parameters) {
     const std::string& name = parameter.name;
@@ -106,7 +105,7 @@ void check_nuisances(const Section& section, const CalibrationCase& item, const 
     if (study.parameter_index(name))
       section.problem(name, "is also the name of a parameter, and the report could not tell them apart",
                       "give the parameter another name (its target can stay)");
-    if (!nuisance.output) continue;
+    if (!nuisance.output || item.observe.empty()) continue;
     const bool measured = std::any_of(item.observe.begin(), item.observe.end(), [&](const std::string& set) {
       const auto index = study.observation_index(set);
       return index && std::count(study.observations[*index].outputs.begin(), study.observations[*index].outputs.end(),
@@ -195,21 +194,32 @@ void check_prediction(const Section& section, const Prediction& wanted, const St
   }
 }
 
+/// Which measurements a case has. One that has none yet names the material whose runs it is planned on.
+void read_measured(const Section& section, const Study& study, CalibrationCase& item) {
+  std::vector<std::string> observations;
+  for (const ObservationSet& set : study.observations) observations.push_back(set.name);
+  item.observe = section.texts("observe", section.has("observe"));
+  check_names(section, "observe", item.observe, {"the name of an [[observe]]", observations});
+  if (!section.has("observe")) {
+    item.material = material_of(section, study);
+  } else if (section.has("material")) {
+    section.problem("material", "is said by what the case observes", "leave it out, or leave out observe");
+  }
+}
+
 }  // namespace
 
 void read_cases(const Section& root, Study& study) {
-  std::vector<std::string> parameters, observations;
+  std::vector<std::string> parameters;
   for (const Parameter& parameter : study.parameters) parameters.push_back(parameter.name);
-  for (const ObservationSet& set : study.observations) observations.push_back(set.name);
 
   const std::vector<Section> sections = root.array("calibrate");
   for (const Section& section : sections) {
     CalibrationCase item{.name = section.text("name"), .place = section.place()};
-    item.observe = section.texts("observe", true);
+    read_measured(section, study, item);
     item.free = section.texts("free", true);
     item.fixed = read_fixed(section.child("fixed"), study);
     item.held = read_fixed(section.child("compare"), study);
-    check_names(section, "observe", item.observe, {"the name of an [[observe]]", observations});
     check_names(section, "free", item.free, {"a parameter", parameters});
     const Section priors = section.child("priors");
     for (const Parameter& parameter : study.parameters) {

@@ -43,6 +43,9 @@ std::map<std::string, double> read_settings(const Section& section, const Study&
 /// offset, gain, noise and discrepancy of a case.
 std::vector<Nuisance> read_nuisances(const Section& section, const Study& study);
 
+/// The material that an [[observe]], or a case without one, is about: the key `material`, or the study's only one.
+std::string material_of(const Section& section, const Study& study);
+
 void read_cases(const Section& root, Study& study);
 void read_predictions(const Section& root, Study& study);
 

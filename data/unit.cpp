@@ -88,6 +88,8 @@ Unit parse_unit(std::string_view symbol) {
 
 bool convertible(std::string_view a, std::string_view b) { return parse(a).powers == parse(b).powers; }
 
+double Unit::rounded(double si, int digits) const { return to_si(fmt::format("{:.{}g}", from_si(si), digits)); }
+
 double Unit::to_si(std::string_view text) const {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   long double value = 0.0L;

@@ -21,9 +21,11 @@ struct Unit {
   }
   double to_si(double value) const { return factor * value + offset; }
   double from_si(double si) const { return (si - offset) / factor; }
-  /// Of a number as text, converted in long double: every reader of text gives the same bits. Of what is not a number
-  /// the part before it counts (0 when there is none); the caller has checked.
+  /// Converts a decimal text in long double, so that all readers get the same bits. Characters after the number are
+  /// ignored. Text without a number gives 0, so the caller checks first.
   double to_si(std::string_view digits) const;
+  /// The value with so many significant digits in this unit, in SI.
+  double rounded(double si, int digits) const;
   /// The decimal with the fewest digits that to_si(text) takes back to the same double.
   std::string digits(double si) const;
 };

@@ -132,7 +132,8 @@ std::vector<StartOutcome> search(const Standardised& data, const std::vector<Eig
   return outcomes;
 }
 
-std::vector<BoundHit> find_bound_hits(const Objective& objective, const Eigen::VectorXd& u, const Standardised& data) {
+std::vector<BoundHit> find_bound_hits(const Objective& objective, const Eigen::VectorXd& u, const Standardised& data,
+                                      const TrainingSet& training) {
   std::vector<BoundHit> hits;
   const auto d = static_cast<Index>(data.active.size());
   for (Index j = 0; j < u.size(); ++j) {
@@ -140,8 +141,7 @@ std::vector<BoundHit> find_bound_hits(const Objective& objective, const Eigen::V
     if (!at_low && !at_high) continue;
     BoundHit hit;
     hit.upper = at_high;
-    hit.parameter =
-        j < d ? fmt::format("length scale of input {}", data.active[j] + 1) : (j == d ? "signal" : "nugget");
+    hit.parameter = j < d ? "length scale of " + training.name_of(data.active[j]) : (j == d ? "signal" : "nugget");
     hit.value = std::exp((at_high ? objective.high[j] : objective.low[j]) * (j < d ? 1.0 : 0.5));
     hit.input = j < d ? static_cast<int>(j) : -1;
     hit.harmless = (j < d && at_high) || (j == d + 1 && at_low);
@@ -174,7 +174,7 @@ GaussianProcess fit(const TrainingSet& training, const FitOptions& options) {
   diagnostics.converged = best.converged;
   diagnostics.agreeing_starts = static_cast<int>(
       std::count_if(diagnostics.starts.begin(), diagnostics.starts.end(), [](const auto& s) { return s.agrees; }));
-  diagnostics.bound_hits = find_bound_hits(objective, best.end, data);
+  diagnostics.bound_hits = find_bound_hits(objective, best.end, data, training);
 
   std::vector<HyperNode> nodes{{best.end, 1.0}};
   const bool few = data.points.rows() < enough_points * data.points.cols();

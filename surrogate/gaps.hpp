@@ -1,25 +1,23 @@
 #pragma once
 // What is not known between the values of an input that were run.
 //
-// A full factorial of two levels says nothing of the curvature between them, and yet a fit to it is certain: the runs
-// agree with a straight line as with no other function, length scales go to their bound, and leaving single runs out
-// sees nothing, since the others of the same level stand in for it. The prior must therefore hold a part that the runs
-// cannot overrule, because it vanishes at all of them. Where input k was not run between the neighbouring values a and
-// b, the function is the fit plus a departure
+// Two levels of an input say nothing of the curvature between them. A fit is nevertheless certain there: a straight line
+// explains all runs, length scales go to their bound, and leaving out single runs shows no error, since other runs of
+// the same level stand in for them. A departure that is zero at every run is therefore added to the prior. Where input k
+// was not run between the neighbouring values a and b, the function is the fit plus
 //   delta_k ~ GP(0, s_k^2 b(x_k, x'_k) rho(x_-k, x'_-k)),
 //   b(x, x') = c(x, x') - c(x, p) c(p, p)^-1 c(p, x'),   p = {a, b},
-// a Matern 5/2 process c of length gap_length that is tied to zero at a and b; independent from gap to gap. Beyond the
-// outermost run it is tied at one end. rho, Matern 5/2 of length gap_reach in the other inputs, lets it differ between
-// their values. Its sd is
+// a Matern 5/2 process c of length gap_length that is tied to zero at a and b. Departures in different gaps are
+// independent. Beyond the outermost run the process is tied at one end. rho, Matern 5/2 of length gap_reach in the other
+// inputs, lets the departure differ between their values. The departure's sd is
 //   s_k = gap_share (effect_k + gap_floor) w(width),
-// effect_k the root mean square, over the runs, of the range of the fitted mean as x_k alone goes through its values,
-// in units of the output's sd; gap_floor is what an input without influence at its levels may hide between them. w is
-// 0 up to gap_narrow and 1 from gap_wide on: where the values lie close, their runs say themselves how rough the
-// function is. A gap at an end counts twice.
+// in units of the output's sd. effect_k is the root mean square, over the runs, of the range of the fitted mean as x_k
+// alone goes through its values. gap_floor is what an input without influence at its levels may hide between them. w is
+// 0 up to gap_narrow and 1 from gap_wide on: where the values lie close, their runs show how rough the function is. A
+// gap at an end counts twice.
 //
-// The constants are chosen by coverage (surrogate/COVERAGE.md), not derived.
-//
-// The mean stays that of the fit; only the covariance grows. Deviation from an ordinary prior: s_k comes from the fit.
+// The constants are chosen by coverage (surrogate/COVERAGE.md), not derived. The mean stays that of the fit, and only
+// the covariance grows. Deviation from an ordinary prior: s_k comes from the fit.
 #include "surrogate/gaussian_process.hpp"
 
 namespace surrogate {

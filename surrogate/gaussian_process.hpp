@@ -71,7 +71,7 @@ struct StartOutcome {
 };
 
 struct BoundHit {
-  std::string parameter;  ///< "length scale of input 2", "signal", "nugget"
+  std::string parameter;  ///< "length scale of friction", "signal", "nugget"
   bool upper = false;
   double value = 0.0;     ///< the bound: length in the unit cube, or sd in units of the output's sd
   bool harmless = false;  ///< a nugget at its floor or an input without influence: the model means what it says

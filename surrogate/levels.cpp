@@ -30,7 +30,7 @@ std::vector<LevelCheck> check_levels(const TrainingSet& training, const HeldOutM
     const std::vector<double> levels = levels_of(training.x.col(k));
     const auto count = static_cast<Index>(levels.size());
     if (count < 2 || count > levels_most || runs < 3 * count) continue;
-    LevelCheck check{.input = static_cast<int>(k), .levels = static_cast<int>(count)};
+    LevelCheck check{.input = training.name_of(k), .levels = static_cast<int>(count)};
     double squares = 0.0, about_mean = 0.0, inside = 0.0;
     for (std::size_t level = 1; level + 1 < levels.size(); ++level) {
       std::vector<int> kept, left;
@@ -57,13 +57,12 @@ std::vector<std::string> level_notes(const std::vector<LevelCheck>& checks) {
   std::vector<std::string> notes;
   for (const LevelCheck& check : checks) {
     if (check.levels == 2)
-      notes.push_back(
-          fmt::format("nothing is known between the 2 levels of input {}: run values in between", check.input + 1));
+      notes.push_back(fmt::format("nothing is known between the 2 levels of {}: run values in between", check.input));
     else if (check.predicted > 0)
       notes.push_back(
-          fmt::format("whole levels of input {} left out, {} of {}: Q2 {:.4f}, {:.0f} % of their runs lie in the 95 % "
+          fmt::format("whole levels of {} left out, {} of {}: Q2 {:.4f}, {:.0f} % of their runs lie in the 95 % "
                       "interval",
-                      check.input + 1, check.levels - 2, check.levels, check.q2, 100.0 * check.coverage95));
+                      check.input, check.levels - 2, check.levels, check.q2, 100.0 * check.coverage95));
   }
   return notes;
 }

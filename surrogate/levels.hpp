@@ -15,7 +15,7 @@ constexpr int levels_most = 8;  ///< an input with more values is no factor of a
 /// own scale.
 std::vector<LevelCheck> check_levels(const TrainingSet& training, const HeldOutModel& model);
 
-/// "of input 1": what the checks found, one sentence each.
+/// What the checks found, one sentence each.
 std::vector<std::string> level_notes(const std::vector<LevelCheck>& checks);
 
 /// Whether a check leaves the surrogate in doubt between the levels.

@@ -101,6 +101,10 @@ Standardised standardise(const TrainingSet& training, OutputScale scale, Centre 
   return result;
 }
 
+std::string TrainingSet::name_of(Eigen::Index input) const {
+  return names.empty() ? fmt::format("input {}", input + 1) : names.at(static_cast<std::size_t>(input));
+}
+
 std::vector<int> thin(const TrainingSet& training, int most, std::uint64_t seed) {
   std::map<std::vector<double>, std::vector<int>> points;
   for (Eigen::Index i = 0; i < training.y.size(); ++i) {
@@ -122,7 +126,7 @@ std::vector<int> thin(const TrainingSet& training, int most, std::uint64_t seed)
 }
 
 TrainingSet chosen(const TrainingSet& training, const std::vector<int>& runs) {
-  TrainingSet result{training.x(runs, Eigen::all), training.y(runs), {}};
+  TrainingSet result{training.x(runs, Eigen::all), training.y(runs), {}, training.names};
   if (training.noise_variance.size() == training.y.size()) result.noise_variance = training.noise_variance(runs);
   return result;
 }

@@ -14,6 +14,7 @@
 // A column of x that never changes is left out of the process (active lists the others).
 #include <Eigen/Core>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace surrogate {
@@ -26,9 +27,12 @@ const char* to_text(OutputScale scale);
 enum class Centre { data_mean, zero };
 
 struct TrainingSet {
-  Eigen::MatrixXd x;               ///< n x d, each input scaled to the unit cube by its training range
-  Eigen::VectorXd y;               ///< n, any unit
-  Eigen::VectorXd noise_variance;  ///< n, unit^2 of y: known variance of each run's mean; empty: none
+  Eigen::MatrixXd x;                    ///< n x d, each input scaled to the unit cube by its training range
+  Eigen::VectorXd y;                    ///< n, any unit
+  Eigen::VectorXd noise_variance;       ///< n, unit^2 of y: known variance of each run's mean; empty: none
+  std::vector<std::string> names = {};  ///< d, of the inputs, for messages; empty: "input 1", ...
+
+  std::string name_of(Eigen::Index input) const;
 };
 
 /// A stretch of one input without runs, in which the function may leave the fit (gaps.hpp).

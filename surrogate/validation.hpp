@@ -6,9 +6,9 @@
 // hyper-parameters are fitted again without it. With error e = z - mean and V its covariance (function, nugget and
 // known noise):
 //   standardised errors        e_i / sqrt(V_ii), flagged above 2 (eq. 9);
-//   pivoted Cholesky errors    G^-1 e, P' V P = G G' pivoting on the largest remaining variance (section 4.2.2):
-//   uncorrelated,
-//                              large ones at the head point at the variance, at the tail at the length scales;
+//   pivoted Cholesky errors    G^-1 e, P' V P = G G' pivoting on the largest remaining variance (section 4.2.2).
+//                              They are uncorrelated. Large ones at the head point at the variance, large ones at the
+//                              tail at the length scales;
 //   Mahalanobis distance       D = e' V^-1 e; D / m ~ F(m, n - p) for m points held out of n training points.
 // Deviation: they integrate the signal variance out with the reference prior; ours is a restricted-likelihood estimate,
 // for which D / m has that F law if the correlation is known and there is no known noise, and nearly so otherwise.
@@ -26,10 +26,9 @@ namespace surrogate {
 
 /// Where good ends and caution ends. All are printed in the report.
 struct ValidationThresholds {
-  double q2_good = 0.9;      ///< Q2 of the function, held out, at least
-  double q2_unusable = 0.5;  ///< below this the surrogate says little about the model
-  double coverage_probability =
-      0.01;  ///< coverage of the 95 % interval is wrong if it is less likely than this (binomial)
+  double q2_good = 0.9;                ///< Q2 of the function, held out, at least
+  double q2_unusable = 0.5;            ///< below this the surrogate says little about the model
+  double coverage_probability = 0.01;  ///< binomial; coverage of the 95 % interval is wrong if it is less likely
   double coverage95_unusable = 0.7;
   double mahalanobis_probability = 0.01;  ///< over all folds (Bonferroni)
   double noise_dominated = 0.67;  ///< noise variance over variance: above, the runs hardly differ beyond their noise
@@ -64,7 +63,7 @@ struct HeldOutFold {
 
 /// Whole levels of one input left out (levels.hpp).
 struct LevelCheck {
-  int input = 0;            ///< column of x
+  std::string input;        ///< by name
   int levels = 0;           ///< values that the input takes
   int predicted = 0;        ///< runs of inner levels that were predicted from the other levels; 0: there are none
   double q2 = 0.0;          ///< of these

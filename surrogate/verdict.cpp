@@ -140,10 +140,9 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
   const auto unknown =
       std::find_if(v.levels.begin(), v.levels.end(), [&](const LevelCheck& check) { return doubtful(check, t); });
   if (unknown != v.levels.end())
-    v.finding += unknown->levels == 2
-                     ? fmt::format("; nothing is known between the 2 levels of input {}", unknown->input + 1)
-                     : fmt::format("; whole levels of input {} left out are predicted with Q2 {:.3f}",
-                                   unknown->input + 1, unknown->q2);
+    v.finding += unknown->levels == 2 ? fmt::format("; nothing is known between the 2 levels of {}", unknown->input)
+                                      : fmt::format("; whole levels of {} left out are predicted with Q2 {:.3f}",
+                                                    unknown->input, unknown->q2);
   if (noise_doubtful(v)) v.finding += "; " + noise_note(v.noise);
   v.finding += ".";
 
@@ -173,7 +172,7 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
   }
   if (unknown != v.levels.end() && v.verdict == SurrogateVerdict::caution) {
     v.more_runs = std::max(8, v.runs / 4);
-    v.remedy = fmt::format("Add about {} runs between the levels of input {}.", v.more_runs, unknown->input + 1);
+    v.remedy = fmt::format("Add about {} runs between the levels of {}.", v.more_runs, unknown->input);
     return;
   }
   if (v.q2_function < t.q2_good) {

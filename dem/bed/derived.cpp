@@ -10,11 +10,7 @@
 #include "dem/case/grains.hpp"
 
 namespace dem {
-namespace {
-
 using std::numbers::pi;
-
-}  // namespace
 
 Derived derive(const Case& c) {
   const Contact& k = c.contact;

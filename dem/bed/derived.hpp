@@ -8,6 +8,7 @@
 // run.steps_per_contact.
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dem/bed/contact_kinds.hpp"
@@ -20,7 +21,7 @@ namespace dem {
 struct Derived {
   std::size_t spheres = 0;
   double mass = 0.0;                           ///< kg, one sphere; the mean where they differ
-  double weight = 0.0;                         ///< N, alike
+  double weight = 0.0;                         ///< N, mean weight of a sphere
   double diameter = 0.0;                       ///< m, of that mass
   double smallest = 0.0, largest = 0.0;        ///< m
   double length_scale = 0.0;                   ///< m, L of eq. (1), of that sphere
@@ -28,7 +29,7 @@ struct Derived {
   double original_hamaker = 0.0;               ///< J, H* / l^3
   double pull_off = 0.0, wall_pull_off = 0.0;  ///< N, of the first component with itself and the first body
   double bond = 0.0, wall_bond = 0.0;
-  double damping_ratio = 0.0;  ///< zeta, alike
+  double damping_ratio = 0.0;  ///< zeta of the first kind of contact
   Conditions conditions;       ///< that the rig makes
   BedCoefficients bed;         ///< of the rig's bodies, with the damping that restitution_at asks for
   std::vector<ContactKind> kinds;
@@ -39,6 +40,20 @@ struct Derived {
 };
 
 Derived derive(const Case& c);
+
+/// A case that was looked through and found without problems, and what follows from it. Only `prepare`
+/// (dem/reading/prepare.hpp) makes one, so that nothing runs, or is foretold, unchecked.
+class PreparedCase {
+ public:
+  const Case& given() const { return case_; }
+  const Derived& derived() const { return derived_; }
+
+ private:
+  friend PreparedCase prepare(Case c);
+  PreparedCase(Case c, Derived d) : case_(std::move(c)), derived_(std::move(d)) {}
+  Case case_;
+  Derived derived_;
+};
 
 /// Attraction, time step and damping as lines for the user.
 std::vector<std::string> describe(const Case& c, const Derived& d);

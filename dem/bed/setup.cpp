@@ -1,11 +1,8 @@
 #include "dem/bed/setup.hpp"
 
-#include "dem/bed/derived.hpp"
-
 namespace dem {
 
-Setup make_setup(const Case& c, BuiltRig rig, std::uint64_t rest_steps, int threads) {
-  const Derived d = derive(c);
+Setup make_setup(const Case& c, const Derived& d, BuiltRig rig, std::uint64_t rest_steps, int threads) {
   Setup s;
   s.low = rig.low;
   s.high = rig.high;

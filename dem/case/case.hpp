@@ -71,7 +71,7 @@ struct Material {
   double diameter = 0.8e-3;                            ///< m; of log-normal sizes the median by mass
   double coarse_graining = 1.0;                        ///< l: diameter here / diameter of the original grain
   std::vector<SizeShare> sizes;                        ///< instead of one diameter
-  std::optional<LogNormalSizes> log_normal;            ///< alike
+  std::optional<LogNormalSizes> log_normal;            ///< log-normal sizes, instead of one diameter
   std::optional<double> young_modulus, poisson_ratio;  ///< Pa, 1; the contact's where not set
 };
 
@@ -110,7 +110,7 @@ struct Contact {
   FrictionCap cap = FrictionCap::repulsion;
   double rolling_friction = 0.0;  ///< rolling torque at most this times R* times the cap's load
   std::optional<double> wall_rolling_friction;
-  double twisting_friction = 0.0;              ///< alike, for the torque about the normal
+  double twisting_friction = 0.0;              ///< twisting torque at most this times R* times the cap's load
   double rolling_stiffness_ratio = 2.0 / 7.0;  ///< rolling spring / normal stiffness (hertz: at 1 % overlap)
   double rolling_damping = 0.3;                ///< fraction of critical
   Cohesion cohesion = Cohesion::van_der_waals;

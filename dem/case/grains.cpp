@@ -74,12 +74,6 @@ std::vector<std::string> grain_names(const Case& c) {
   return names;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 double smallest_diameter(const Material& m) {
   if (m.log_normal) return m.log_normal->low;
   double smallest = m.sizes.empty() ? m.diameter : m.sizes[0].diameter;

@@ -23,8 +23,6 @@ inline constexpr double packing_fraction = 0.6;
 /// The components of a bed; of one material it is that.
 std::vector<Component> components_of(const Case& c);
 std::vector<std::string> grain_names(const Case& c);
-/// "sand, steel", for messages.
-std::string listed(const std::vector<std::string>& names);
 
 /// Spheres of one component, of one size or of its log-normal distribution.
 struct GrainClass {

@@ -1,5 +1,5 @@
 #pragma once
-// The instruction set of the contact forces (dem/forces/), chosen when the program runs: the widest that it was built
+// The instruction set of the contact forces (dem/contact/forces/), chosen when the program runs: the widest that it was built
 // with and the processor has, unless another is pinned. A run has the same bits with each of them: every operation is
 // elementwise and exactly rounded, and sums go by fours of contacts whatever the lanes.
 #include <string>

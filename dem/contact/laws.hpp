@@ -1,5 +1,5 @@
 #pragma once
-// The choice of parts, and the force pass composed of them (dem/forces/) for the instruction set in use (isa.hpp).
+// The choice of parts, and the force pass composed of them (dem/contact/forces/) for the instruction set in use (isa.hpp).
 #include <memory>
 #include <vector>
 

@@ -92,7 +92,8 @@ struct Ghost {
   Vec3 shift;  ///< m
 };
 
-/// A pair out of range sleeps until its spheres could meet, at most one step less than this.
+/// Pairs out of range are skipped for several steps: until their spheres could meet, and for due_steps - 1 steps at
+/// most.
 inline constexpr std::uint32_t due_steps = 8;
 
 /// Where in State::due the pairs of a word to look at in a step are: a word's steps side by side, in one cache line.

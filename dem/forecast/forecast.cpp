@@ -46,10 +46,10 @@ void say_density(const Case& c, Forecast& f) {
 }
 
 /// How deep spheres press in where the tool hits them, of contact.stiffness.
-void say_impacts(const Case& c, Forecast& f) {
+void say_impacts(const Case& c, const Derived& d, Forecast& f) {
   if (c.contact.normal != NormalLaw::linear) return;
   const double speed = tool_speed(c);
-  for (const ContactKind& kind : derive(c).kinds) {
+  for (const ContactKind& kind : d.kinds) {
     const double overlap = speed * std::sqrt(kind.mass / kind.law.stiffness) / kind.radius;
     if (!kind.wall || !(overlap > c.run.overlap_limit)) continue;
     f.warnings.push_back(
@@ -404,11 +404,12 @@ Forecast of_meshes(const Case& c, std::uint64_t seed, Forecast f) {
 
 }  // namespace
 
-Forecast forecast(const Case& c, std::uint64_t seed) {
+Forecast forecast(const PreparedCase& prepared, std::uint64_t seed) {
+  const Case& c = prepared.given();
   const BedSummary bed = summarise_bed(c);
   Forecast f{.spheres = bed.spheres, .mass = bed.mass, .largest = bed.largest};
   say_density(c, f);
-  say_impacts(c, f);
+  say_impacts(c, prepared.derived(), f);
   f = c.rig.stl       ? of_meshes(c, seed, std::move(f))
       : c.rig.drum    ? of_drum(c, std::move(f))
       : c.rig.machine ? of_machine(c, std::move(f))

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "data/error.hpp"
-#include "dem/case/case.hpp"
+#include "dem/bed/derived.hpp"
 
 namespace dem {
 
@@ -36,8 +36,8 @@ struct Forecast {
   std::vector<std::string> warnings;    ///< what a user should look at
 };
 
-/// Of a case without problems (dem/reading/target.hpp). Throws data::InputError (78) when the spheres do not fit.
-Forecast forecast(const Case& c, std::uint64_t seed);
+/// Throws data::InputError (78) when the spheres do not fit.
+Forecast forecast(const PreparedCase& prepared, std::uint64_t seed);
 
 /// Fill, surface and gaps as lines for the user.
 std::vector<std::string> describe(const Forecast& f);

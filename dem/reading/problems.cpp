@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "dem/bed/derived.hpp"
 #include "dem/case/grains.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 
 namespace dem {
@@ -189,15 +191,19 @@ void check_times(const Case& c, Found& found) {
                      "shorten it, or lengthen run.longest"});
 }
 
-}  // namespace
+/// Problems of a case, and, where there are none that forbid it, what follows from it.
+struct Examined {
+  Found problems;
+  std::optional<Derived> derived;
+};
 
-std::vector<data::Problem> problems(const Case& c) {
+Examined examine(const Case& c) {
   Found found;
   check_ranges(c, found);
   check_laws(c, found);
-  if (!found.empty()) return found;
+  if (!found.empty()) return {found, {}};
   check_bed(c, found);
-  if (!found.empty()) return found;
+  if (!found.empty()) return {found, {}};
   for (data::Problem& p : rig_problems(c)) found.push_back(std::move(p));
   const auto add = [&](std::string place, std::string what, std::string remedy) {
     found.push_back({std::move(place), std::move(what), std::move(remedy)});
@@ -224,7 +230,17 @@ std::vector<data::Problem> problems(const Case& c) {
         fmt::format("is {:g}: fewer than 15 steps do not follow a contact", c.run.steps_per_contact),
         "20 to 50 is usual");
   }
-  return found;
+  return {std::move(found), d};
+}
+
+}  // namespace
+
+std::vector<data::Problem> problems(const Case& c) { return examine(c).problems; }
+
+PreparedCase prepare(Case c) {
+  Examined examined = examine(c);
+  if (!examined.problems.empty()) throw data::InputError(data::ExitStatus::bad_study, std::move(examined.problems));
+  return {std::move(c), *std::move(examined.derived)};
 }
 
 }  // namespace dem

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "dem/case/grains.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/read_stl_rig.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/rig.hpp"
@@ -298,9 +299,9 @@ void sort_out_pairs(const Section& root, Case& c) {
   std::erase_if(c.pairs, [&](const PairContact& p) {
     for (const std::string& name : {p.first, p.second}) {
       if (!name.empty() && !in(grains, name) && !in(bodies, name) && !root.child("materials").has(name))
-        root.child("contact").problem("pair",
-                                      fmt::format("names '{}', which is no material, mesh or mesh's material", name),
-                                      fmt::format("choose two of: {}, {}", listed(grains), listed(bodies)));
+        root.child("contact").problem(
+            "pair", fmt::format("names '{}', which is no material, mesh or mesh's material", name),
+            fmt::format("choose two of: {}, {}", fmt::join(grains, ", "), fmt::join(bodies, ", ")));
     }
     return !((in(grains, p.first) && (in(grains, p.second) || in(bodies, p.second))) ||
              (in(bodies, p.first) && in(grains, p.second)));

@@ -270,8 +270,8 @@ Binding of_pair(const Target& usual, std::string_view between, const PairKey& ke
   };
   const auto unused = [=, name = std::string(key.key)](const Case& c) -> std::string {
     if (split(c, pair)) return unread(c.contact, name);
-    return fmt::format("is between no two of its materials ({}) and bodies ({})", listed(grain_names(c)),
-                       listed(body_names(c)));
+    return fmt::format("is between no two of its materials ({}) and bodies ({})", fmt::join(grain_names(c), ", "),
+                       fmt::join(body_names(c), ", "));
   };
   return {std::move(t), get, set, unused};
 }
@@ -312,7 +312,8 @@ Binding of_component(std::string_view component, const ComponentKey& key) {
   };
   const auto unused = [=, which = std::string(key.key)](const Case& c) -> std::string {
     const auto it = find(c.components);
-    if (it == c.components.end()) return fmt::format("is of no component of this bed ({})", listed(grain_names(c)));
+    if (it == c.components.end())
+      return fmt::format("is of no component of this bed ({})", fmt::join(grain_names(c), ", "));
     if (which == "diameter" && !it->material.sizes.empty()) return "is not read with a list of sizes";
     return which == "young_modulus" || which == "poisson_ratio" ? unread(c.contact, which) : "";
   };

@@ -52,9 +52,6 @@ std::string unused_because(const Case& c, std::string_view name);
 /// Names of all quantities set in this case: those of targets() that it uses, its components' and its pairs'.
 std::vector<std::string> quantities_of(const Case& c);
 
-/// Everything about a case that cannot be simulated.
-std::vector<data::Problem> problems(const Case& c);
-
 /// All resolved settings, one "name = value unit" a line in fixed order: hash it to know whether two runs are alike. A
 /// choice at its default is left out where it came after studies were run, so that their rows stay good.
 std::string settings_text(const Case& c);

@@ -13,11 +13,7 @@
 #include "dem/rig/rig_kind.hpp"
 
 namespace dem {
-namespace {
-
 using std::numbers::pi;
-
-}  // namespace
 
 TriangleMesh auger_mesh(const Rig& rig) {
   const Stretch all{0.0, rig.pitches * rig.pitch};

@@ -34,10 +34,6 @@ double bonds_rise(const Series& s, std::size_t first, std::size_t count) {
 
 }  // namespace
 
-std::string_view name_of(Steady state) {
-  return state == Steady::yes ? "steady" : state == Steady::drifting ? "drifting" : "short";
-}
-
 LookRule look_rule(const RunControl& run, double time, double turn) {
   LookRule rule;
   rule.longest = std::max<std::size_t>(1, samples_in(run.longest, time));
@@ -71,13 +67,14 @@ Measured measure(const LookRule& rule, const Series& series, std::size_t samples
     here.bonds_rise = bonds_rise(series, here.first, count);
     const bool moves = data::drifts(here.drift_p, drift_level) || here.bonds_rise > 0.0;
     if (!here.torque.reliable || count < rule.shortest)
-      here.state = Steady::unclear;
+      here.state = data::FlowState::too_short;
     else if (!moves)
-      here.state = Steady::yes;
+      here.state = data::FlowState::steady;
     else
-      here.state = data::drifts(known, drift_level) || here.bonds_rise > 0.0 ? Steady::drifting : Steady::unclear;
-    if (cut == 0 || here.state == Steady::yes) found = std::move(here);
-    if (found.state == Steady::yes || !moves) break;
+      here.state = data::drifts(known, drift_level) || here.bonds_rise > 0.0 ? data::FlowState::drifting
+                                                                             : data::FlowState::too_short;
+    if (cut == 0 || here.state == data::FlowState::steady) found = std::move(here);
+    if (found.state == data::FlowState::steady || !moves) break;
   }
   return found;
 }
@@ -87,7 +84,7 @@ Looks begin_looks(const LookRule& rule) { return {.next = std::min(rule.longest,
 void take_looks(const LookRule& rule, const Series& series, Looks& looks) {
   while (!looks.ended && series.torque.size() >= looks.next) {
     const Measured m = looks.last = measure(rule, series, looks.next);
-    const bool steady = m.state == Steady::yes;
+    const bool steady = m.state == data::FlowState::steady;
     const double wanted = rule.standard_error * std::abs(m.torque.mean),
                  ratio = m.torque.standard_error > 0.0 ? m.torque.standard_error / wanted : 0.0;
     looks.ended = looks.next >= rule.longest || (steady && (looks.planned || ratio <= 1.0));

@@ -9,11 +9,11 @@
 // A bed whose bonds align meanwhile (dem/engine/order.hpp) is not steady either, however steady its torque seems.
 // Measured are run.shortest and run.shortest_turns at least.
 //
-// Looks. The first comes when the shortest measurement is done, each next one when half as much again is (1983, alike).
-// The length is fixed once: at the first look at which the run is steady and its error known, as C. Stein, Ann. Math.
-// Stat. 16 (1945) 243 does with a first sample. With error e there and e0 wanted after n samples the run measures
-// n (e/e0)^2, and stops, whatever its error is then: an error that is not waited for is not biased by looking. Where it
-// drifts there, it is looked at again after half as much again.
+// Looks. The first look comes after the shortest measurement, each later one after half as much again (Heidelberger and
+// Welch 1983). At the first look that finds a steady run with a known error e after n samples, the length is fixed at
+// n (e/e0)^2, e0 the wanted error (C. Stein, Ann. Math. Stat. 16 (1945) 243). The run stops there whatever its error is:
+// stopping when an error happens to be small would bias it. A run that drifts there is looked at again after half as
+// much again.
 #include <cstddef>
 #include <string_view>
 #include <vector>
@@ -24,13 +24,6 @@
 namespace dem {
 
 struct Series;
-
-enum class Steady {
-  yes,
-  drifting,  ///< it was not steady by the end
-  unclear,   ///< too short for its correlation: its error is not known, or what seems to drift may be chance
-};
-std::string_view name_of(Steady state);  ///< "steady", "drifting", "short"
 
 /// The rule in samples since the tool began to turn.
 struct LookRule {
@@ -52,7 +45,7 @@ inline constexpr int look_rule_version = 1;
 
 /// What a look finds.
 struct Measured {
-  Steady state = Steady::unclear;
+  data::FlowState state = data::FlowState::too_short;
   std::size_t first = 0, count = 0;  ///< samples measured: first ... first + count - 1
   data::SeriesMean torque;
   std::vector<double> drift_p;  ///< of torque, coordination, kinetic energy

@@ -6,14 +6,14 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <optional>
 #include <span>
 
-#include "data/error.hpp"
 #include "dem/bed/setup.hpp"
 #include "dem/case/grains.hpp"
 #include "dem/contact/isa.hpp"
 #include "dem/engine/order.hpp"
-#include "dem/reading/target.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/run/mixing.hpp"
 #include "dem/run/outputs.hpp"
 #include "dem/run/summary.hpp"
@@ -145,142 +145,204 @@ std::vector<std::uint64_t> frames_in(const Plan& plan, int frames) {
   return steps;
 }
 
+Sampling sampling_of(const Case& c, const BuiltRig& rig) {
+  const std::size_t spheres = rig.position.size();
+  return {rig.sensor,
+          static_cast<double>(spheres),
+          solid_volume(rig.grains, spheres),
+          solid_mass(rig.grains, spheres),
+          picture_plane(rig.sensor.picture, {rig.low, rig.high, rig.periodic}, 0.5 * summarise_bed(c).smallest),
+          rig.channels};
+}
+
+/// One run on its way: it steps, samples, looks whether it may end, and keeps what it needs to go on.
+class Course {
+ public:
+  Course(const PreparedCase& prepared, std::uint64_t seed, const RunOptions& options)
+      : case_(prepared.given()),
+        derived_(prepared.derived()),
+        options_(options),
+        rig_(build_rig(case_, seed)),
+        sensor_(rig_.sensor),
+        box_{rig_.low, rig_.high, rig_.periodic},
+        sampling_(sampling_of(case_, rig_)),
+        colour_(colours(rig_.channels, rig_.position)),
+        plan_(make_plan(case_, derived_, sensor_)),
+        looks_(begin_looks(plan_.rule)),
+        frames_(frames_in(plan_, options.frames)),
+        cpu_before_(cpu_time(options.threads)) {
+    result_.seed = seed;
+    result_.diagnostics.derived = derived_;
+    result_.diagnostics.threads = options.threads;
+    result_.diagnostics.isa = isa();
+    now().under_way.sums.resize(mean_outputs().size());
+  }
+
+  /// From the start, or from the checkpoint that it resumes. Throws Fault.
+  void begin() {
+    simulation_.emplace(make_setup(case_, derived_, std::move(rig_), plan_.settle, options_.threads));
+    if (options_.resume != nullptr) {
+      now() = *options_.resume;
+      cpu_earlier_ = now().under_way.cpu_seconds;
+      simulation_->restore(std::move(now().state));
+      now().state = {};
+    }
+    take_looks(plan_.rule, now().series, looks_);  // those of before the restart
+    if (options_.resume == nullptr) take_frame();  // of a run without settling
+    keep(good_.emplace());
+  }
+
+  /// Steps until the rule or the caller ends it. Throws Fault where the state is no longer one of this powder.
+  void go_on() {
+    constexpr std::uint64_t between_questions = 256;  // steps from one look at the clock and the caller to the next
+    for (std::uint64_t steps = 0; !looks_.ended; ++steps) {
+      simulation_->step();
+      const bool ask = steps % between_questions == 0;
+      if (ask && options_.stop.stop_requested()) result_.status = RunStatus::interrupted;
+      take_frame();
+      measure_step();
+      if (ask) offer_checkpoint();
+      if (result_.status == RunStatus::interrupted) break;
+    }
+    keep(*good_);
+  }
+
+  void fail(std::string reason) {
+    result_.status = RunStatus::failed;
+    result_.reason = std::move(reason);
+  }
+
+  /// What it came to: of a failed run up to the last good state.
+  RunResult finish() {
+    if (good_) {
+      now() = std::move(*good_);
+      result_.diagnostics.steps = simulation_->state().step;
+      result_.diagnostics.rebuilds = simulation_->state().rebuilds;
+      result_.diagnostics.bytes_per_particle = simulation_->bytes_per_particle();
+    }
+    if (looks_.ended && looks_.next < now().series.time.size()) {  // a longer run is cut to what this case asks for
+      cut(now().series, looks_.next, plan_.window);
+      now().state = {};
+    }
+    result_.series = now().series;
+    if (looks_.last.count == 0) looks_.last = measure(plan_.rule, now().series, now().series.time.size());
+    result_.summary = summarise(case_, sensor_.period, now().series, looks_);
+    result_.summary.cpu_seconds = now().under_way.cpu_seconds;
+    add_diagnostics();
+    add_warnings();
+    return std::move(result_);
+  }
+
+ private:
+  Checkpoint& now() { return result_.checkpoint; }
+
+  /// A state is large, so `now` goes without: only what is kept has one, in the memory of the one kept before.
+  void keep(Checkpoint& kept) {
+    now().under_way.cpu_seconds = cpu_earlier_ + cpu_time(options_.threads) - cpu_before_;
+    kept = now();
+    kept.state = simulation_->state();
+  }
+
+  void take_frame() {
+    const std::uint64_t step = simulation_->state().step;
+    while (next_frame_ < frames_.size() && frames_[next_frame_] < step) ++next_frame_;  // before a restart
+    for (; next_frame_ < frames_.size() && frames_[next_frame_] == step; ++next_frame_)
+      options_.frame(static_cast<int>(next_frame_), *simulation_,
+                     static_cast<double>(frames_[next_frame_] - plan_.settle) * derived_.time_step);
+  }
+
+  /// Sums the step, and ends samples, windows and looks where they are due.
+  void measure_step() {
+    if (simulation_->state().step <= plan_.settle) return;
+    const std::uint64_t turning = simulation_->state().step - plan_.settle;
+    add_step(sampling_, *simulation_, now().under_way);
+    if (turning % plan_.sample == 0) {
+      take_sample(sampling_, *simulation_, turning, now());
+      take_picture(sampling_, *simulation_, plan_, now());
+      take_looks(plan_.rule, now().series, looks_);
+    }
+    if (turning % plan_.check == 0) {
+      look_at_bed(*simulation_, box_, colour_, turning, now().series);
+      keep(*good_);
+      if (options_.progress) options_.progress(progress_of(now().series, plan_));
+    }
+  }
+
+  void offer_checkpoint() {
+    if (!options_.checkpoint) return;
+    if (std::chrono::duration<double>(Clock::now() - saved_).count() <= options_.checkpoint_interval) return;
+    Checkpoint here;
+    keep(here);
+    options_.checkpoint(here);
+    saved_ = Clock::now();
+  }
+
+  void add_diagnostics() {
+    Diagnostics& found = result_.diagnostics;
+    found.deep_contacts = now().under_way.deep_contacts;
+    found.max_overlap = now().under_way.max_overlap;
+    found.simulated = now().series.time.empty() ? 0.0 : now().series.time.back();
+    if (result_.summary.cpu_seconds > 0.0)
+      found.steps_per_second =
+          static_cast<double>(found.steps) * static_cast<double>(derived_.spheres) / result_.summary.cpu_seconds;
+  }
+
+  void add_warnings() {
+    if (result_.status == RunStatus::done) result_.warnings = warnings_of(case_, result_.summary);
+    if (result_.status == RunStatus::done && !now().series.torque.empty() && result_.summary.mean.front().mean == 0.0) {
+      const std::vector<BodyLabel> labels = body_labels(case_);
+      std::vector<std::string> names;
+      for (const Driven& driven : sensor_.driven)
+        names.push_back(driven.body < labels.size() ? labels[driven.body].name : "a body");
+      result_.warnings.push_back(
+          fmt::format("the torque is exactly 0: no sphere ever touched {}", fmt::join(names, ", ")));
+    }
+    if (result_.diagnostics.deep_contacts > 0)
+      result_.warnings.push_back(fmt::format(
+          "{} contact-steps overlap by more than {:g} of a radius, half of run.overlap_limit (largest {:.3g}): raise "
+          "{}",
+          result_.diagnostics.deep_contacts, 0.5 * case_.run.overlap_limit, result_.diagnostics.max_overlap,
+          case_.contact.normal == NormalLaw::linear ? "contact.stiffness" : "contact.young_modulus"));
+  }
+
+  using Clock = std::chrono::steady_clock;
+  const Case& case_;
+  const Derived& derived_;
+  const RunOptions& options_;
+  BuiltRig rig_;  // until the simulation takes it
+  Sensor sensor_;
+  Box box_;
+  Sampling sampling_;
+  std::vector<std::uint8_t> colour_;
+  Plan plan_;
+  Looks looks_;
+  std::vector<std::uint64_t> frames_;
+  std::size_t next_frame_ = 0;
+  std::optional<Simulation> simulation_;
+  std::optional<Checkpoint> good_;
+  RunResult result_;
+  Clock::time_point saved_ = Clock::now();
+  double cpu_before_ = 0.0, cpu_earlier_ = 0.0;  // s, of this process before, and of the run before it was resumed
+};
+
 }  // namespace
 
-std::vector<std::uint64_t> frame_steps(const Case& c, int frames) {
-  return frames_in(make_plan(c, derive(c), build_rig(c, 0).sensor), frames);
+std::vector<std::uint64_t> frame_steps(const PreparedCase& prepared, int frames) {
+  const Case& c = prepared.given();
+  return frames_in(make_plan(c, prepared.derived(), build_rig(c, 0).sensor), frames);
 }
 
-RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) {
-  if (auto found = problems(c); !found.empty()) throw data::InputError(data::ExitStatus::bad_study, std::move(found));
-  const Derived d = derive(c);
-  BuiltRig rig = build_rig(c, seed);
-  const Sensor sensor = rig.sensor;
-  const std::size_t spheres = rig.position.size();
-  const Box box{rig.low, rig.high, rig.periodic};
-  const Sampling sampling{sensor,
-                          static_cast<double>(spheres),
-                          solid_volume(rig.grains, spheres),
-                          solid_mass(rig.grains, spheres),
-                          picture_plane(sensor.picture, box, 0.5 * summarise_bed(c).smallest),
-                          rig.channels};
-  const std::vector<std::uint8_t> colour = colours(rig.channels, rig.position);
-  const Plan plan = make_plan(c, d, sensor);
-  Looks looks = begin_looks(plan.rule);
-  RunResult result;
-  result.seed = seed;
-  result.diagnostics.derived = d;
-  result.diagnostics.threads = options.threads;
-  result.diagnostics.isa = isa();
-  Checkpoint& now = result.checkpoint;
-  now.under_way.sums.resize(mean_outputs().size());
-  using Clock = std::chrono::steady_clock;
-  auto saved = Clock::now();
-  const double cpu_before = cpu_time(options.threads);
-  double cpu_earlier = 0.0;
-
+RunResult run(const PreparedCase& prepared, std::uint64_t seed, const RunOptions& options) {
+  Course course(prepared, seed, options);
   try {
-    Simulation simulation(make_setup(c, std::move(rig), plan.settle, options.threads));
-    if (options.resume != nullptr) {
-      now = *options.resume;
-      cpu_earlier = now.under_way.cpu_seconds;
-      simulation.restore(std::move(now.state));
-      now.state = {};
-    }
-    // A state is large, so `now` goes without: only what is kept has one, in the memory of the one kept before.
-    const auto keep = [&](Checkpoint& kept) {
-      now.under_way.cpu_seconds = cpu_earlier + cpu_time(options.threads) - cpu_before;
-      kept = now;
-      kept.state = simulation.state();
-    };
-    take_looks(plan.rule, now.series, looks);  // those of before the restart
-    bool done = looks.ended;
-    const std::vector<std::uint64_t> frames = frames_in(plan, options.frames);
-    std::size_t next_frame = 0;
-    const auto take_frame = [&] {
-      const std::uint64_t step = simulation.state().step;
-      while (next_frame < frames.size() && frames[next_frame] < step) ++next_frame;  // before a restart
-      for (; next_frame < frames.size() && frames[next_frame] == step; ++next_frame)
-        options.frame(static_cast<int>(next_frame), simulation,
-                      static_cast<double>(frames[next_frame] - plan.settle) * simulation.setup().time_step);
-    };
-    if (!frames.empty() && options.resume == nullptr) take_frame();  // of a run without settling
-    Checkpoint good;
-    keep(good);
-    try {
-      for (std::uint64_t look = 0; !done; ++look) {
-        simulation.step();
-        if (look % 256 == 0 && options.stop.stop_requested()) {
-          result.status = RunStatus::interrupted;
-          done = true;
-        }
-        if (!frames.empty()) take_frame();
-        if (simulation.state().step <= plan.settle) continue;
-        const std::uint64_t turning = simulation.state().step - plan.settle;
-        add_step(sampling, simulation, now.under_way);
-        if (turning % plan.sample == 0) {
-          take_sample(sampling, simulation, turning, now);
-          take_picture(sampling, simulation, plan, now);
-          take_looks(plan.rule, now.series, looks);
-          done = done || looks.ended;
-        }
-        if (turning % plan.check == 0) {
-          look_at_bed(simulation, box, colour, turning, now.series);
-          keep(good);
-          if (options.progress) options.progress(progress_of(now.series, plan));
-        }
-        if (options.checkpoint && look % 256 == 0 &&
-            std::chrono::duration<double>(Clock::now() - saved).count() > options.checkpoint_interval) {
-          Checkpoint here;
-          keep(here);
-          options.checkpoint(here);
-          saved = Clock::now();
-        }
-      }
-    } catch (const Fault& fault) {
-      result.status = RunStatus::failed;
-      result.reason = fault.what();
-    }
-    if (result.status != RunStatus::failed) keep(good);
-    now = std::move(good);
-    result.diagnostics.steps = simulation.state().step;
-    result.diagnostics.rebuilds = simulation.state().rebuilds;
-    result.diagnostics.bytes_per_particle = simulation.bytes_per_particle();
+    course.begin();
+    course.go_on();
   } catch (const Fault& fault) {
-    result.status = RunStatus::failed;
-    result.reason = fault.what();
+    course.fail(fault.what());
   }
-
-  if (looks.ended && looks.next < now.series.time.size()) {  // a longer run is cut to what this case asks for
-    cut(now.series, looks.next, plan.window);
-    now.state = {};
-  }
-  result.series = now.series;
-  if (looks.last.count == 0) looks.last = measure(plan.rule, now.series, now.series.time.size());
-  result.summary = summarise(c, sensor.period, now.series, looks);
-  result.summary.cpu_seconds = now.under_way.cpu_seconds;
-  Diagnostics& g = result.diagnostics;
-  g.deep_contacts = now.under_way.deep_contacts;
-  g.max_overlap = now.under_way.max_overlap;
-  g.simulated = now.series.time.empty() ? 0.0 : now.series.time.back();
-  if (result.summary.cpu_seconds > 0.0) {
-    g.steps_per_second = static_cast<double>(g.steps) * static_cast<double>(d.spheres) / result.summary.cpu_seconds;
-  }
-  if (result.status == RunStatus::done) result.warnings = warnings_of(c, result.summary);
-  if (result.status == RunStatus::done && !now.series.torque.empty() && result.summary.mean.front().mean == 0.0) {
-    const std::vector<BodyLabel> labels = body_labels(c);
-    std::vector<std::string> names;
-    for (const Driven& driven : sensor.driven)
-      names.push_back(driven.body < labels.size() ? labels[driven.body].name : "a body");
-    result.warnings.push_back(fmt::format("the torque is exactly 0: no sphere ever touched {}", listed(names)));
-  }
-  if (g.deep_contacts > 0) {
-    result.warnings.push_back(fmt::format(
-        "{} contact-steps overlap by more than {:g} of a radius, half of run.overlap_limit (largest {:.3g}): raise {}",
-        g.deep_contacts, 0.5 * c.run.overlap_limit, g.max_overlap,
-        c.contact.normal == NormalLaw::linear ? "contact.stiffness" : "contact.young_modulus"));
-  }
-  return result;
+  return course.finish();
 }
+
+RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options) { return run(prepare(c), seed, options); }
 
 }  // namespace dem

@@ -100,13 +100,13 @@ struct Diagnostics {
 struct Summary {
   std::vector<data::SeriesMean> mean;  ///< in the order of outputs(); each with its own `reliable`
   double cpu_seconds = 0.0;
-  bool reached_target = false;     ///< the standard error of torque is the wanted one or smaller
-  Steady state = Steady::unclear;  ///< whether the means are those of the steady flow
-  std::string why;                 ///< it is not steady: what drifts or lacks, and the remedy
-  double measured_from = 0.0;      ///< s of turning, the start of what is measured
-  double turns = 0.0;              ///< measured
-  std::vector<double> drift_p;     ///< of torque, coordination, kinetic energy (dem/run/looks.hpp)
-  std::string ordering;            ///< how the bed ordered; empty when it did not
+  bool reached_target = false;                         ///< the standard error of torque is the wanted one or smaller
+  data::FlowState state = data::FlowState::too_short;  ///< whether the means are those of the steady flow
+  std::string why;                                     ///< it is not steady: what drifts or lacks, and the remedy
+  double measured_from = 0.0;                          ///< s of turning, the start of what is measured
+  double turns = 0.0;                                  ///< measured
+  std::vector<double> drift_p;                         ///< of torque, coordination, kinetic energy (dem/run/looks.hpp)
+  std::string ordering;                                ///< how the bed ordered; empty when it did not
 };
 
 /// What a run has summed since its last sample, and over all.
@@ -160,9 +160,11 @@ struct RunOptions {
 };
 
 /// The steps of a run, settling included, at which its frames are.
-std::vector<std::uint64_t> frame_steps(const Case& c, int frames);
+std::vector<std::uint64_t> frame_steps(const PreparedCase& prepared, int frames);
 
-/// Throws data::InputError (78) when the case has problems; a run that cannot go on is a result with status failed.
+/// A run that cannot go on is a result with status failed. Throws data::InputError (78) when the spheres do not fit.
+RunResult run(const PreparedCase& prepared, std::uint64_t seed, const RunOptions& options = {});
+/// Prepares the case first: throws data::InputError (78) with all that is wrong with it.
 RunResult run(const Case& c, std::uint64_t seed, const RunOptions& options = {});
 
 /// Mean and standard error of an output by name. Throws std::out_of_range.

@@ -207,7 +207,7 @@ void write_diagnostics(const data::Hdf5Group& group, const Diagnostics& g) {
 
 void write_state(const data::Hdf5Group& group, const Summary& s) {
   group.set("reached_target", static_cast<std::int64_t>(s.reached_target));
-  group.set("state", std::string(name_of(s.state)));
+  group.set("state", data::to_text(s.state));
   group.set("why", s.why);
   group.set("ordering", s.ordering);
   group.set("measured_from_s", s.measured_from);
@@ -217,8 +217,7 @@ void write_state(const data::Hdf5Group& group, const Summary& s) {
 
 void read_state(const data::Hdf5Group& group, Summary& s) {
   s.reached_target = group.integer("reached_target") != 0;
-  for (const Steady state : {Steady::yes, Steady::drifting, Steady::unclear})
-    if (group.text("state") == name_of(state)) s.state = state;
+  s.state = data::from_text<data::FlowState>(group.text("state")).value_or(data::FlowState::too_short);
   s.why = group.text("why");
   s.ordering = group.text("ordering");
   s.measured_from = group.number("measured_from_s");

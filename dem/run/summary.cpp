@@ -86,8 +86,8 @@ std::string ordering_of(const Series& s, double start_up) {
 }
 
 std::string why_not(const Case& c, const Measured& m, double turns) {
-  if (m.state == Steady::yes) return {};
-  if (m.state == Steady::unclear) {
+  if (m.state == data::FlowState::steady) return {};
+  if (m.state == data::FlowState::too_short) {
     if (turns > 0.0 && turns < c.run.shortest_turns * (1.0 - 1e-6))
       return fmt::format("by run.longest, {:g} s, it measured {:.3g} turns, fewer than run.shortest_turns, {:g}",
                          c.run.longest, turns, c.run.shortest_turns);
@@ -143,13 +143,13 @@ Summary summarise(const Case& c, double turn, const Series& s, const Looks& look
 
 std::vector<std::string> warnings_of(const Case& c, const Summary& summary) {
   std::vector<std::string> warnings;
-  if (summary.state == Steady::drifting)
+  if (summary.state == data::FlowState::drifting)
     warnings.push_back(fmt::format("the flow is not steady: {}; raise run.longest", summary.why));
-  if (summary.state == Steady::unclear)
+  if (summary.state == data::FlowState::too_short)
     warnings.push_back(fmt::format("whether the flow is steady is not known: {}; raise run.longest", summary.why));
   const data::SeriesMean& torque = summary.mean.front();
   const double error = torque.mean == 0.0 ? 0.0 : torque.standard_error / std::abs(torque.mean);
-  if (summary.state == Steady::yes && error > 1.5 * c.run.standard_error)
+  if (summary.state == data::FlowState::steady && error > 1.5 * c.run.standard_error)
     warnings.push_back(
         fmt::format("the mean torque is known to {:.2g} %, where {:.2g} % were wanted: raise run.longest",
                     100.0 * error, 100.0 * c.run.standard_error));

@@ -31,7 +31,7 @@ std::vector<double> torque_of(dem::Case c, double from, double to, std::uint64_t
   rig.bodies[driven.body].motion.programme = {{0.0, from}, {change, from}, {change + 1e-4, to}};
   const double dt = dem::derive(c).time_step;
   const auto rest = static_cast<std::uint64_t>(std::llround(c.run.settle / dt));
-  dem::Simulation s(dem::make_setup(c, std::move(rig), rest, 1));
+  dem::Simulation s(dem::make_setup(c, dem::derive(c), std::move(rig), rest, 1));
   while (s.time() < c.run.settle) s.step();
   std::vector<double> sum(2 * turns * parts_a_turn), steps(sum.size());
   while (true) {

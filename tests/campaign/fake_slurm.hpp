@@ -40,7 +40,7 @@ inline void write_result(const campaign::Workspace& workspace, const campaign::P
   if (status == dem::RunStatus::failed) result.reason = "a sphere left the box";
   for (std::size_t k = 0; k < dem::outputs().size(); ++k)
     result.summary.mean.push_back({.mean = 1e-5 * run.point.inputs[0], .standard_error = 1e-7, .reliable = true});
-  result.summary.state = dem::Steady::yes;
+  result.summary.state = data::FlowState::steady;
   constexpr std::size_t samples = 200;
   for (std::vector<double>* values :
        {&result.series.time, &result.series.torque, &result.series.axial_flow, &result.series.coordination,

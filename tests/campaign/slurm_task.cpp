@@ -24,7 +24,7 @@ TEST_CASE("the list of a job gives its points and seeds back to the last digit")
   REQUIRE(points.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) {
     CHECK(points[i].inputs == runs[i].point.inputs);
-    CHECK(csv.rows[i].fields[csv.column("run.seed")] == std::to_string(runs[i].seed));
+    CHECK(csv.rows[i].fields[csv.column("seed")] == std::to_string(runs[i].seed));
     const Workspace own = with_seed(workspace, runs[i].seed);
     CHECK(csv.rows[i].fields[csv.column("run.name")] == run_name(own, runs[i].point));
   }

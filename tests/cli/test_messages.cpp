@@ -92,7 +92,7 @@ TEST_CASE("a study with nothing to calibrate against is refused with what to add
   const std::string text = folder.read("study/study.toml");
   SECTION("no observations") {
     folder.write("study/study.toml", text.substr(0, text.find("[[observe]]")));
-    for (const char* command : {"calibrate", "sample", "fit"}) {
+    for (const char* command : {"calibrate", "sample"}) {
       const auto outcome = folder.demcal({command, "study", "--out", "out"});
       CHECK(outcome.status == 78);
       CHECK_THAT(outcome.err, Contains("has no measurements to calibrate against (add [[observe]]"));

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "dem/bed/derived.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/slice.hpp"
 
@@ -57,7 +58,7 @@ struct Mixer {
     c.rig.stl = std::make_shared<dem::StlRig>(rig);
     return c;
   }
-  dem::Forecast told() { return dem::forecast(built(), 1); }
+  dem::Forecast told() { return dem::forecast(dem::prepare(built()), 1); }
   std::string said() { return data::describe(told().problems); }
 };
 
@@ -214,7 +215,7 @@ TEST_CASE("a slice's surface is that of its cross-section, and a fill that burie
   CHECK(dem::fill_of_slice(c).surface == Approx(0.0).margin(1e-5));
   c = {};
   CHECK(dem::problems(c).empty());
-  const dem::Forecast f = dem::forecast(c, 1);
+  const dem::Forecast f = dem::forecast(dem::prepare(c), 1);
   CHECK(*f.fill > 0.4);
   CHECK(*f.fill < 0.9);
   c.material.density = 2.5;

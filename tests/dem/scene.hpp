@@ -56,7 +56,7 @@ inline constexpr std::uint64_t at_rest = ~std::uint64_t{0};
 
 /// The case's rig and filling; its bodies move from the first step, or are at rest.
 inline dem::Setup rig(const dem::Case& c, std::uint64_t seed, std::uint64_t rest_steps = 0, int threads = 1) {
-  return dem::make_setup(c, dem::build_rig(c, seed), rest_steps, threads);
+  return dem::make_setup(c, dem::derive(c), dem::build_rig(c, seed), rest_steps, threads);
 }
 
 /// Row of the particle that was given first, second, ...: particles are sorted as they move.

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "data/error.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 #include "scene.hpp"
 

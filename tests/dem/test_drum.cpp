@@ -6,6 +6,7 @@
 
 #include "dem/case/grains.hpp"
 #include "dem/forecast/forecast.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/drum.hpp"
 #include "dem/run/run.hpp"
@@ -52,7 +53,7 @@ Balance balance(const dem::Case& c, double start_up, double measured) {
   const dem::Sensor sensor = rig.sensor;
   const double dt = dem::derive(c).time_step;
   const auto rest = static_cast<std::uint64_t>(std::llround(c.run.settle / dt));
-  dem::Simulation s(dem::make_setup(c, std::move(rig), rest, 1));
+  dem::Simulation s(dem::make_setup(c, dem::derive(c), std::move(rig), rest, 1));
   while (s.time() < c.run.settle + start_up) s.step();
   Balance mean;
   const auto steps = static_cast<int>(measured / dt);
@@ -203,7 +204,7 @@ TEST_CASE("a slice's settings say nothing of drums, and a drum's nothing of slic
 TEST_CASE("a drum too full, at rest, too short to repeat or too fast to flow is said before it is run") {
   dem::Case c = small_drum();
   CHECK(dem::problems(c).empty());
-  const dem::Forecast f = dem::forecast(c, 1);
+  const dem::Forecast f = dem::forecast(dem::prepare(c), 1);
   CHECK(f.problems.empty());
   CHECK(f.warnings.empty());
   CHECK(f.fill.value() == Approx(0.4).epsilon(0.01));
@@ -220,6 +221,6 @@ TEST_CASE("a drum too full, at rest, too short to repeat or too fast to flow is 
   CHECK_THAT(data::describe(dem::problems(slip)), Contains("rig.drum_length") && Contains("four spheres"));
   dem::Case fast = c;
   fast.rig.angular_velocity = 40.0;
-  REQUIRE(!dem::forecast(fast, 1).warnings.empty());
-  CHECK_THAT(dem::forecast(fast, 1).warnings.back(), Contains("Froude number is 1.63"));
+  REQUIRE(!dem::forecast(dem::prepare(fast), 1).warnings.empty());
+  CHECK_THAT(dem::forecast(dem::prepare(fast), 1).warnings.back(), Contains("Froude number is 1.63"));
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "dem/case/grains.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/slice.hpp"
 #include "dem/run/run.hpp"

@@ -57,7 +57,7 @@ TEST_CASE("means of steady runs, stopped by looking at their errors, scatter by 
     const double z = (looks.last.torque.mean - 1.0) / looks.last.torque.standard_error;
     square += z * z / runs;
     bias += z / runs;
-    drifting += looks.last.state == dem::Steady::drifting;
+    drifting += looks.last.state == data::FlowState::drifting;
     stopped += looks.next < rule.longest;
   }
   INFO("sd of mean over error " << std::sqrt(square) << ", mean " << bias << ", drifting " << drifting << ", stopped "
@@ -76,7 +76,7 @@ TEST_CASE("a torque that falls by a twentieth over the first look's measurement 
   const std::size_t first = rule.start_up + rule.shortest;
   for (int i = 0; i < runs; ++i) {
     const dem::Series s = flow(first, static_cast<std::uint32_t>(i), 0.05 * static_cast<double>(first) / 600.0);
-    steady += dem::measure(rule, s, first).state == dem::Steady::yes;
+    steady += dem::measure(rule, s, first).state == data::FlowState::steady;
   }
   INFO("called steady " << steady << " of " << runs);
   CHECK(steady <= 0.1 * runs);
@@ -89,9 +89,9 @@ TEST_CASE("a bed whose bonds align is drifting, however steady its torque is") {
     s.look_time.push_back(time);
     s.bond_order.push_back(0.3 + 0.08 * time + 0.007 * random.normal());
   }
-  CHECK(looks_at(s).last.state == dem::Steady::drifting);
+  CHECK(looks_at(s).last.state == data::FlowState::drifting);
   for (double& value : s.bond_order) value = 0.4 + 0.007 * random.normal();
-  CHECK(looks_at(s).last.state == dem::Steady::yes);
+  CHECK(looks_at(s).last.state == data::FlowState::steady);
 }
 
 TEST_CASE("a start-up longer than the least one is dropped") {
@@ -102,7 +102,7 @@ TEST_CASE("a start-up longer than the least one is dropped") {
     for (std::size_t k = 0; k < s.time.size(); ++k)
       s.coordination[k] += 0.1 * std::exp(-1e-3 * static_cast<double>(k) / 0.2);
     const dem::Looks looks = looks_at(s);
-    steady += looks.last.state == dem::Steady::yes;
+    steady += looks.last.state == data::FlowState::steady;
     clear += std::abs(looks.last.torque.mean - 1.0) < 3.0 * looks.last.torque.standard_error;
   }
   CHECK(steady > 0.95 * runs);
@@ -171,6 +171,6 @@ TEST_CASE("a run that ends before its turns are done says so") {
   dem::Looks looks = dem::begin_looks(brief);
   dem::take_looks(brief, flow(500, 1), looks);
   CHECK(looks.ended);
-  CHECK(looks.last.state == dem::Steady::unclear);
-  CHECK(dem::name_of(looks.last.state) == "short");
+  CHECK(looks.last.state == data::FlowState::too_short);
+  CHECK(data::to_text(looks.last.state) == std::string("short"));
 }

@@ -10,6 +10,7 @@
 #include "dem/case/cross_section.hpp"
 #include "dem/case/grains.hpp"
 #include "dem/forecast/forecast.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/machine.hpp"
 #include "dem/run/mixing.hpp"
@@ -83,7 +84,7 @@ Flow turn(const dem::Case& c, double start_up, double measured) {
   const dem::Sensor sensor = rig.sensor;
   const double dt = dem::derive(c).time_step;
   const auto rest = static_cast<std::uint64_t>(std::llround(c.run.settle / dt));
-  dem::Simulation s(dem::make_setup(c, std::move(rig), rest, 1));
+  dem::Simulation s(dem::make_setup(c, dem::derive(c), std::move(rig), rest, 1));
   while (s.time() < c.run.settle + start_up) s.step();
   Flow mean;
   Crossings crossings(c.rig, s.state().particles());
@@ -218,7 +219,7 @@ TEST_CASE("a machine has the same bits with 1, 2 and 4 threads") {
   std::vector<double> torque;
   for (const int threads : {1, 2, 4}) {
     dem::BuiltRig rig = dem::build_rig(c, 2);
-    dem::Simulation s(dem::make_setup(c, std::move(rig), 100, threads));
+    dem::Simulation s(dem::make_setup(c, dem::derive(c), std::move(rig), 100, threads));
     double sum = 0.0, circulation = 0.0;
     for (int k = 0; k < 1500; ++k) {
       s.step();
@@ -292,11 +293,11 @@ TEST_CASE("a machine that cannot be is refused with its key, and a level that st
   CHECK_FALSE(dem::no_output_because(dem::Case{}, "second_torque").empty());
   dem::Case low = small_machine();
   low.rig.level = 0.15;
-  const dem::Forecast f = dem::forecast(low, 1);
+  const dem::Forecast f = dem::forecast(dem::prepare(low), 1);
   REQUIRE(f.warnings.size() >= 2);
   CHECK_THAT(f.warnings[f.warnings.size() - 2], Contains("below the openings' sill"));
   CHECK_THAT(f.warnings.back(), Contains("goes round this machine once in 6 turns at best"));
   low.rig.level = 0.5;
   low.run.start_up_turns = 6.0;
-  CHECK(dem::forecast(low, 1).warnings.empty());
+  CHECK(dem::forecast(dem::prepare(low), 1).warnings.empty());
 }

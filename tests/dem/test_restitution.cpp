@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 #include "scene.hpp"
 

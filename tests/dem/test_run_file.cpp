@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "data/error.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/read_case.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/run/run_file.hpp"
@@ -214,7 +215,7 @@ TEST_CASE("a run too short to be steady, or to know its error, says so in its re
   c.run.window = 2e-3;
   const dem::RunResult run = dem::run(c, 6);
   CHECK(run.status == dem::RunStatus::done);
-  CHECK(run.summary.state == dem::Steady::unclear);
+  CHECK(run.summary.state == data::FlowState::too_short);
   REQUIRE(!run.warnings.empty());
   CHECK_THAT(run.warnings[0], Catch::Contains("fewer than run.shortest_turns") && Catch::Contains("run.longest"));
   const std::string path = folder.path("run.h5");

@@ -3,6 +3,7 @@
 
 #include "data/error.hpp"
 #include "data/random.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/slice.hpp"
 #include "dem/run/run.hpp"

@@ -65,8 +65,8 @@ TEST_CASE("equal spheres that order are caught: no part of a second before they 
     const dem::Measured m = dem::measure(rule, part(s, samples(from), samples(0.6)), samples(0.6));
     INFO("from " << from << " s, torque " << 1e6 * m.torque.mean << " +- " << 1e6 * m.torque.standard_error
                  << " uN m, bonds rise " << m.bonds_rise);
-    CHECK(m.state != dem::Steady::yes);
-    steady += m.state == dem::Steady::yes;
+    CHECK(m.state != data::FlowState::steady);
+    steady += m.state == data::FlowState::steady;
     ++windows;
   }
   CHECK(steady == 0);
@@ -84,7 +84,7 @@ TEST_CASE("parts of steady runs of our own are called drifting in at most 5 of 1
       const dem::Measured m = dem::measure(rule, part(s, from, samples(width)), samples(width));
       INFO(name << " from " << s.time[from] << " s: p " << m.drift_p[0] << " " << m.drift_p[1] << " " << m.drift_p[2]
                 << ", bonds rise " << m.bonds_rise);
-      drifting += m.state == dem::Steady::drifting;
+      drifting += m.state == data::FlowState::drifting;
       ++windows;
     }
   }
@@ -100,7 +100,7 @@ TEST_CASE("the torque of the first steady part of a run is that of all that foll
         .start_up = samples(0.2), .shortest = samples(0.3), .longest = s.time.size(), .standard_error = 0.02};
     dem::Looks looks = dem::begin_looks(rule);
     dem::take_looks(rule, s, looks);
-    CHECK(looks.last.state == dem::Steady::yes);
+    CHECK(looks.last.state == data::FlowState::steady);
     CHECK(looks.next < s.time.size());
     const dem::Measured all = dem::measure(rule, s, s.time.size());
     INFO(name << ": " << 1e6 * looks.last.torque.mean << " +- " << 1e6 * looks.last.torque.standard_error << ", all "
@@ -121,7 +121,7 @@ TEST_CASE("five parts in a hundred more torque at the end than at the start of a
       p.coordination[k] *= 1.0 + 0.05 * way;
     }
     const dem::LookRule rule{.start_up = 0, .shortest = samples(1.0), .longest = samples(1.0), .standard_error = 0.02};
-    caught += dem::measure(rule, p, samples(1.0)).state == dem::Steady::drifting;
+    caught += dem::measure(rule, p, samples(1.0)).state == data::FlowState::drifting;
     ++windows;
   }
   INFO(caught << " of " << windows);

@@ -114,7 +114,7 @@ TEST_CASE(
   c.rig.fill = 12000.0;
   const dem::BuiltRig built = dem::build_rig(c, 3);
   REQUIRE(built.position.size() == 12000);
-  const dem::Simulation s(dem::make_setup(c, built, 0, 1));
+  const dem::Simulation s(dem::make_setup(c, dem::derive(c), built, 0, 1));
   CHECK(s.sums().contacts + s.sums().wall_contacts == 0);
   const dem::Rig slice;
   for (const dem::Vec3 p : built.position) {
@@ -138,7 +138,8 @@ TEST_CASE("spheres start where a CSV says, and one outside the box or inside a m
   CHECK(built.position[1].y == Approx(-5.5e-3));
   CHECK(dem::derive(dem::read_case(folder.study(text), "steel")).spheres == 2);
   folder.write("at.csv", "x,y,z,vx,vy,vz,frozen\n6,5.5,2,0,0,-0.1,0\n3,-5.5,3,0,0,1,1\n");
-  dem::Simulation s(dem::make_setup(dem::read_case(folder.study(text), "steel"), build(), 0, 1));
+  const dem::Case turning = dem::read_case(folder.study(text), "steel");
+  dem::Simulation s(dem::make_setup(turning, dem::derive(turning), build(), 0, 1));
   while (s.time() < 5e-3) s.step();
   CHECK(scene::position_of(s, 0).z == Approx(2e-3 - 0.1 * s.time() - 0.5 * 9.81 * s.time() * s.time()).epsilon(1e-3));
   CHECK(scene::position_of(s, 1).z == Approx(3e-3 + 1.0 * s.time()).epsilon(1e-12));  // keeps its velocity

@@ -109,6 +109,10 @@ observe = ["bench2"]
 free = ["NAME"]
 noise = "unknown"
 discrepancy = true
+[[calibrate]]
+name = "three"
+material = "NAME"
+free = ["NAME"]
 [[predict]]
 name = "one"
 case = "one"
@@ -311,7 +315,8 @@ std::string reference_name(const std::string& dotted) {
   std::string name = std::regex_replace(dotted, std::regex("NAME[0-9]+"), "NAME");
   name = std::regex_replace(name, std::regex("\\.[0-9]+(?=\\.|$)"), "");
   name = std::regex_replace(
-      name, std::regex("^(observe|calibrate|rig\\.mesh|plan\\.candidates|predict)\\.(bench2|bench|one|two|mixer)"),
+      name,
+      std::regex("^(observe|calibrate|rig\\.mesh|plan\\.candidates|predict)\\.(bench2|bench|one|two|three|mixer)"),
       "$1");
   name = std::regex_replace(name, std::regex("^materials\\.NAME\\.contact\\."), "contact.");
   // Priors have the same keys wherever they stand.

@@ -15,7 +15,8 @@ namespace {
 const std::set<std::string> read_elsewhere{"training.unsteady"};
 
 /// Choices whose default depends on other keys.
-const std::set<std::string> in_words{"training.engine", "observe.rig", "observe.material", "contact.tangential"};
+const std::set<std::string> in_words{"training.engine", "observe.rig", "observe.material", "calibrate.material",
+                                     "contact.tangential"};
 
 bool is_section(const std::string& name) {
   const std::string first = name.substr(0, name.find('.'));

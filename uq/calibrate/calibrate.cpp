@@ -10,6 +10,7 @@
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "uq/calibrate/data_check.hpp"
+#include "uq/findings/wording.hpp"
 #include "uq/posterior/predictive.hpp"
 #include "uq/posterior/support.hpp"
 #include "uq/posterior/unused_data.hpp"
@@ -238,13 +239,12 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
       put_failed_prediction_first(made, made.predictions.back().name);
     }
     if (made.doubt.empty()) made.comparisons = compare_models(study, sampled, index, own);
-    report.warnings.insert(report.warnings.end(), made.warnings.begin(), made.warnings.end());
     if (options.error_scan.empty()) continue;
     tell("error scan of case " + study.cases[index].name);
     if (!made.doubt.empty()) continue;  // what another error would give is as doubtful
     for (auto& scan : scan_errors(study, sampled, index, own)) report.error_scan.push_back(std::move(scan));
   }
-  report.warning = !report.warnings.empty();
+  report.warning = !first_lines(report).empty();
   report.thresholds = describe(options.identify.thresholds);
   for (auto& threshold : describe(SupportThresholds{})) report.thresholds.push_back(std::move(threshold));
   report.provenance.emplace_back("seed", std::to_string(seed_of(study, options)));
@@ -253,10 +253,6 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   report.provenance.emplace_back("calibration time", fmt::format("{:.1f} s", elapsed.count()));
   if (options.progress) options.progress("done", 1.0);
   return result;
-}
-
-CalibrationReport calibrate(const data::Study& study, const data::RunTable& table, const CalibrateOptions& options) {
-  return calibrate_all(study, table, options).report;
 }
 
 }  // namespace uq

@@ -86,8 +86,4 @@ std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& 
 
 Calibration calibrate_all(const data::Study& study, const data::RunTable& table, const CalibrateOptions& options = {});
 
-/// The report alone.
-CalibrationReport calibrate(const data::Study& study, const data::RunTable& table,
-                            const CalibrateOptions& options = {});
-
 }  // namespace uq

@@ -17,7 +17,7 @@ namespace {
 using data::Finding;
 using data::Severity;
 
-double share_inside(const Column& column, double low, double high, double factor = 1.0) {
+double share_inside(const InputColumn& column, double low, double high, double factor = 1.0) {
   const double slack = 0.01 * (high - low);
   const auto inside = std::count_if(column.values.begin(), column.values.end(), [&](double value) {
     return factor * value >= low - slack && factor * value <= high + slack;
@@ -26,13 +26,13 @@ double share_inside(const Column& column, double low, double high, double factor
 }
 
 /// Share of a range that values times a factor span.
-double span(const Column& column, double factor = 1.0) {
+double span(const InputColumn& column, double factor = 1.0) {
   const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
   return factor * (*most - *least) / (column.high - column.low);
 }
 
 /// A column that fills its range only when it is read in another unit.
-std::optional<Finding> other_unit(const Column& column) {
+std::optional<Finding> other_unit(const InputColumn& column) {
   const double inside = share_inside(column, column.low, column.high);
   if (!(span(column) > 0.0) || (inside > 0.5 && span(column) > 0.05)) return {};
   for (const UnitFactor& known : unit_factors())
@@ -59,10 +59,10 @@ std::optional<Finding> other_unit(const Column& column) {
 }
 
 /// Two columns of which each fits the other's range and not both their own.
-std::optional<Finding> exchanged(const Column& a, const Column& b, double share) {
+std::optional<Finding> exchanged(const InputColumn& a, const InputColumn& b, double share) {
   const double own = std::min(share_inside(a, a.low, a.high), share_inside(b, b.low, b.high));
   // The numbers as written: a header says nothing of units.
-  const auto in_range_of = [](const Column& column, const Column& other) {
+  const auto in_range_of = [](const InputColumn& column, const InputColumn& other) {
     const double low = other.shown(other.low), high = other.shown(other.high), slack = 0.01 * (high - low);
     const auto inside = std::count_if(column.values.begin(), column.values.end(), [&](double value) {
       return column.shown(value) >= low - slack && column.shown(value) <= high + slack;
@@ -70,7 +70,7 @@ std::optional<Finding> exchanged(const Column& a, const Column& b, double share)
     return static_cast<double>(inside) / static_cast<double>(column.values.size());
   };
   if (own > 0.5 || in_range_of(a, b) < share || in_range_of(b, a) < share) return {};
-  const auto range = [](const Column& column) {
+  const auto range = [](const InputColumn& column) {
     const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
     return fmt::format("{:.4g} to {:.4g}", column.shown(*least), column.shown(*most));
   };
@@ -87,7 +87,8 @@ std::optional<Finding> exchanged(const Column& a, const Column& b, double share)
 }
 
 /// A control's column that holds what was measured of an output, and the output's column that holds the control.
-std::optional<Finding> exchanged_output(const data::Study& study, const data::RunTable& table, const Column& control) {
+std::optional<Finding> exchanged_output(const data::Study& study, const data::RunTable& table,
+                                        const InputColumn& control) {
   if (share_inside(control, control.low, control.high) > 0.5) return {};
   for (std::size_t k = 0; k < study.outputs.size(); ++k) {
     const data::Unit& unit = study.outputs[k].unit;
@@ -99,7 +100,7 @@ std::optional<Finding> exchanged_output(const data::Study& study, const data::Ru
           low = std::min(low, unit.from_si(point.values[c]));
           high = std::max(high, unit.from_si(point.values[c]));
         }
-    Column output{study.outputs[k].name, unit, 0.0, 1.0, false, {}, {}};
+    InputColumn output{study.outputs[k].name, unit, 0.0, 1.0, false, {}, {}};
     std::size_t inside = 0;
     for (const data::RunRow& row : table.rows) {
       if (!row.left_out.empty() || !std::isfinite(row.outputs[k])) continue;
@@ -159,8 +160,8 @@ std::optional<UnitFactor> known_factor(double typical, double expected, double s
 
 std::vector<Finding> check_ranges(const data::Study& study, data::RunTable& table, const DataCheckThresholds& t) {
   std::vector<Finding> findings;
-  std::vector<Column> columns = input_columns(study, table);
-  std::erase_if(columns, [](const Column& column) { return column.values.empty(); });
+  std::vector<InputColumn> columns = input_columns(study, table);
+  std::erase_if(columns, [](const InputColumn& column) { return column.values.empty(); });
   std::vector<bool> told(columns.size(), false);
   for (std::size_t a = 0; a < columns.size(); ++a)
     for (std::size_t b = a + 1; b < columns.size(); ++b)
@@ -179,7 +180,7 @@ std::vector<Finding> check_ranges(const data::Study& study, data::RunTable& tabl
       told[a] = true;
     }
   for (std::size_t a = 0; a < columns.size(); ++a) {
-    const Column& column = columns[a];
+    const InputColumn& column = columns[a];
     if (!column.is_parameter || told[a]) continue;
     const data::Parameter& parameter = study.parameters[*study.parameter_index(column.name)];
     std::vector<std::string> near, far;

@@ -18,7 +18,7 @@ namespace {
 using data::Finding;
 using data::Severity;
 
-Eigen::VectorXd scaled(const data::Study& study, const Column& column) {
+Eigen::VectorXd scaled(const data::Study& study, const InputColumn& column) {
   const data::Axis axis = column.is_parameter ? study.parameters[*study.parameter_index(column.name)].axis()
                                               : study.controls[*study.control_index(column.name)].axis();
   Eigen::VectorXd u(static_cast<Eigen::Index>(column.values.size()));
@@ -50,8 +50,8 @@ Eigen::MatrixXd correlations(Eigen::MatrixXd columns) {
   return columns.transpose() * columns;
 }
 
-void check_together(const std::string& material, const std::vector<const Column*>& columns, const Eigen::MatrixXd& u,
-                    const DataCheckThresholds& t, std::vector<Finding>& findings) {
+void check_together(const std::string& material, const std::vector<const InputColumn*>& columns,
+                    const Eigen::MatrixXd& u, const DataCheckThresholds& t, std::vector<Finding>& findings) {
   const Eigen::Index inputs = u.cols(), runs = u.rows();
   if (inputs < 2 || runs < 6) return;
   Eigen::MatrixXd ranked(runs, inputs);
@@ -102,8 +102,8 @@ bool is_free(const data::Study& study, const std::string& name) {
          });
 }
 
-void check_cover(const data::Study& study, const Column& column, const Eigen::VectorXd& u, const DataCheckThresholds& t,
-                 std::vector<Finding>& findings) {
+void check_cover(const data::Study& study, const InputColumn& column, const Eigen::VectorXd& u,
+                 const DataCheckThresholds& t, std::vector<Finding>& findings) {
   const double low = std::max(0.0, u.minCoeff()), high = std::min(1.0, u.maxCoeff());
   if (high - low >= t.covered || !is_free(study, column.name)) return;
   const data::Parameter& parameter = study.parameters[*study.parameter_index(column.name)];
@@ -142,11 +142,12 @@ std::size_t input_column(const data::RunTable& table, const std::string& name) {
   return 0;
 }
 
-std::vector<Column> input_columns(const data::Study& study, const data::RunTable& table, const std::string* material) {
-  std::vector<Column> columns;
+std::vector<InputColumn> input_columns(const data::Study& study, const data::RunTable& table,
+                                       const std::string* material) {
+  std::vector<InputColumn> columns;
   for (const data::Parameter& p : study.parameters) columns.push_back({p.name, p.unit, p.low, p.high, true, {}, {}});
   for (const data::Control& c : study.controls) columns.push_back({c.name, c.unit, c.low, c.high, false, {}, {}});
-  for (Column& column : columns) {
+  for (InputColumn& column : columns) {
     const std::size_t at = input_column(table, column.name);
     for (const data::RunRow& row : table.rows) {
       if (!row.left_out.empty() || (material != nullptr && row.material != *material)) continue;
@@ -164,10 +165,10 @@ std::vector<Finding> check_design(const data::Study& study, const data::RunTable
   for (const data::RunRow& row : table.rows)
     if (row.left_out.empty()) materials.insert(row.material);
   for (const std::string& material : materials) {
-    const std::vector<Column> columns = input_columns(study, table, &material);
-    std::vector<const Column*> varied;
+    const std::vector<InputColumn> columns = input_columns(study, table, &material);
+    std::vector<const InputColumn*> varied;
     std::vector<Eigen::VectorXd> values;
-    for (const Column& column : columns) {
+    for (const InputColumn& column : columns) {
       const Eigen::VectorXd u = scaled(study, column);
       if (u.size() == 0 || !u.allFinite() || !(u.maxCoeff() - u.minCoeff() > 1e-9)) continue;
       varied.push_back(&column);

@@ -14,6 +14,7 @@
 
 #include "data/error.hpp"
 #include "data/observations.hpp"
+#include "data/time_series.hpp"
 #include "uq/calibrate/data_columns.hpp"
 #include "uq/emulate/surrogates.hpp"
 #include "uq/posterior/case_model.hpp"
@@ -25,11 +26,6 @@ using data::Finding;
 using data::Severity;
 
 std::string file_of(const data::ObservationSet& set) { return set.file.substr(set.file.rfind('/') + 1); }
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 struct Extent {
   double low = HUGE_VAL, high = -HUGE_VAL;
@@ -85,7 +81,7 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
     for (const data::Observation& point : set.points) seen.add(point.values[column]);
     if (runs.values.size() < 5 || seen.values.empty() || is_scaled(study, set, set.outputs[column])) continue;
     const double reach = runs.high - runs.low;
-    const double ratio = median(seen.values) / median(runs.values);
+    const double ratio = data::median_of(seen.values) / data::median_of(runs.values);
     const bool apart = seen.high < runs.low || seen.low > runs.high;
     const bool far = seen.high < runs.low - reach || seen.low > runs.high + reach || !(ratio > 0.2 && ratio < 5.0);
     if (!(reach > 0.0) || !apart || !far) continue;
@@ -100,7 +96,7 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
                             seen.low < seen.high ? "" : "s", shown(runs.low), shown(runs.high), unit),
         .remedy = "",
         .places = {}};
-    if (const auto known = known_factor(median(seen.values), median(runs.values), 2.0))
+    if (const auto known = known_factor(data::median_of(seen.values), data::median_of(runs.values), 2.0))
       finding.what += fmt::format(": {:.3g} times the runs'. Is another unit meant, {}?", ratio, known->between);
     finding.remedy = fmt::format(
         "check the unit of {} in {} and in the run table, the fill and the geometry; where they are "
@@ -121,7 +117,7 @@ void check_control_unit(const data::Study& study, const data::RunTable& table, c
     for (const data::Observation& point : set.points) seen.add(point.controls[c]);
     if (runs.values.empty() || seen.values.empty()) continue;
     const double slack = 0.1 * (control.high - control.low);
-    const double typical = median(runs.values);
+    const double typical = data::median_of(runs.values);
     if (typical < control.low || typical > control.high) continue;  // then it is the runs' column that is odd
     const auto met = std::count_if(seen.values.begin(), seen.values.end(), [&](double value) {
       return value >= runs.low - 0.2 * slack && value <= runs.high + 0.2 * slack;
@@ -271,19 +267,12 @@ std::vector<Finding> check_cases(const data::Study& study, const data::RunTable&
   std::vector<Finding> findings;
   std::vector<Emulator> emulators;
   try {
-    for (const TrainingRows& rows : training_rows(study, table, low)) {
-      Emulator emulator{.material = rows.material,
-                        .output = rows.output,
-                        .inputs = rows.inputs,
-                        .constants = rows.constants,
-                        .control_range = rows.control_range,
-                        .predict = {}};
-      emulators.push_back(std::move(emulator));
-    }
+    emulators = outlines_of(study, table, low);
   } catch (const data::InputError&) {
     return findings;  // too few runs, which is said elsewhere
   }
   for (std::size_t i = 0; i < study.cases.size(); ++i) {
+    if (study.cases[i].observe.empty()) continue;
     try {
       build_case(study, emulators, i);
     } catch (const data::InputError& error) {

@@ -9,7 +9,7 @@
 
 namespace uq {
 
-struct Column {
+struct InputColumn {
   std::string name;
   data::Unit unit;
   double low = 0.0, high = 1.0;  ///< the range, SI
@@ -25,8 +25,8 @@ struct Column {
 bool is_held(const data::Study& study, const data::RunRow& row, const std::string& name);
 
 /// Every parameter and control; rows left out, or whose material holds the parameter, are not in it.
-std::vector<Column> input_columns(const data::Study& study, const data::RunTable& table,
-                                  const std::string* material = nullptr);
+std::vector<InputColumn> input_columns(const data::Study& study, const data::RunTable& table,
+                                       const std::string* material = nullptr);
 
 /// Place of a name in RunRow::inputs. The table has all of the study's names, or reading it failed.
 std::size_t input_column(const data::RunTable& table, const std::string& name);

@@ -21,6 +21,16 @@ struct EmulatorInput {
   std::size_t index = 0;  ///< in Study::parameters or Study::controls
 };
 
+/// It refers to the study.
+inline data::Input input_of(const data::Study& study, const EmulatorInput& input) {
+  if (input.kind == InputKind::parameter) {
+    const data::Parameter& p = study.parameters[input.index];
+    return {p.name, p.target, p.unit, p.axis()};
+  }
+  const data::Control& c = study.controls[input.index];
+  return {c.name, c.target, c.unit, c.axis()};
+}
+
 /// The runs that an emulator has learnt from, as far as uq/posterior/support.hpp needs them.
 struct RunCloud {
   Eigen::MatrixXd points;         ///< unit cube, one per row, both levels where there are two
@@ -36,9 +46,10 @@ struct Emulator {
   std::map<std::size_t, double> constants;  ///< parameters that the material's runs hold at one value, SI
   std::map<std::size_t, std::pair<double, double>> control_range;  ///< SI, of the runs
   std::function<surrogate::Prediction(const Eigen::MatrixXd& points)> predict;
-  /// The means of `predict` alone; empty where it has no cheaper way.
+  /// The means of `predict` alone. Empty where that is not cheaper.
   std::function<Eigen::VectorXd(const Eigen::MatrixXd& points)> predict_mean = {};
-  /// Derivatives to a common shift of each coordinate of all rows; empty where there are none.
+  /// Slopes of mean and covariance along inputs. For each k of `coordinates`: the derivative when input k of all rows
+  /// moves by the same amount (unit cube). Empty: the caller takes differences.
   std::function<surrogate::PredictionGradient(const Eigen::MatrixXd& points, std::span<const int> coordinates)>
       predict_with_gradient = {};
   /// Points stacked in groups of `group` rows; empty where there is none.

@@ -7,19 +7,13 @@
 #include <optional>
 
 #include "data/error.hpp"
+#include "data/time_series.hpp"
 
 namespace uq {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Errors over their predicted sd, of the runs kept and of those put aside, on the process's own scale.
 struct Errors {
@@ -66,9 +60,10 @@ struct RobustScale {
 RobustScale robust_scale(const VectorXd& standardised, const std::vector<int>& kept) {
   std::vector<double> values;
   for (const int i : kept) values.push_back(standardised[i]);
-  const double centre = median(values);
+  if (values.empty()) return {0.0, 0.0};
+  const double centre = data::median_of(values);
   for (double& value : values) value = std::abs(value - centre);
-  return {centre, 1.4826 * median(values)};
+  return {centre, 1.4826 * data::median_of(values)};
 }
 
 /// Runs at different points whose output is one and the same number, three or more of them: what a program writes that
@@ -204,7 +199,7 @@ std::optional<OneEnd> at_one_end(const Eigen::MatrixXd& x, const std::vector<int
     if (!(variance > 0.0)) continue;
     const double z = (sum - 0.5 * m * (n + 1.0)) / std::sqrt(variance);
     const double p = std::min(1.0, std::erfc(std::abs(z) / std::sqrt(2.0)) * static_cast<double>(x.cols()));
-    const double middle = z < 0.0 ? median(ranks) : n + 1.0 - median(ranks);
+    const double middle = z < 0.0 ? data::median_of(ranks) : n + 1.0 - data::median_of(ranks);
     if (p <= one_end_p && middle <= 0.25 * (n + 1.0) && (!found || p < found->p))
       found = OneEnd{.input = static_cast<int>(k), .low = z < 0.0, .p = p};
   }

@@ -15,10 +15,9 @@ namespace {
 
 surrogate::SurrogateKey key_of(const data::Study& study, const data::RunTable& table, const SurrogateOptions& options) {
   std::string text = fmt::format("{} {}\n", data::program_version(), report_edition);
-  for (const data::Parameter& p : study.parameters)
-    text += fmt::format("{} {} {} {} {}\n", p.name, p.unit.symbol, p.low, p.high, p.scale == data::Scale::log);
-  for (const data::Control& c : study.controls)
-    text += fmt::format("{} {} {} {} {}\n", c.name, c.unit.symbol, c.low, c.high, c.scale == data::Scale::log);
+  for (const data::Input& one : data::inputs_of(study))
+    text += fmt::format("{} {} {} {} {}\n", one.name, one.unit.symbol, one.axis.low, one.axis.high,
+                        one.axis.scale == data::Scale::log);
   for (const data::Output& output : study.outputs) text += fmt::format("{} {}\n", output.name, output.unit.symbol);
   const surrogate::FitOptions& fit = options.fit;
   text +=

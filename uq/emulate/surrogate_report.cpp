@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data/time_series.hpp"
 #include "uq/emulate/outlying_runs.hpp"
 #include "uq/emulate/scale_hint.hpp"
 #include "uq/emulate/sensitivity.hpp"
@@ -16,10 +17,6 @@ std::vector<double> in_unit(const Eigen::VectorXd& values, const data::Unit& uni
   std::vector<double> shown;
   for (const double value : values) shown.push_back(unit.from_si(value));
   return shown;
-}
-
-const std::string& input_name(const data::Study& study, const EmulatorInput& input) {
-  return input.kind == InputKind::parameter ? study.parameters[input.index].name : study.controls[input.index].name;
 }
 
 /// What the two-level process found, and how its cheaper level did.
@@ -60,14 +57,12 @@ void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const 
   }
   if (const auto end = at_one_end(rows.set.x, found.runs)) {
     const EmulatorInput& input = rows.inputs[end->input];
-    std::pair<double, double> covered;
-    if (input.kind == InputKind::control)
-      covered = rows.control_range.at(input.index);
-    else
-      covered = {study.parameters[input.index].low, study.parameters[input.index].high};
+    const data::Input named = input_of(study, input);
+    std::pair covered{named.axis.low, named.axis.high};
+    if (input.kind == InputKind::control) covered = rows.control_range.at(input.index);
     report.outlying_together = fmt::format(
         "They lie together at {} {} (rank-sum test, p {:.1g}), as good runs do where the surrogate does not bend. {}",
-        end->low ? "low" : "high", input_name(study, input), end->p, bend_hint(study, input, covered, end->low));
+        end->low ? "low" : "high", named.name, end->p, bend_hint(study, input, covered, end->low));
     report.remedy = fmt::format("All others contradict {} runs. {} If they are wrong, leave them out: {}. ",
                                 report.outlying.size(), report.outlying_together, leave_out_key(report.outlying)) +
                     report.remedy;
@@ -82,38 +77,23 @@ void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const 
   for (Eigen::Index i = 0; i < rows.set.y.size(); ++i)
     if (rows.set.y[i] != 0.0) relative.push_back(std::sqrt(rows.set.noise_variance[i]) / std::abs(rows.set.y[i]));
   if (relative.size() < 20) return;
-  std::nth_element(relative.begin(), relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2),
-                   relative.end());
-  const double typical = relative[relative.size() / 2];
+  const double typical = data::median_of(std::move(relative));
   if (found.scatter < 0.25 && typical > 0.03)
-    report.notes.push_back(
-        fmt::format("{}{:.2g} times what their standard errors say ({:.0f} % of the value): are the errors in percent?",
-                    overstated_errors, found.scatter, 100.0 * typical));
-}
-
-/// "length scale of input 2" by the input's own name, wherever the judgement speaks of it.
-void name_inputs(SurrogateReport& report) {
-  std::vector<std::string*> texts{&report.finding, &report.consequence, &report.remedy};
-  for (std::string& note : report.notes) texts.push_back(&note);
-  for (std::string* text : texts)
-    for (std::size_t k = report.inputs.size(); k-- > 0;) {  // input 12 before input 1
-      const std::string number = fmt::format("of input {}", k + 1), name = "of " + report.inputs[k];
-      for (std::size_t at = text->find(number); at != std::string::npos; at = text->find(number, at + name.size()))
-        text->replace(at, number.size(), name);
-    }
+    report.errors_in_doubt = fmt::format(
+        "the runs scatter only {:.2g} times what their standard errors say ({:.0f} % of the value): are the errors in "
+        "percent?",
+        found.scatter, 100.0 * typical);
 }
 
 /// "friction 0.45, rpm 120 rpm": a point of the unit cube in the study's units.
 std::string point_text(const data::Study& study, const TrainingRows& rows, const Eigen::VectorXd& point) {
   std::string text;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
-    const EmulatorInput& input = rows.inputs[k];
-    const double u = point[k];
-    const bool is_parameter = input.kind == InputKind::parameter;
-    const data::Unit& unit = is_parameter ? study.parameters[input.index].unit : study.controls[input.index].unit;
-    const data::Axis axis = is_parameter ? study.parameters[input.index].axis() : study.controls[input.index].axis();
-    text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", input_name(study, input),
-                        unit.from_si(axis.from_unit(u)), unit.symbol.empty() ? "" : " ", unit.symbol);
+    const data::Input input = input_of(study, rows.inputs[k]);
+    const std::string& symbol = input.unit.symbol;
+    text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", input.name,
+                        input.unit.from_si(input.axis.from_unit(point[static_cast<Eigen::Index>(k)])),
+                        symbol.empty() ? "" : " ", symbol);
   }
   return text;
 }
@@ -173,7 +153,7 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
                                             : hyper.nugget_sd * (logarithmic ? std::abs(rows.set.y.mean()) : 1.0);
   report.nugget_sd = nugget_sd / output.unit.factor;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
-    report.inputs.push_back(input_name(study, rows.inputs[k]));
+    report.inputs.push_back(input_of(study, rows.inputs[k]).name);
     report.length_scales.push_back(hyper.length_scales[k]);
   }
   report.observed = in_unit(rows.set.y, output.unit);
@@ -218,7 +198,6 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
       !hint.empty() && (report.verdict != SurrogateWord::good || !report.outlying.empty()) &&
       report.outlying_together.empty())  // else that says what to try
     report.remedy += " " + hint;
-  name_inputs(report);
   return report;
 }
 

@@ -7,9 +7,6 @@ namespace uq {
 /// The options of one surrogate's fit.
 surrogate::FitOptions options_for(const data::Study& study, const TrainingRows& rows, const SurrogateOptions& options);
 
-/// How a note begins that suspects the runs' standard errors.
-inline constexpr const char* overstated_errors = "the runs scatter only ";
-
 /// Validates the surrogate (its `report` is not looked at).
 SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitted, const SurrogateOptions& options);
 

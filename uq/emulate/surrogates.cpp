@@ -124,8 +124,7 @@ std::vector<std::string> surrogate_warnings(const std::vector<FittedSurrogate>& 
           fmt::format("the surrogate of {} is unusable and cannot stand for the model ({} runs): ignore "
                       "what rests on it. {}",
                       described(report), report.runs, report.remedy));
-    for (const std::string& note : report.notes)
-      if (note.rfind(overstated_errors, 0) == 0) warnings.push_back(described(report) + ": " + note);
+    if (!report.errors_in_doubt.empty()) warnings.push_back(described(report) + ": " + report.errors_in_doubt);
     if (!report.converged)
       warnings.push_back(fmt::format("the fit of the surrogate of {} did not converge", described(report)));
   }

@@ -55,6 +55,11 @@ struct SurrogateOptions {
 std::vector<TrainingRows> training_rows(const data::Study& study, const data::RunTable& table,
                                         const std::optional<data::RunTable>& low = {});
 
+/// Emulators that know what their runs cover, and predict nothing: enough to see whether a case or a plan can be. Throws
+/// as `training_rows` does.
+std::vector<Emulator> outlines_of(const data::Study& study, const data::RunTable& table,
+                                  const std::optional<data::RunTable>& low = {});
+
 /// Where the runs of each material that a fitted surrogate stands for lie, those left out too.
 std::vector<DesignReport> designs_of(const data::Study& study, const data::RunTable& table,
                                      const std::vector<FittedSurrogate>& fitted);

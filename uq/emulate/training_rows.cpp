@@ -29,6 +29,12 @@ struct Columns {
   std::vector<std::size_t> parameters, controls, outputs;
 };
 
+/// Of an input in RunRow::inputs.
+std::size_t column_of(const Columns& columns, const EmulatorInput& input) {
+  return input.kind == InputKind::parameter ? columns.parameters[input.index]
+                                            : columns.parameters.size() + columns.controls[input.index];
+}
+
 Columns columns_of(const data::Study& study, const data::RunTable& table) {
   Columns columns;
   for (const auto& parameter : study.parameters)
@@ -115,8 +121,10 @@ TrainingRows rows_of(const data::Study& study, const LevelRows& high, const Leve
   }
   found.set.x.resize(highs, static_cast<Eigen::Index>(inputs.size()));
   for (std::size_t k = 0; k < inputs.size(); ++k) found.set.x.col(static_cast<Eigen::Index>(k)) = inputs[k].head(highs);
+  for (const EmulatorInput& input : found.inputs) found.set.names.push_back(input_of(study, input).name);
   if (lows == 0) return found;
-  found.low = surrogate::TrainingSet{Eigen::MatrixXd(lows, found.set.x.cols()), low.y, low.noise_variance};
+  found.low =
+      surrogate::TrainingSet{Eigen::MatrixXd(lows, found.set.x.cols()), low.y, low.noise_variance, found.set.names};
   for (std::size_t k = 0; k < inputs.size(); ++k) found.low->x.col(static_cast<Eigen::Index>(k)) = inputs[k].tail(lows);
   return found;
 }
@@ -162,6 +170,19 @@ std::vector<TrainingRows> training_rows(const data::Study& study, const data::Ru
   return all;
 }
 
+std::vector<Emulator> outlines_of(const data::Study& study, const data::RunTable& table,
+                                  const std::optional<data::RunTable>& low) {
+  std::vector<Emulator> outlines;
+  for (TrainingRows& rows : training_rows(study, table, low))
+    outlines.push_back({.material = std::move(rows.material),
+                        .output = rows.output,
+                        .inputs = std::move(rows.inputs),
+                        .constants = std::move(rows.constants),
+                        .control_range = std::move(rows.control_range),
+                        .predict = {}});
+  return outlines;
+}
+
 std::vector<DesignReport> designs_of(const data::Study& study, const data::RunTable& table,
                                      const std::vector<FittedSurrogate>& fitted) {
   std::vector<DesignReport> designs;
@@ -173,19 +194,14 @@ std::vector<DesignReport> designs_of(const data::Study& study, const data::RunTa
     DesignReport design{
         .material = one.rows.material, .inputs = {}, .units = {}, .runs = {}, .left_out = {}, .reasons = {}};
     for (const EmulatorInput& input : one.rows.inputs) {
-      const bool is_parameter = input.kind == InputKind::parameter;
-      design.inputs.push_back(is_parameter ? study.parameters[input.index].name : study.controls[input.index].name);
-      design.units.push_back(is_parameter ? study.parameters[input.index].unit.symbol
-                                          : study.controls[input.index].unit.symbol);
+      design.inputs.push_back(input_of(study, input).name);
+      design.units.push_back(input_of(study, input).unit.symbol);
     }
     for (const data::RunRow& row : table.rows) {
       if (row.material != one.rows.material) continue;
       std::vector<double> point;
       for (const EmulatorInput& input : one.rows.inputs)
-        point.push_back(input.kind == InputKind::parameter
-                            ? study.parameters[input.index].unit.from_si(row.inputs[columns.parameters[input.index]])
-                            : study.controls[input.index].unit.from_si(
-                                  row.inputs[columns.parameters.size() + columns.controls[input.index]]));
+        point.push_back(input_of(study, input).unit.from_si(row.inputs[column_of(columns, input)]));
       const std::size_t column = columns.outputs[one.rows.output];
       const std::string reason = !row.left_out.empty() ? row.left_out
                                  : std::isfinite(row.outputs[column])

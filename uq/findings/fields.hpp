@@ -26,12 +26,12 @@ concept SameAs = std::is_same_v<std::remove_const_t<T>, S>;
 
 /// One field of each struct of a list, and its key.
 template <class Struct, class Field>
-struct Column {
+struct FieldColumn {
   const char* key;
   Field Struct::*field;
 };
 template <class Struct, class Field>
-Column(const char*, Field Struct::*) -> Column<Struct, Field>;
+FieldColumn(const char*, Field Struct::*) -> FieldColumn<Struct, Field>;
 
 template <class Visit, SameAs<data::Finding> T>
 void visit_fields(Visit&& visit, T& f) {
@@ -86,9 +86,10 @@ void visit_fields(Visit&& visit, T& s) {
 template <class Visit, SameAs<WithoutRuns> T>
 void visit_fields(Visit&& visit, T& w) {
   visit("places", w.places);
-  visit.columns(w.parameters, Column{"parameters", &ParameterAgain::name}, Column{"verdicts", &ParameterAgain::verdict},
-                Column{"reasons", &ParameterAgain::reason}, Column{"borderline", &ParameterAgain::borderline},
-                Column{"mean", &ParameterAgain::mean}, Column{"sd", &ParameterAgain::sd});
+  visit.columns(w.parameters, FieldColumn{"parameters", &ParameterAgain::name},
+                FieldColumn{"verdicts", &ParameterAgain::verdict}, FieldColumn{"reasons", &ParameterAgain::reason},
+                FieldColumn{"borderline", &ParameterAgain::borderline}, FieldColumn{"mean", &ParameterAgain::mean},
+                FieldColumn{"sd", &ParameterAgain::sd});
   visit("fits", w.fits);
   visit("sentence", w.sentence);
 }
@@ -130,6 +131,7 @@ void visit_fields(Visit&& visit, T& s) {
   visit("consequence", s.consequence);
   visit("remedy", s.remedy);
   visit("notes", s.notes);
+  visit("errors_in_doubt", s.errors_in_doubt);
   visit("converged", s.converged);
   visit("low_runs", s.low_runs);
   visit("rho", s.rho);
@@ -482,9 +484,10 @@ template <class Visit, SameAs<ErrorScan> T>
 void visit_fields(Visit&& visit, T& e) {
   visit("case", e.case_name);
   visit("relative_error", e.relative_error);
-  visit.columns(e.parameters, Column{"parameters", &ParameterAgain::name}, Column{"words", &ParameterAgain::verdict},
-                Column{"reasons", &ParameterAgain::reason}, Column{"borderline", &ParameterAgain::borderline},
-                Column{"mean", &ParameterAgain::mean}, Column{"sd", &ParameterAgain::sd});
+  visit.columns(e.parameters, FieldColumn{"parameters", &ParameterAgain::name},
+                FieldColumn{"words", &ParameterAgain::verdict}, FieldColumn{"reasons", &ParameterAgain::reason},
+                FieldColumn{"borderline", &ParameterAgain::borderline}, FieldColumn{"mean", &ParameterAgain::mean},
+                FieldColumn{"sd", &ParameterAgain::sd});
   visit.shown("verdicts", [&] {
     std::vector<std::string> said;
     for (const ParameterAgain& one : e.parameters)

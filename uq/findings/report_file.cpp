@@ -108,7 +108,7 @@ class Writer {
   }
 
   template <class T, class... Fields>
-  void columns(const std::vector<T>& list, Column<T, Fields>... column) {
+  void columns(const std::vector<T>& list, FieldColumn<T, Fields>... column) {
     const auto write = [&](const auto& one) {
       Json array = Json::array();
       for (const T& item : list) array.push_back(save(item.*one.field));
@@ -300,7 +300,7 @@ class Reader {
   }
 
   template <class T, class... Fields>
-  void columns(std::vector<T>& list, Column<T, Fields>... column) const {
+  void columns(std::vector<T>& list, FieldColumn<T, Fields>... column) const {
     list.clear();
     const auto read = [&](const auto& one) {
       const Json* const found = find(one.key);

@@ -15,7 +15,7 @@ namespace uq {
 /// Of the keys, for programs.
 constexpr int report_format = 1;
 /// Of the list of fields. A page is made again only of a report of this edition: another one lacks part of it.
-constexpr int report_edition = 3;
+constexpr int report_edition = 4;
 
 /// "format", "edition" and the fields of a report.
 nlohmann::ordered_json report_json(const CalibrationReport& report);

@@ -42,6 +42,7 @@ struct SurrogateReport {
   std::vector<double> fold_distance, fold_runs, fold_probability;
   std::vector<double> pivoted_errors;  ///< pivoted Cholesky errors, fold after fold, each in pivoting order
   std::vector<std::string> notes;      ///< hyper-parameter on its bound, jitter, multi-start outcomes
+  std::string errors_in_doubt;         ///< that the runs' standard errors look like percentages; empty: they do not
   bool converged = true;               ///< the maximisation of the likelihood
   int low_runs = 0;                    ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
   /// This level's output per the cheaper one's.
@@ -64,7 +65,7 @@ struct ProfileHole {
   bool in_doubt = false;  ///< the surrogate cannot tell what it predicts there from what it predicts beside it
 };
 
-/// What a word has for a chance when the measurement is repeated (uq/verdict/repeats.hpp).
+/// The probability that a repeated measurement gives this verdict (uq/verdict/repeats.hpp).
 struct WordProbability {
   Verdict verdict = Verdict::not_identified;
   double probability = 0.0;

@@ -54,11 +54,6 @@ std::string dress(std::string body, const Rounding& rounding, std::string_view u
   return body;
 }
 
-bool mentions(const std::vector<std::string>& lines, std::string_view text) {
-  return std::any_of(lines.begin(), lines.end(),
-                     [&](const std::string& line) { return line.find(text) != std::string::npos; });
-}
-
 }  // namespace
 
 Rounding rounding_of(double value, double error) {
@@ -222,47 +217,16 @@ std::string changes_of(const CalibrationReport& report) {
 }
 
 std::string program_version(const CalibrationReport& report) {
-  for (const char* const key : {"demcal", "version", "demcal version"}) {
-    for (const auto& [name, value] : report.provenance) {
-      if (name == key) return value;
-    }
-  }
+  for (const auto& [name, value] : report.provenance)
+    if (name == "demcal") return value;
   return "unknown";
 }
 
 std::vector<std::string> first_lines(const CalibrationReport& report) {
-  std::vector<std::string> lines;
-  const auto add = [&lines](std::string line) {
-    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
-  };
-  for (const std::string& warning : report.warnings) add(warning);
-  for (const CaseReport& result : report.cases) {
-    std::vector<std::string> own = result.warnings;
-    if (!result.fits && !mentions(own, "not fit")) {
-      own.push_back("the model does not fit the observations; nothing in this case is called identified");
-    }
-    if (!result.converged && !mentions(own, "converge")) {
-      own.push_back("the sampler has not converged; its numbers are not to be used");
-    }
-    for (const std::string& warning : own) {
-      const bool said = std::any_of(report.warnings.begin(), report.warnings.end(), [&](const std::string& line) {
-        return line.find(warning) != std::string::npos && line.find(result.name) != std::string::npos;
-      });
-      if (said) continue;
-      const bool named = warning.rfind(result.name, 0) == 0 || warning.rfind("Case " + result.name, 0) == 0;
-      add(named ? warning : fmt::format("Case {}: {}", result.name, warning));
-    }
-  }
-  for (const SurrogateReport& surrogate : report.surrogates) {
-    if (surrogate.verdict != SurrogateWord::unusable) continue;
-    const bool said = std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
-      return line.find("unusable") != std::string::npos && line.find(surrogate.output) != std::string::npos &&
-             line.find(surrogate.material) != std::string::npos;
-    });
-    if (said) continue;
-    add(fmt::format("The surrogate of {}{}{} is unusable: {}", surrogate.output,
-                    surrogate.material.empty() ? "" : " of ", surrogate.material, surrogate.finding));
-  }
+  std::vector<std::string> lines = report.warnings;
+  for (const CaseReport& result : report.cases)
+    for (const std::string& warning : result.warnings)
+      if (std::find(lines.begin(), lines.end(), warning) == lines.end()) lines.push_back(warning);
   return lines;
 }
 

@@ -29,9 +29,8 @@ std::string format_with_error(double value, double error, std::string_view unit,
 std::string format_interval(double low, double high, const Rounding& rounding, std::string_view unit,
                             Typography typography);
 
-/// A parameter's posterior: "0.402 +- 0.021", or, where separate values fit, "0.300 +- 0.012 (45 %) or 0.600 +- 0.020
-/// (55
-/// %)".
+/// A parameter's posterior: "0.402 +- 0.021". Where separate values fit, each with its share:
+/// "0.300 +- 0.012 (45 %) or 0.600 +- 0.020 (55 %)".
 std::string format_estimate(const ParameterReport& parameter, Typography typography);
 
 /// "62 % identified, 38 % weakly identified": what the word would be over repeats of the measurement.
@@ -75,8 +74,7 @@ inline constexpr const char* set_on_command_line = "set on the command line";
 /// "training.runs=80; study.seed=3", from the provenance; empty where nothing was set.
 std::string changes_of(const CalibrationReport& report);
 
-/// Everything that must stand in the report's first lines: the warnings of the report and its cases, and, where those
-/// do not say so already, each case that does not fit or has not converged and each surrogate that is unusable.
+/// What must stand in the report's first lines: the warnings of the whole and of each case, each of them once.
 std::vector<std::string> first_lines(const CalibrationReport& report);
 
 /// Whether the program must leave with status 2 and the report says "warning".

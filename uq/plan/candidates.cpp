@@ -7,6 +7,7 @@
 #include <set>
 
 #include "data/error.hpp"
+#include "data/time_series.hpp"
 #include "uq/posterior/control_reach.hpp"
 #include "uq/posterior/more_data.hpp"
 #include "uq/posterior/posterior.hpp"
@@ -35,6 +36,7 @@ std::optional<double> stated_error(const Study& study, const std::vector<std::si
   std::vector<double> shares;
   for (const std::size_t index : sets) {
     const data::ObservationSet& set = study.observations[index];
+    if (set.assumed) continue;
     const auto column = std::find(set.outputs.begin(), set.outputs.end(), output);
     if (column == set.outputs.end()) continue;
     const auto c = static_cast<std::size_t>(column - set.outputs.begin());
@@ -42,8 +44,7 @@ std::optional<double> stated_error(const Study& study, const std::vector<std::si
       if (point.values[c] != 0.0) shares.push_back(std::abs(point.standard_errors[c] / point.values[c]));
   }
   if (shares.empty()) return {};
-  std::nth_element(shares.begin(), shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2), shares.end());
-  return shares[shares.size() / 2];
+  return data::median_of(std::move(shares));
 }
 
 /// Range of a control that the runs of a material cover.
@@ -57,11 +58,6 @@ bool varied(const Emulator& emulator, std::size_t control) {
   return std::any_of(emulator.inputs.begin(), emulator.inputs.end(), [&](const EmulatorInput& input) {
     return input.kind == InputKind::control && input.index == control;
   });
-}
-
-/// A value with two significant digits in the control's unit.
-double rounded(double si, const data::Unit& unit) {
-  return unit.to_si(std::stod(fmt::format("{:.2g}", unit.from_si(si))));
 }
 
 std::string name_of(const Study& study, const Candidate& candidate, bool of_several_materials) {
@@ -82,8 +78,8 @@ std::string name_of(const Study& study, const Candidate& candidate, bool of_seve
   return name;
 }
 
-/// The output means what it does in the powder: the drive's torque does by how the grains are enlarged, others need
-/// not.
+/// Whether an output of enlarged grains may differ from the real powder's. The torque does not: the scaling keeps it. An
+/// output that the case measures is taken as comparable. Every other output counts as the model's alone.
 bool only_of_model(const Study& study, const std::vector<std::size_t>& sets, std::size_t output,
                    const std::string& material, const CandidateOptions& options) {
   if (std::find(options.coarse_grained.begin(), options.coarse_grained.end(), material) == options.coarse_grained.end())
@@ -149,7 +145,7 @@ class Usual {
         const data::Axis covered{low, high, study_.controls[c].scale};
         const double value = covered.from_unit(i / (count - 1.0));
         controls[c] =
-            std::clamp(rounded(value, study_.controls[c].unit), study_.controls[c].low, study_.controls[c].high);
+            std::clamp(study_.controls[c].unit.rounded(value, 2), study_.controls[c].low, study_.controls[c].high);
         if (known && near_observed(observed, controls)) continue;
         add(controls, known ? CandidateKind::setting : CandidateKind::output);
       }

@@ -161,7 +161,8 @@ ReadingsNeeded Forecast::readings_needed(const std::vector<Index>& rows, int par
     }
     return enough;
   };
-  const double error = std::sqrt(sure * (1.0 - sure) / std::min<double>(readings_drawn, outlook_.draws()));
+  const double error =
+      std::sqrt(sure * (1.0 - sure) / static_cast<double>(std::min<Eigen::Index>(readings_drawn, outlook_.draws())));
   return {.count = least(sure),
           .low = least(sure - 2.0 * error),
           .high = least(sure + 2.0 * error),

@@ -1,5 +1,7 @@
 #include "uq/plan/information.hpp"
 
+#include <gsl/gsl_cdf.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +20,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index blocks = 20;                                // of the jackknife
-constexpr double t95 = 2.093;                               // Student's t, 19 degrees of freedom
 constexpr std::array windows = {1.0, 0.4, 0.2, 0.1, 0.05};  // of the draws, on either side
 constexpr Index window_least = 20;                          // draws
 constexpr double correction_most = 0.1;                     // nats
@@ -95,7 +96,8 @@ Estimate jackknife(const Value& value) {
   VectorXd without(blocks);
   for (Index b = 0; b < blocks; ++b) without[b] = value(b);
   const double n = static_cast<double>(blocks);
-  return {value(-1), t95 * std::sqrt((n - 1.0) / n * (without.array() - without.mean()).square().sum())};
+  return {value(-1), gsl_cdf_tdist_Pinv(0.975, n - 1.0) *
+                         std::sqrt((n - 1.0) / n * (without.array() - without.mean()).square().sum())};
 }
 
 /// A large correction is no small term of an expansion: then it is the error.
@@ -323,12 +325,9 @@ Information information(const Ensemble& ensemble, const InformationOptions& opti
 }
 
 Information combined(const std::vector<Information>& repeats) {
-  // Student's t at 97.5 % by degrees of freedom, from one on.
-  constexpr std::array t = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201,
-                            2.179,  2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086, 1.96};
   if (repeats.size() < 2) return repeats.empty() ? Information{} : repeats.front();
   const auto n = static_cast<double>(repeats.size());
-  const double factor = t[std::min(repeats.size() - 2, t.size() - 1)];
+  const double factor = gsl_cdf_tdist_Pinv(0.975, n - 1.0);
   const auto pooled = [&](const auto& member) {
     double sum = 0.0, squares = 0.0;
     for (const Information& one : repeats) sum += member(one).value;

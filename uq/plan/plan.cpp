@@ -69,6 +69,12 @@ int parameter_index(const Study& study, std::size_t case_index, const CaseModel&
                           fmt::format("choose one of: {}", fmt::join(names, ", "))});
 }
 
+VectorXd prior_means(const CaseModel& model) {
+  VectorXd means(model.dimension());
+  for (Index s = 0; s < means.size(); ++s) means[s] = model.slots[s].prior.mean();
+  return means;
+}
+
 std::string error_text(const Study& study, const Candidate& candidate) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < candidate.outputs.size(); ++i) {
@@ -107,12 +113,8 @@ class Planner {
       for (Candidate& one : candidates_)
         if (one.kind == CandidateKind::repeat) one.kind = CandidateKind::setting;
     if (options.budget) std::erase_if(candidates_, [&](const Candidate& one) { return one.cost > *options.budget; });
-    VectorXd centre(model.dimension());
-    for (Index s = 0; s < centre.size(); ++s)
-      centre[s] = options.prior ? model.slots[s].prior.mean() : draws_.col(s).mean();
-    if (!options.prior) centre = found_->best_fit.x;
-    centre_ = centre;
-    extended_ = extend(study, emulators, case_index, model, candidates_, centre);
+    centre_ = options.prior ? prior_means(model) : found_->best_fit.x;
+    extended_ = extend(study, emulators, case_index, model, candidates_, centre_);
     look_out();
   }
 

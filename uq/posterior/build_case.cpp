@@ -31,6 +31,7 @@ Acts acts_of(data::NuisanceKind kind) {
 /// Whether half of the shorter set's readings stand in the other to the last digit: at the same controls, or, in one
 /// file, at whatever controls the study gives them.
 bool holds_the_same(const data::ObservationSet& a, const data::ObservationSet& b) {
+  if (a.assumed || b.assumed) return false;
   const bool one_file = !a.file.empty() && a.file == b.file;
   std::size_t common = 0;
   for (const data::Observation& point : b.points)

@@ -1,10 +1,11 @@
 #pragma once
-// Local sensitivities at one point. J = dm/du of the parameters, each column times its prior's sd; S the covariance of
-// the data at the point, that of the nuisances under their priors included:
-//   F = J' S^-1 J          eigenvalues: how many prior sds (squared, inverse) each direction is known to
-//   collinearity 1 / sqrt(smallest eigenvalue of the Gram matrix of S^-1/2 J's unit columns)   (Brun et al. 2001)
-// An eigenvalue below 1 is a direction of which the data say less than the prior. It is local, and misleads on curved
-// ridges: the verdicts come from profiles.
+// The Fisher information at one point, in units of the prior: F = J' S^-1 J.
+// J holds the slopes of the predicted data, dm/du, each column times its parameter's prior sd. S is the data's
+// covariance, that of the nuisances under their priors included. An eigenvalue of F is the prior variance along its
+// direction over the variance that the data alone would leave. Below 1 the data say less than the prior.
+// The collinearity of the columns is 1 / sqrt(smallest eigenvalue of the Gram matrix of S^-1/2 J's unit columns)
+// (Brun et al. 2001).
+// All of it is local, and misleads on curved ridges: the verdicts come from profiles.
 #include <Eigen/Dense>
 
 #include "uq/posterior/case_model.hpp"

@@ -1,8 +1,8 @@
 #pragma once
-// A case's posterior with some unknowns held, over the others alone: the same data and the same priors on both sides of
-// a comparison, whatever the held unknown is linked with.
-//   log p(rest | held, y) = sum over the rest of log prior + log L(held, rest) + const,   evidence = integral over the
-//   rest
+// A case's posterior with some unknowns held, over the others alone. Both sides of a comparison then have the same data
+// and the same priors, whatever the held unknown is linked with.
+//   log p(rest | held, y) = sum over the rest of log prior + log L(held, rest) + const
+// The evidence is its integral over the rest.
 //
 // What a surrogate's error makes of a Bayes factor. Both evidences integrate the surrogate's functions f out; with f
 // known the factor would be another. With f = mean + delta, delta ~ N(0, C) jointly at the rows of both sides' most

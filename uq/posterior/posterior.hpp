@@ -72,8 +72,9 @@ double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& y
 double chi_squared(const CaseModel& model, const Eigen::VectorXd& u);
 double chi_squared(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u);
 
-/// What is known beside the data of the unknowns that no profile should leave free: log priors of the nuisances (a
-/// calibration certificate is a measurement, too), and the law of the unknowns that were cut from another case.
+/// Log density of knowledge that is no measurement of this case: the priors of the nuisances, such as a calibration
+/// certificate, and the normal law of each unknown that was cut from another case. A profile adds it to the likelihood,
+/// so that these unknowns stay where they are known to be.
 Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u);
 
 /// The posterior for the samplers; the prior is its reference. The model is shared.

@@ -1,11 +1,13 @@
 #pragma once
 // What the posterior says of the data: the check whether the model fits at all, and the bands of the figures.
 //
-// Check. T(y, u) = (y - m(u))' S(u)^-1 (y - m(u)), S all that is uncertain of y given u. A replicate y' ~ N(m(u), S(u))
-// has T(y', u) chi-squared with n degrees of freedom for every u, so the posterior predictive p = E[ P(chi2_n >= T(y,
-// u)) | y ] (Gelman, Meng, Stern 1996) is a mean over draws of an exact tail, without simulation. It is conservative
-// when n is little more than the number of parameters; beside it stands the best fit's own tail, P(chi2_(n - k) >= T(y,
-// u*)), k = directions that the data know (uq/posterior/fisher.hpp).
+// Check. The distance of data y from the prediction at u is
+//   T(y, u) = (y - m(u))' S(u)^-1 (y - m(u)),   S: all that is uncertain of y given u.
+// For a replicate y' ~ N(m(u), S(u)), T(y', u) is chi-squared with n degrees of freedom, whatever u is. The posterior
+// predictive p (Gelman, Meng, Stern 1996) is therefore a mean over draws of an exact tail, without simulation:
+//   p = E[ P(chi2_n >= T(y, u)) | y ].
+// It is conservative when n is little more than the number of parameters. Beside it stands the best fit's own tail,
+//   P(chi2_(n - k) >= T(y, u*)),   k: directions that the data know (uq/posterior/fisher.hpp).
 #include <Eigen/Dense>
 
 #include "data/study.hpp"

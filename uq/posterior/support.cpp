@@ -185,12 +185,8 @@ struct Shown {
 };
 
 Shown shown(const data::Study& study, const EmulatorInput& input, double u) {
-  if (input.kind == InputKind::parameter) {
-    const data::Parameter& p = study.parameters[input.index];
-    return {p.name, p.unit, p.unit.from_si(p.axis().from_unit(u))};
-  }
-  const data::Control& c = study.controls[input.index];
-  return {c.name, c.unit, c.unit.from_si(c.axis().from_unit(u))};
+  const data::Input named = input_of(study, input);
+  return {named.name, named.unit, named.unit.from_si(named.axis.from_unit(u))};
 }
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }

@@ -23,7 +23,7 @@ struct Nodes {
   double at(std::size_t i, std::size_t j) const { return value[i * y.size() + j]; }
 };
 
-Nodes with_rim(const DensityGrid& grid, const Box& box) {
+Nodes with_rim(const DensityGrid& grid, const PlotBox& box) {
   Nodes nodes;
   nodes.x.push_back(box.x_low);
   nodes.x.insert(nodes.x.end(), grid.x.begin(), grid.x.end());
@@ -56,7 +56,7 @@ std::pair<double, double> crossing(const Nodes& nodes, const Edge& edge, double 
 
 }  // namespace
 
-std::vector<Loop> contour(const DensityGrid& grid, const Box& box, double level) {
+std::vector<Loop> contour(const DensityGrid& grid, const PlotBox& box, double level) {
   if (grid.density.empty() || !(level > 0.0)) return {};
   const Nodes nodes = with_rim(grid, box);
 

@@ -87,7 +87,7 @@ double level_of(const std::vector<double>& falling, double mass) {
 
 }  // namespace
 
-DensityGrid joint_density(const std::vector<double>& x, const std::vector<double>& y, const Box& box,
+DensityGrid joint_density(const std::vector<double>& x, const std::vector<double>& y, const PlotBox& box,
                           const DensityOptions& options) {
   const double width = box.x_high - box.x_low, height = box.y_high - box.y_low;
   if (!(width > 0.0) || !(height > 0.0)) return {};

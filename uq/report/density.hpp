@@ -10,7 +10,7 @@
 
 namespace uq {
 
-struct Box {
+struct PlotBox {
   double x_low = 0.0, x_high = 1.0, y_low = 0.0, y_high = 1.0;
 };
 
@@ -27,7 +27,7 @@ struct DensityOptions {
 };
 
 /// Draws beyond the box are left out. An empty grid when fewer than 20 are left or they do not vary.
-DensityGrid joint_density(const std::vector<double>& x, const std::vector<double>& y, const Box& box,
+DensityGrid joint_density(const std::vector<double>& x, const std::vector<double>& y, const PlotBox& box,
                           const DensityOptions& options = {});
 
 /// A closed line; its last point joins its first.
@@ -37,6 +37,6 @@ struct Loop {
 
 /// The lines at which the density crosses `level`, by marching squares on the cell centres with linear interpolation.
 /// Beyond the box the density counts as zero, so every line closes, along the box where the region touches it.
-std::vector<Loop> contour(const DensityGrid& grid, const Box& box, double level);
+std::vector<Loop> contour(const DensityGrid& grid, const PlotBox& box, double level);
 
 }  // namespace uq

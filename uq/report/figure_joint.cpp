@@ -106,7 +106,7 @@ Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t
   const Extent x_view = limits(across, a), y_view = limits(up, b);
   const auto [x_low, x_high] = support(across, a);
   const auto [y_low, y_high] = support(up, b);
-  const Box box{.x_low = x_low, .x_high = x_high, .y_low = y_low, .y_high = y_high};
+  const PlotBox box{.x_low = x_low, .x_high = x_high, .y_low = y_low, .y_high = y_high};
   const DensityGrid grid = joint_density(x, y, box);
 
   // Thinned evenly: the order of the draws does not matter to the eye.

@@ -82,12 +82,14 @@ Markup inputs_table(const SurrogateReport& surrogate) {
 
 Markup one_surrogate(const SurrogateReport& surrogate, std::size_t index, const Context& context) {
   const std::string name = name_of(surrogate), stem = fmt::format("surrogate-{}-{}", index + 1, slug(name));
+  std::vector<std::string> notes = surrogate.notes;
+  if (!surrogate.errors_in_doubt.empty()) notes.insert(notes.begin(), surrogate.errors_in_doubt);
   return tag::h3(name) +
          tag::div.is("verdict")(tag::dl(entry("Finding", surrogate.finding),
                                         entry("Consequence", surrogate.consequence), entry("Remedy", surrogate.remedy),
                                         tag::dt("Verdict"), tag::dd(badge(surrogate.verdict)))) +
          left_out_figures(surrogate, stem, context) + inputs_table(surrogate) + coverage_table(surrogate) +
-         folds_table(surrogate) + tag::ul.is("note").unless_empty(each(surrogate.notes, tag::li));
+         folds_table(surrogate) + tag::ul.is("note").unless_empty(each(notes, tag::li));
 }
 
 /// One material's runs over pairs of its inputs.

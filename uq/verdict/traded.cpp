@@ -20,8 +20,6 @@ using Subset = std::vector<int>;
 constexpr int largest_subset = 5;
 constexpr Eigen::Index largest_curved = 3;  // in more dimensions too few draws tell how full a room is
 constexpr Eigen::Index draws_looked_at = 1500;
-/// A ridge whose rms distance from the best form is more than this share of its extent is bent.
-constexpr double bent_share = 0.05;
 /// A cloud this much tighter than its best form hangs on a curve.
 constexpr double tighter = 0.5;
 /// Of the room that two normal variables fill, over the spread of their sum, where they are strongly correlated.
@@ -187,14 +185,6 @@ TradedPair describe(const CaseModel& model, const Found& found, const Eigen::Mat
 }
 
 }  // namespace
-
-Combination find_combination(const std::string& first, const std::string& second, const Eigen::MatrixXd& points,
-                             const Eigen::Vector2d& ranges) {
-  const FittedCombination best = fit_combination(points, ranges);
-  if (best.spread > bent_share * std::sqrt(2.0))
-    return {fmt::format("a curved relation of {} and {}", first, second), true};
-  return {write_combination(best, {{first, "", 1.0}, {second, "", 1.0}}).text, false};
-}
 
 std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::MatrixXd& draws, const Profiles& all,
                                           const std::vector<Verdict>& verdicts, const VerdictThresholds& thresholds) {

@@ -18,16 +18,6 @@
 
 namespace uq {
 
-/// The combination that the points share.
-struct Combination {
-  std::string text;  ///< "friction * hamaker^0.9" or "friction + 0.667 x hamaker"
-  bool curved = false;
-};
-
-/// `points`: values of two parameters along a ridge without thickness (study's units); `ranges`: their widths.
-Combination find_combination(const std::string& first, const std::string& second, const Eigen::MatrixXd& points,
-                             const Eigen::Vector2d& ranges);
-
 /// Traded sets of the case's own parameters, the best known first. `draws`: rows in u. `verdicts`: per own parameter.
 std::vector<TradedPair> find_traded_pairs(const CaseModel& model, const Eigen::MatrixXd& draws, const Profiles& all,
                                           const std::vector<Verdict>& verdicts, const VerdictThresholds& thresholds);

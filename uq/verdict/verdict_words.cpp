@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "uq/findings/listed.hpp"
+
 namespace uq {
 namespace {
 
@@ -20,13 +22,6 @@ constexpr double hides = 2.0;
 constexpr double all_of_it = 0.995;
 
 using Names = std::vector<std::string>;
-
-std::string list(const Names& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  return text;
-}
 
 const char* one_or(const Names& names, const char* one, const char* more) { return names.size() == 1 ? one : more; }
 
@@ -86,19 +81,20 @@ Sorted sort_parameters(const std::vector<ParameterReport>& parameters) {
 std::string find_finding(const CaseFacts& facts, const Sorted& sorted) {
   std::string text;
   const auto say = [&text](const std::string& more) { text += (text.empty() ? "" : " ") + more; };
-  if (!sorted.known.empty()) say(fmt::format("The data determine {}.", list(sorted.known)));
+  if (!sorted.known.empty()) say(fmt::format("The data determine {}.", listed(sorted.known)));
   if (!sorted.several.empty())
-    say(fmt::format("{} leave separate values of {} open.", text.empty() ? "The data" : "They", list(sorted.several)));
+    say(fmt::format("{} leave separate values of {} open.", text.empty() ? "The data" : "They",
+                    listed(sorted.several)));
   if (!sorted.weak.empty())
-    say(fmt::format("{} determine {} only weakly.", text.empty() ? "The data" : "They", list(sorted.weak)));
-  if (!sorted.unknown.empty()) say(fmt::format("The data do not determine {}.", list(sorted.unknown)));
+    say(fmt::format("{} determine {} only weakly.", text.empty() ? "The data" : "They", listed(sorted.weak)));
+  if (!sorted.unknown.empty()) say(fmt::format("The data do not determine {}.", listed(sorted.unknown)));
   if (!sorted.silent.empty())
     say(fmt::format("{} say nothing of {}.", sorted.silent.size() == facts.parameters.size() ? "The data" : "They",
-                    list(sorted.silent)));
+                    listed(sorted.silent)));
   for (const TradedPair& traded : facts.traded)
     say(traded.form == CombinationForm::curved
-            ? fmt::format("{} are traded against each other along a curve.", list(traded.parameters))
-            : fmt::format("{} are traded against each other: known together is {}.", list(traded.parameters),
+            ? fmt::format("{} are traded against each other along a curve.", listed(traded.parameters))
+            : fmt::format("{} are traded against each other: known together is {}.", listed(traded.parameters),
                           traded.statement));
   const std::size_t open = sorted.unknown.size() + sorted.weak.size();
   if (facts.traded.empty() && facts.collinearity > 10.0 && open > 1)
@@ -123,7 +119,7 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
   }
   if (!sorted.known.empty())
     say(fmt::format("{} of {} can be used with {}.", one_or(sorted.known, "The value", "The values"),
-                    list(sorted.known), one_or(sorted.known, "its error", "their errors")));
+                    listed(sorted.known), one_or(sorted.known, "its error", "their errors")));
   if (!sorted.several.empty()) say("Carry each of the separate values on: their mean fits nothing.");
   const bool open = !sorted.unknown.empty() || !sorted.weak.empty();
   if (!facts.traded.empty() && open)
@@ -131,9 +127,9 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
         "one point of them to another machine or fill.");
   if (!sorted.one_sided.empty())
     say(fmt::format("Only a limit of {} is known; the value given depends on where the range ends.",
-                    list(sorted.one_sided)));
+                    listed(sorted.one_sided)));
   if (!sorted.bound.empty())
-    say(fmt::format("The limit of {} can be used as such; {} is not excluded.", list(sorted.bound),
+    say(fmt::format("The limit of {} can be used as such; {} is not excluded.", listed(sorted.bound),
                     one_or(sorted.bound, "its bound", "their bound")));
   Names poor, wide;
   for (const ParameterReport& parameter : facts.parameters) {
@@ -143,12 +139,12 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
       (parameter.verdict == Verdict::not_identified && parameter.contraction < 0.5 ? poor : wide)
           .push_back(parameter.name);
   }
-  if (!wide.empty()) say(fmt::format("Of {} use the interval, not the mean.", list(wide)));
+  if (!wide.empty()) say(fmt::format("Of {} use the interval, not the mean.", listed(wide)));
   if (!poor.empty())
-    say(fmt::format("{} of {} {} little better than the prior.", one_or(poor, "The value", "The values"), list(poor),
+    say(fmt::format("{} of {} {} little better than the prior.", one_or(poor, "The value", "The values"), listed(poor),
                     one_or(poor, "is", "are")));
   if (!sorted.silent.empty())
-    say(fmt::format("{} may be anything in {} range.", list(sorted.silent), one_or(sorted.silent, "its", "their")));
+    say(fmt::format("{} may be anything in {} range.", listed(sorted.silent), one_or(sorted.silent, "its", "their")));
   return text;
 }
 
@@ -168,7 +164,7 @@ std::string partners(const CaseFacts& facts, const Names& names) {
           return std::find(names.begin(), names.end(), member) != names.end();
         }))
       for (const std::string& member : traded.parameters) add(together, member);
-  return together.empty() ? std::string() : list(together);
+  return together.empty() ? std::string() : listed(together);
 }
 
 std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
@@ -185,7 +181,7 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
         {sorted.of_structure,
          fmt::format("Measure another kind of quantity, {}, or fix {} by an independent experiment: a smaller error of "
                      "the same measurement will not part them.",
-                     together.empty() ? "one that " + list(sorted.structural) + " alone " +
+                     together.empty() ? "one that " + listed(sorted.structural) + " alone " +
                                             one_or(sorted.structural, "changes", "change")
                                       : "one that responds differently to " + together,
                      together.empty() ? one_or(sorted.structural, "it", "one of them") : "one of them")});
@@ -217,11 +213,11 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
     remedies.push_back(
         {sorted.of_range, fmt::format("Widen the range of {}, with training runs there, or measure where the response "
                                       "still changes with {}.",
-                                      list(sorted.one_sided), one_or(sorted.one_sided, "it", "them"))});
+                                      listed(sorted.one_sided), one_or(sorted.one_sided, "it", "them"))});
   if (!sorted.bound.empty())
     remedies.push_back(
-        {sorted.of_measurement,
-         fmt::format("A smaller measurement error would lower the limit of {} or show a value.", list(sorted.bound))});
+        {sorted.of_measurement, fmt::format("A smaller measurement error would lower the limit of {} or show a value.",
+                                            listed(sorted.bound))});
   std::stable_sort(remedies.begin(), remedies.end(),
                    [](const Remedy& a, const Remedy& b) { return a.weight > b.weight; });
   if (!sorted.silent.empty()) {
@@ -232,12 +228,12 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
     if (!silent.empty())
       remedies.push_back({0.0, fmt::format("Measure another quantity, or at other settings, that {} {}; or fix {}: "
                                            "what was measured does not depend on {}.",
-                                           list(silent), one_or(silent, "moves", "move"), one_or(silent, "it", "them"),
-                                           one_or(silent, "it", "them"))});
+                                           listed(silent), one_or(silent, "moves", "move"),
+                                           one_or(silent, "it", "them"), one_or(silent, "it", "them"))});
     if (!hidden_ones.empty())
       remedies.push_back({0.0, fmt::format("More training runs would show whether {} {} at all: the surrogate's error "
                                            "is larger than the measurement's.",
-                                           list(hidden_ones), one_or(hidden_ones, "acts", "act"))});
+                                           listed(hidden_ones), one_or(hidden_ones, "acts", "act"))});
   }
   std::string text;
   for (const Remedy& remedy : remedies) text += (text.empty() ? "" : " ") + remedy.text;

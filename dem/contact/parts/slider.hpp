@@ -5,10 +5,10 @@
 // and the spring follows as fast as the dashpot lets it, ds/dt = (|T| - k s) / c. Without a dashpot s = cap / k at once.
 // What is remembered is k s.
 //
-// Steps are of second order. The spring is kept half a step ahead, and its mean over the step is what pulls. As u is
-// extrapolated, that alone would feed an oscillation. So the spring leads the mean by a further share a of a step's
-// slip, a = dt^2 times stiffness per inertia, the square of the phase of a step. It is enough for eight contacts a
-// sphere.
+// The step is of second order. The spring is stored half a step ahead, and the force uses its mean over the step. The
+// velocity u is extrapolated, which alone would add energy to an oscillation. The stored spring therefore leads by a
+// further share a of the step's slip, a = dt^2 stiffness / inertia: the squared phase of a step. With it oscillations
+// of up to eight contacts a sphere stay stable.
 #include <limits>
 
 #include "dem/contact/lanes.hpp"

@@ -32,7 +32,7 @@ Input other_code(const std::vector<std::string>& overrides = {}) {
 
 std::string message_of(const Input& input) {
   try {
-    calibrate(input.study, input.table, {.error_scan = {}, .quadrature = false});
+    calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false}).report;
   } catch (const data::InputError& error) {
     return error.what();
   }
@@ -97,8 +97,8 @@ TEST_CASE("the study on another code's runs is calibrated: both parameters cover
 TEST_CASE("a calibration is the same for any number of threads", "[uq][slow]") {
   const Input input = other_code();
   const auto once = [&](int threads) {
-    return calibrate(input.study, input.table, {.error_scan = {}, .quadrature = false, .threads = threads})
-        .cases[0]
+    return calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false, .threads = threads})
+        .report.cases[0]
         .draws_for_plot;
   };
   CHECK(once(1) == once(3));
@@ -196,13 +196,13 @@ TEST_CASE("nuisances, a cut and the other sampler go from the study to the repor
   Input input = other_code();
   data::CalibrationCase& powder = input.study.cases[0];
   const CalibrateOptions quick{.error_scan = {}, .quadrature = false};
-  const CaseReport plain = calibrate(input.study, input.table, quick).cases[0];
+  const CaseReport plain = calibrate_all(input.study, input.table, quick).report.cases[0];
   CHECK(plain.sampler == "mixture");
   CHECK(plain.nuisances.empty());
 
   // Two samplers, one posterior.
   powder.sampler = data::Sampler::nuts;
-  const CaseReport nuts = calibrate(input.study, input.table, quick).cases[0];
+  const CaseReport nuts = calibrate_all(input.study, input.table, quick).report.cases[0];
   CHECK(nuts.sampler == "nuts");
   CHECK(nuts.converged);
   CHECK(nuts.energy_fraction > 0.3);
@@ -219,7 +219,7 @@ TEST_CASE("nuisances, a cut and the other sampler go from the study to the repor
   data::Parameter gain{.name = "gain", .target = "gain", .low = 0.4, .high = 1.6};
   gain.prior = {.kind = data::PriorKind::normal, .low = 0.4, .high = 1.6, .mean = 1.0, .sd = 0.1};
   powder.nuisances = {{data::NuisanceKind::gain, 0, gain}};
-  const CaseReport widened = calibrate(input.study, input.table, quick).cases[0];
+  const CaseReport widened = calibrate_all(input.study, input.table, quick).report.cases[0];
   REQUIRE(widened.nuisances.size() == 1);
   CHECK(widened.nuisances[0].name == "gain");
   CHECK(widened.nuisances[0].sd == Approx(0.1).epsilon(0.15));
@@ -277,7 +277,7 @@ TEST_CASE("a discrepancy takes what the model cannot explain, says how much, and
       powder.nuisances = {{data::NuisanceKind::discrepancy_sd, {}, sd},
                           {data::NuisanceKind::discrepancy_length, {}, length}};
     }
-    return calibrate(input.study, input.table, quick).cases[0];
+    return calibrate_all(input.study, input.table, quick).report.cases[0];
   };
   const data::ObservationSet good = input.study.observations[0];
   const CaseReport off = with_discrepancy(hump, false), on = with_discrepancy(hump, true);
@@ -323,7 +323,8 @@ TEST_CASE("the Bayes factor of a parameter held is that of the density ratio of 
 
 TEST_CASE("equivalent points come with the curves that the model predicts there", "[uq]") {
   const Input input = other_code();
-  const CalibrationReport report = calibrate(input.study, input.table, {.error_scan = {}, .quadrature = false});
+  const CalibrationReport report =
+      calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false}).report;
   const CaseReport& powder = report.cases.at(0);
   REQUIRE_FALSE(powder.traded.empty());
   const TradedPair& traded = powder.traded[0];

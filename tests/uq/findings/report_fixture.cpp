@@ -290,6 +290,7 @@ CalibrationReport misfit() {
   result.finding = "No friction reproduces the measured rise.";
   result.consequence = "No value of friction found here means anything.";
   result.remedy = "Check the fill and the offset of the torque sensor.";
+  result.warnings = {"case " + result.name + ": the model does not fit the data"};
   report.cases = {result};
   return report;
 }

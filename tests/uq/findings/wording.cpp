@@ -77,22 +77,13 @@ TEST_CASE("nothing in a case that does not fit is shown as identified") {
   CHECK(has_warning(report));
 }
 
-TEST_CASE("each case that does not fit or converge has its own first line, whatever other cases are called") {
-  CalibrationReport report;
-  for (const char* const name : {"a", "aa", "not fit"}) {
-    CaseReport result;
-    result.name = name;
-    result.fits = false;
-    result.converged = false;
-    report.cases.push_back(result);
-  }
-  CHECK(first_lines(report).size() == 6);
-}
-
-TEST_CASE("a warning that the report already gives for a case is not repeated") {
+TEST_CASE("the first lines are the warnings of the whole and of each case, each once") {
   CalibrationReport report = report_fixture::three_cases();
   CHECK_FALSE(has_warning(report));
-  report.cases[0].warnings = {"the prior decides"};
-  report.warnings = {"zirconia-800: the prior decides"};
-  CHECK(first_lines(report) == report.warnings);
+  report.warnings = {"the surrogate is unusable"};
+  report.cases[0].warnings = {"case zirconia-800: the prior decides"};
+  report.cases[1].warnings = {"the surrogate is unusable", "case carrier: the model does not fit the data"};
+  CHECK(first_lines(report) == std::vector<std::string>{"the surrogate is unusable",
+                                                        "case zirconia-800: the prior decides",
+                                                        "case carrier: the model does not fit the data"});
 }

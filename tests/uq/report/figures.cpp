@@ -52,7 +52,7 @@ double share_inside(const std::vector<Loop>& loops, const Sample& sample) {
 
 TEST_CASE("the drawn regions hold the share of fresh draws that they name") {
   const Sample drawn = correlated(1500, 0.9);
-  const Box box{.x_low = -5.0, .x_high = 5.0, .y_low = -5.0, .y_high = 5.0};
+  const PlotBox box{.x_low = -5.0, .x_high = 5.0, .y_low = -5.0, .y_high = 5.0};
   const DensityGrid grid = joint_density(drawn.x, drawn.y, box);
   Sample fresh = correlated(6000, 0.9);
   fresh.x.erase(fresh.x.begin(), fresh.x.begin() + 1500);

@@ -74,3 +74,27 @@ TEST_CASE("units are readable where they would be mixed", "[uq]") {
   CHECK(found.unit.empty());
   CHECK(found.scale * evaluate(found.written, Eigen::Vector2d(0.55, 10e-18)) == Approx(-0.45));
 }
+
+TEST_CASE("the combination that points share is named by the form that keeps nearer to them", "[uq]") {
+  Eigen::MatrixXd hyperbola(9, 2), line(9, 2);
+  for (Eigen::Index i = 0; i < 9; ++i) {
+    const double a = 0.1 * static_cast<double>(i + 1);
+    hyperbola.row(i) << a, std::pow(0.2 / a, 1.0 / 0.9);
+    line.row(i) << a, 2.0 - 1.5 * a;
+  }
+  const auto text = [](const Eigen::MatrixXd& points) {
+    const uq::FittedCombination found = uq::fit_combination(points, Eigen::Vector2d(1.0, 2.0));
+    return uq::write_combination(found, {{"friction", "", 1.0}, {"hamaker", "", 1.0}}).text;
+  };
+  CHECK(text(hyperbola) == "friction * hamaker^0.9");
+  CHECK(text(line) == "friction + 0.667 x hamaker");
+}
+
+TEST_CASE("a ridge that bends away from every simple form keeps near none", "[uq]") {
+  Eigen::MatrixXd bent(21, 2);  // falls, then rises
+  for (Eigen::Index i = 0; i < 21; ++i) {
+    const double a = 0.1 + 0.035 * static_cast<double>(i);
+    bent.row(i) << a, 0.6 + 4.0 * (a - 0.35) * (a - 0.35);
+  }
+  CHECK(uq::fit_combination(bent, Eigen::Vector2d(0.7, 1.5)).spread > 0.05);
+}

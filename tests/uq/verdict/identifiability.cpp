@@ -223,26 +223,3 @@ TEST_CASE("verdicts change places when truths and names do", "[uq][slow]") {
   CHECK(a.parameters[0].verdict == Verdict::not_identified);
   CHECK(a.parameters[1].verdict == Verdict::identified);
 }
-
-TEST_CASE("the combination that points share is named by the form that keeps nearer to them", "[uq]") {
-  Eigen::MatrixXd hyperbola(9, 2), line(9, 2);
-  for (Eigen::Index i = 0; i < 9; ++i) {
-    const double a = 0.1 * static_cast<double>(i + 1);
-    hyperbola.row(i) << a, std::pow(0.2 / a, 1.0 / 0.9);
-    line.row(i) << a, 2.0 - 1.5 * a;
-  }
-  CHECK(uq::find_combination("friction", "hamaker", hyperbola, Eigen::Vector2d(1.0, 2.0)).text ==
-        "friction * hamaker^0.9");
-  CHECK(uq::find_combination("friction", "hamaker", line, Eigen::Vector2d(1.0, 2.0)).text ==
-        "friction + 0.667 x hamaker");
-}
-
-TEST_CASE("a ridge that bends away from every simple form is not given one", "[uq]") {
-  Eigen::MatrixXd bent(21, 2);  // falls, then rises
-  for (Eigen::Index i = 0; i < 21; ++i) {
-    const double a = 0.1 + 0.035 * static_cast<double>(i);
-    bent.row(i) << a, 0.6 + 4.0 * (a - 0.35) * (a - 0.35);
-  }
-  const uq::Combination found = uq::find_combination("friction", "hamaker", bent, Eigen::Vector2d(0.7, 1.5));
-  CHECK(found.text == "a curved relation of friction and hamaker");
-}
