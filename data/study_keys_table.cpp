@@ -374,8 +374,8 @@ const std::vector<StudyKey>& study_keys() {
       {"calibrate.gain.output", "choice", "", "NAME7", "", "the output that it acts on; all where it is missing",
        "\"torque\""},
       {"calibrate.noise", "table or choice", "", "", "",
-       "\"unknown\", or a prior: the standard errors are multiplied by an unknown, or with absolute are unknown "
-       "themselves",
+       "\"unknown\" (log-normal, median 1, sd 1 of the logarithm, from 0.1 to 10), or a prior: the standard errors are "
+       "multiplied by an unknown, or with absolute are unknown themselves",
        "\"unknown\""},
       {"calibrate.noise.absolute", "true or false", "", "", "false",
        "true: the prior is of the standard error itself, not of a factor; the files need no OUTPUT_se then", "true"},

@@ -2,7 +2,7 @@
 // only within an uncertainty, the machine's scale, and the model's discrepancy.
 //
 // Default priors, where a study only asks for an unknown:
-//   noise = "unknown"     log-normal with median 1 and sd 0.5 of the logarithm, on 0.1 to 10 times the standard errors
+//   noise = "unknown"     log-normal with median 1 and sd 1 of the logarithm, on 0.1 to 10 times the standard errors
 //   discrepancy = true    sd: half-normal of scale 0.1, as a share of the root mean square of the measured values;
 //                         length: log-normal with median 0.5 and sd 0.7, in ranges of the controls
 // A table without `kind` is a normal prior. Ranges not given: six sd about the mean.
@@ -21,7 +21,7 @@ bool is_percent(const Section& section, std::string_view key) {
   return section.kind(key) == ValueKind::text && section.text(key).find('%') != std::string::npos;
 }
 
-constexpr double noise_sd = 0.5, noise_low = 0.1, noise_high = 10.0;
+constexpr double noise_sd = 1.0, noise_low = 0.1, noise_high = 10.0;
 constexpr double discrepancy_scale = 0.1, discrepancy_length = 0.5, discrepancy_length_sd = 0.7;
 
 /// Where a nuisance's numbers lie when the study does not say.

@@ -173,7 +173,7 @@ TEST_CASE("speeds over a decade are learnt on a log scale, and a report that can
   }
 }
 
-TEST_CASE("good runs that a surrogate accuses where it does not bend are said to lie together, with the scale to try") {
+TEST_CASE("good runs that a surrogate accuses where it does not bend are named with the scale on which they agree") {
   // T = 2 + 8 friction + 60 (20 rpm / speed)^1.5 mN m over two decades of speed, which no stationary process follows.
   const Folder folder;
   const auto torque = [](double friction, double speed) {
@@ -202,8 +202,8 @@ TEST_CASE("good runs that a surrogate accuses where it does not bend are said to
   const auto linear = folder.demcal({"fit", "study", "--out", "linear"});
   CHECK(linear.status == 2);
   CHECK_THAT(linear.err,
-             Contains("They lie together at low speed (rank-sum test, p ") &&
-                 Contains("Try [controls.speed] scale = \"log\" first. If they are wrong, leave them out:") &&
+             Contains("On another scale they agree with all others") &&
+                 Contains("Set [controls.speed] scale = \"log\" first. If they are wrong, leave them out:") &&
                  !Contains("Correct them"));
   const auto log = folder.demcal({"fit", "study", "--out", "log", "--set", "controls.speed.scale=log"});
   CHECK(log.status == 0);

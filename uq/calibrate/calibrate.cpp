@@ -31,7 +31,8 @@ void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& 
   using enum data::FindingKind;
   for (const data::Finding& finding : findings)
     if (finding.severity == data::Severity::warning &&
-        (finding.kind == unit || finding.kind == standard_errors || finding.kind == no_response)) {
+        (finding.kind == unit || (finding.kind == standard_errors && report.lone_reading.empty()) ||
+         finding.kind == no_response)) {
       report.remedy = fmt::format("First settle what is said of the data ({}: {}). Then: {}", to_text(finding.kind),
                                   finding.place, report.remedy);
       return;

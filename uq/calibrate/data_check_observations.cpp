@@ -189,6 +189,21 @@ bool follows(const Eigen::ArrayXd& error, const Eigen::ArrayXd& value) {
   return spread(error / value) < spread(error);
 }
 
+/// Whether the readings follow a curve once a single one is left out: then that one is off, and not the errors.
+bool one_spoils_all(const data::Study& study, const data::ObservationSet& set, std::size_t column) {
+  for (std::size_t out = 0; out < set.points.size(); ++out) {
+    data::ObservationSet rest = set;
+    rest.points.erase(rest.points.begin() + static_cast<std::ptrdiff_t>(out));
+    const auto rows = static_cast<Eigen::Index>(rest.points.size());
+    const auto found = residuals2(study, rest, column, terms_of(rows));
+    if (!found) return false;
+    double chi2 = 0.0;
+    for (Eigen::Index i = 0; i < rows; ++i) chi2 += (*found)[i] / std::pow(rest.points[i].standard_errors[column], 2);
+    if (gsl_cdf_chisq_Q(chi2, static_cast<double>(rows - terms_of(rows))) > 1e-3) return true;
+  }
+  return false;
+}
+
 void check_errors(const data::Study& study, const data::ObservationSet& set, const DataCheckThresholds& t,
                   std::vector<Finding>& findings) {
   for (std::size_t column = 0; column < set.outputs.size(); ++column) {
@@ -216,7 +231,8 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
     const bool percent_fits =
         gsl_cdf_chisq_Q(chi2(*found, percent), dof) > 1e-3 && chi2(*found, percent) > chi2(*found, error);
     const bool share_fits = gsl_cdf_chisq_Q(chi2(*bent, share), dof - 1.0) > 1e-3;
-    const bool too_small = above < 1e-9 && share_fits && value.minCoeff() > 1.5 && !follows(error, value);
+    const bool too_small = above < 1e-9 && share_fits && value.minCoeff() > 1.5 && !follows(error, value) &&
+                           !one_spoils_all(study, set, column);
     if (!(too_large && percent_fits) && !too_small) continue;
     const double scatter =
         too_small ? std::sqrt(chi2(*bent, error) / (dof - 1.0)) : std::sqrt(chi2(*found, error) / dof);

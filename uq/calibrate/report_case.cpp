@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "uq/calibrate/calibrate.hpp"
+#include "uq/calibrate/data_columns.hpp"
 #include "uq/calibrate/misfit.hpp"
 #include "uq/emulate/scale_hint.hpp"
 #include "uq/infer/diagnostics.hpp"
@@ -166,7 +167,9 @@ void add_sampler_warnings(CaseReport& report, const Draws& draws) {
         fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
 }
 
-/// Where the runs cannot carry a verdict, that is the finding, and what is printed beside it is no result.
+constexpr const char* unconverged = "the sampler has not converged";
+
+/// Where the runs or the draws cannot carry a verdict, that is the finding, and what is printed beside it is no result.
 void doubt(CaseReport& report, Words& words, const data::Study& study) {
   const bool own_engine = study.training.engine == "demcal";
   words.finding = fmt::format("No verdict: {}.{}", report.doubt,
@@ -181,19 +184,52 @@ void doubt(CaseReport& report, Words& words, const data::Study& study) {
     words.remedy =
         fmt::format("Run {} of the posterior's points ({}), and calibrate again.", report.support.next_runs.size(),
                     own_engine ? "demcal train STUDY --at-posterior N" : "next-runs.csv beside the report");
+  } else if (report.doubt == unconverged) {
+    words.consequence = "The values are those of draws that do not agree yet, and no results.";
+    words.remedy = "Fix what the data say nothing of, or try the other sampler (--sampler nuts, --sampler mixture).";
   } else {
     words.consequence = "The values with and without those runs are both shown; neither is a result yet.";
     words.remedy = "Correct the runs or leave them out ([training] leave_out), and calibrate again.";
   }
 }
 
+std::string line_of(const data::Study& study, const RowOrigin& origin) {
+  const data::ObservationSet& set = study.observations[origin.set];
+  return place_of(set, set.points[origin.point]);
+}
+
+/// "torque 31.2 mN m at rpm 150 (bench.csv:5)".
+std::string reading_in_words(const data::Study& study, const RowOrigin& origin) {
+  const data::ObservationSet& set = study.observations[origin.set];
+  const data::Observation& point = set.points[origin.point];
+  const auto column = std::find(set.outputs.begin(), set.outputs.end(), origin.output) - set.outputs.begin();
+  const data::Output& output = study.outputs[origin.output];
+  std::string at;
+  for (std::size_t c = 0; c < study.controls.size(); ++c)
+    at += fmt::format("{} {} {:.4g}", at.empty() ? " at" : ",", study.controls[c].name,
+                      study.controls[c].unit.from_si(point.controls[c]));
+  return fmt::format("{} {:.4g} {}{} ({})", output.name, output.unit.from_si(point.values[column]), output.unit.symbol,
+                     at, line_of(study, origin));
+}
+
+/// A fit that is not refused, and that data of the model's own would seldom give.
+void add_poor_fit(Words& words, const FitCheck& check) {
+  words.finding += fmt::format(
+      " The fit is poor: chi2 {:.1f} for {} degrees of freedom, as far off as {:.1g} % of the model's own data.",
+      check.chi2, check.dof, 100.0 * check.best_fit_p);
+  words.consequence += " The errors do not cover a model that is off, nor readings that scatter more than is stated.";
+  const std::string look = "Look first at what the residuals have in common.";
+  words.remedy = words.remedy == none_needed ? look : look + " " + words.remedy;
+}
+
 void add_warnings(CaseReport& report, const SampledCase& sampled) {
-  if (!report.doubt.empty() && !report.unusable)
+  if (!report.doubt.empty() && !report.unusable && report.doubt != unconverged)
     report.warnings.push_back(fmt::format("case {}: {}", report.name, report.doubt));
   if (!sampled.draws.converged)
     report.warnings.push_back(
         fmt::format("case {}: the chains have not converged: {}", report.name, sampled.draws.reason));
-  if (!report.fits) report.warnings.push_back(fmt::format("case {}: the model does not fit the data", report.name));
+  if (!report.fits && report.doubt.empty())
+    report.warnings.push_back(fmt::format("case {}: the model does not fit the data", report.name));
   add_sampler_warnings(report, sampled.draws);
   if (!report.discrepancies.empty()) {
     double largest = 0.0;
@@ -267,6 +303,8 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.support = sampled.support;
   IdentifyOptions judged = options.identify;
   if (judged.unsupported.empty()) judged.unsupported = unsupported_parameters(model, sampled.support);
+  if (judged.unsupported.empty() && !sampled.draws.converged)
+    judged.unsupported.assign(static_cast<std::size_t>(model.own_count()), unconverged);
   if (!judged.unsupported.empty()) report.doubt = judged.unsupported.front();
   report.unusable = !doubt_of(model).empty();
   Identification found = identify(model, draws, judged);
@@ -300,7 +338,9 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
     add_quadrature(report, sampled, draws, options);
   report.modes_parted_by = parted_by(study, model, found.modes);
   Words words = summarise(found, report.modes_parted_by);
-  if (!found.fits) {
+  const std::optional<LoneReading> lone =
+      found.fits ? std::nullopt : lone_reading(study, model, found.best_fit.x, options.identify.thresholds);
+  if (!found.fits && !lone) {
     if (const std::string off = farthest_off(report.predictive); !off.empty()) words.finding += " " + off;
     const Contradiction sets =
         describe_contradiction(fits_alone(study, model, found.best_fit.x), options.identify.thresholds.best_fit_p);
@@ -314,6 +354,14 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
         words.remedy += " " + hint;
   }
   if (!report.doubt.empty()) doubt(report, words, study);
+  if (lone) {
+    report.lone_reading = line_of(study, lone->origin);
+    words.finding += fmt::format(" {} contradicts all others, which fit without it (p {:.2g}).",
+                                 reading_in_words(study, lone->origin), lone->p_without);
+    words.remedy = "Check that reading, its unit and its decimal point first; where it is wrong, take its line out.";
+  }
+  if (found.fits && report.doubt.empty() && found.check.best_fit_p < judged.thresholds.poor_fit_p)
+    add_poor_fit(words, found.check);
   report.finding = words.finding;
   report.consequence = words.consequence;
   report.remedy = words.remedy;

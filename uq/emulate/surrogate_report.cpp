@@ -55,7 +55,11 @@ void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const 
                                .expected = output.unit.from_si(found.expected[i]),
                                .deviations = found.deviations[i]});
   }
-  if (const auto end = at_one_end(rows.set.x, found.runs)) {
+  if (const auto scale = found.runs.empty() ? std::nullopt : best_log_scale(study, rows, found.runs, options)) {
+    report.outlying_together = fmt::format(
+        "On another scale {} with all others, as good runs do where the surrogate does not bend. Set {} first.",
+        found.runs.size() == 1 ? "it agrees" : "they agree", scale->key);
+  } else if (const auto end = at_one_end(rows.set.x, found.runs)) {
     const EmulatorInput& input = rows.inputs[end->input];
     const data::Input named = input_of(study, input);
     std::pair covered{named.axis.low, named.axis.high};
@@ -63,9 +67,14 @@ void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const 
     report.outlying_together = fmt::format(
         "They lie together at {} {} (rank-sum test, p {:.1g}), as good runs do where the surrogate does not bend. {}",
         end->low ? "low" : "high", named.name, end->p, bend_hint(study, input, covered, end->low));
-    report.remedy = fmt::format("All others contradict {} runs. {} If they are wrong, leave them out: {}. ",
-                                report.outlying.size(), report.outlying_together, leave_out_key(report.outlying)) +
-                    report.remedy;
+  }
+  if (!report.outlying_together.empty()) {
+    const bool one = report.outlying.size() == 1;
+    report.remedy =
+        fmt::format("All others contradict {}. {} If {} wrong, leave {} out: {}. ",
+                    one ? "a run" : fmt::format("{} runs", report.outlying.size()), report.outlying_together,
+                    one ? "it is" : "they are", one ? "it" : "them", leave_out_key(report.outlying)) +
+        report.remedy;
   } else if (!report.outlying.empty()) {
     report.remedy = fmt::format("Correct {} or leave {} out first: {}. ",
                                 report.outlying.size() == 1 ? "the run that all others contradict"
@@ -194,10 +203,14 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
     add_levels(report, fitted, output);
   else
     add_outlying(report, fitted, fit_options, study);
-  if (const std::string hint = scale_hint(study, rows.control_range);
-      !hint.empty() && (report.verdict != SurrogateWord::good || !report.outlying.empty()) &&
-      report.outlying_together.empty())  // else that says what to try
-    report.remedy += " " + hint;
+  if (!fitted.two_level && report.verdict != SurrogateWord::good && report.outlying.empty()) {
+    constexpr double better = 0.7;  // of the error on the study's scales
+    const auto scale = best_log_scale(study, rows, {}, fit_options);
+    const double now = left_out_error(*fitted.process, rows.set);
+    if (scale && scale->error < better * now)
+      report.remedy +=
+          fmt::format(" Set {}: there the left-out errors are {:.2g} times smaller.", scale->key, now / scale->error);
+  }
   return report;
 }
 

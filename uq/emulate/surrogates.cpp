@@ -95,13 +95,14 @@ std::string outlying_warning(const SurrogateReport& report) {
     list += (i > 0 ? ", " : "") + outlying_text(report.outlying[i], report.unit);
   if (report.outlying.size() > most) list += fmt::format(" and {} more", report.outlying.size() - most);
   const bool one = report.outlying.size() == 1;
+  const char* const them = one ? "it" : "them";
+  const std::string contradicted =
+      one ? fmt::format("a run of {} is contradicted", described(report))
+          : fmt::format("{} runs of {} are contradicted", report.outlying.size(), described(report));
   if (!report.outlying_together.empty())
-    return fmt::format("{} runs of {} are contradicted by all others: {}. {} If they are wrong, leave them out: {}",
-                       report.outlying.size(), described(report), list, report.outlying_together,
-                       leave_out_key(report.outlying));
-  return fmt::format("{} of {} {} contradicted by all others: {}. Correct {}, or leave {} out: {}",
-                     one ? "a run" : fmt::format("{} runs", report.outlying.size()), described(report),
-                     one ? "is" : "are", list, one ? "it" : "them", one ? "it" : "them",
+    return fmt::format("{} by all others: {}. {} If {} wrong, leave {} out: {}", contradicted, list,
+                       report.outlying_together, one ? "it is" : "they are", them, leave_out_key(report.outlying));
+  return fmt::format("{} by all others: {}. Correct {}, or leave {} out: {}", contradicted, list, them, them,
                      leave_out_key(report.outlying));
 }
 

@@ -470,6 +470,7 @@ void visit_fields(Visit&& visit, T& c) {
   visit("support", c.support);
   visit("without", c.without);
   visit.text("doubt", c.doubt);
+  visit.text("lone_reading", c.lone_reading);
   visit("unusable", c.unusable);
   visit("surrogate_to_measurement", c.surrogate_to_measurement);
   visit("modes", c.modes);

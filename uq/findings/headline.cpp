@@ -93,10 +93,10 @@ std::string headline(const CaseReport& result, Typography typography) {
     return "Nothing can be said of the parameters: the surrogate is unusable. Ignore what follows, and do first what "
            "the warning says.";
   if (!result.converged) return "No result yet: the sampler has not converged.";
+  if (!result.doubt.empty()) return "No verdict yet: " + result.doubt + ".";
   const Names outputs = measured(result);
   if (!result.fits)
     return "No values of the parameters reproduce the measured " + (outputs.empty() ? "data" : listed(outputs)) + ".";
-  if (!result.doubt.empty()) return "No verdict yet: " + result.doubt + ".";
 
   const std::string subject = outputs.empty() ? "The data" : capital(listed(outputs));
   const bool one = outputs.size() == 1;

@@ -8,7 +8,7 @@ namespace uq {
 enum class Verdict { identified, weakly_identified, several_values, not_identified, does_not_fit };
 
 /// Why a parameter is not known (uq/verdict/verdict_words.hpp).
-enum class Reason { structural, practical, surrogate, one_sided, bound, no_influence, unsupported };
+enum class Reason { structural, practical, surrogate, one_sided, bound, no_influence, unsupported, range_of_another };
 
 /// How far a surrogate can be trusted (surrogate/validation.hpp).
 enum class SurrogateWord { good, caution, unusable };
@@ -27,8 +27,8 @@ template <>
 inline constexpr std::array data::texts_of<uq::Verdict> = {"identified", "weakly identified", "several values",
                                                            "not identified", "model does not fit"};
 template <>
-inline constexpr std::array data::texts_of<uq::Reason> = {"structural", "practical",    "surrogate",  "one-sided",
-                                                          "bound",      "no influence", "unsupported"};
+inline constexpr std::array data::texts_of<uq::Reason> = {
+    "structural", "practical", "surrogate", "one-sided", "bound", "no influence", "unsupported", "range of another"};
 template <>
 inline constexpr std::array data::texts_of<uq::SurrogateWord> = {"good", "caution", "unusable"};
 template <>

@@ -334,6 +334,7 @@ struct CaseReport {
   std::string sampler;            ///< "mixture", "nuts", "cut"
   SupportReport support;
   std::optional<WithoutRuns> without;     ///< where runs are contradicted by the others
+  std::string lone_reading;               ///< "bench.csv:5", without which all others fit; empty: there is none
   std::string doubt;                      ///< why no verdict can rest on the surrogate; empty: it can
   bool unusable = false;                  ///< the doubt is of the surrogate itself: the values are not shown
   double surrogate_to_measurement = 0.0;  ///< sd of the surrogate over that of the measurement, median of the rows

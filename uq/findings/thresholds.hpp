@@ -13,6 +13,7 @@ struct VerdictThresholds {
   /// Chi-squared tail of the best fit; a case below does not fit. The predictive p is conservative with few data, since
   /// the same data chose the parameters.
   double best_fit_p = 0.001;
+  double poor_fit_p = 0.05;  ///< of the same tail; a case below fits, and it is said that it does so poorly
   /// Surrogate sds: a change of the prediction below this cannot be told from none.
   double told_apart_sd = 3.0;
   /// Deviance that a parameter's whole range brings about: below it the data say nothing of the parameter.
@@ -20,6 +21,9 @@ struct VerdictThresholds {
   /// Deviance at an interval's end, in profile_drops, with the parameter that stands at the end of its range held in
   /// the middle of what the data allow it: from here on most of the interval is that parameter's range.
   double pinned_drops = 2.0;
+  /// Of a value's own error: a move as large as this, were another parameter's range longer, leaves the value to that
+  /// range.
+  double range_shift = 0.5;
   /// Structural: the predictions along the interval stay the same to this share of what the parameter does alone, the
   /// surrogate's own error counted in.
   double same_share = 0.06;

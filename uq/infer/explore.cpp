@@ -201,6 +201,37 @@ Search search_unknown(const Target& target, const Scouts& scouts, const Knowledg
   return search;
 }
 
+double log_unknown_mass(const Target& target, const Peak& peak, const Knowledge& knowledge, std::int64_t& evaluations) {
+  constexpr Eigen::Index draws = 512;
+  constexpr double wider = 4.0 / 3.0;
+  const Eigen::Index d = peak.x.size();
+  const Eigen::LLT<Eigen::MatrixXd> factor(peak.covariance);
+  if (factor.info() != Eigen::Success) return peak.log_mass;
+  data::RandomStream random(1, data::Purpose::search_directions, 1);
+  Eigen::MatrixXd inside(draws, d);
+  Eigen::VectorXd log_proposal(draws);
+  Eigen::Index count = 0;
+  const double constant = -0.5 * static_cast<double>(d) * std::log(2.0 * std::numbers::pi) -
+                          Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum() -
+                          static_cast<double>(d) * std::log(wider);
+  for (Eigen::Index i = 0; i < draws; ++i) {
+    Eigen::VectorXd z(d);
+    for (double& value : z) value = random.normal();
+    const Eigen::VectorXd step = factor.matrixL() * z, x = peak.x + wider * step;
+    if (!target.contains(x)) continue;
+    inside.row(count) = x.transpose();
+    log_proposal[count++] = constant - 0.5 * z.squaredNorm();
+  }
+  if (count == 0) return nowhere;
+  const Eigen::VectorXd level = evaluate(target, inside.topRows(count));
+  evaluations += count;
+  double mass = 0.0;
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (level[i] > nowhere && !knowledge.knows(inside.row(i).transpose(), level[i]))
+      mass += std::exp(level[i] - log_proposal[i] - peak.log_mass);
+  return mass > 0.0 ? peak.log_mass + std::log(mass / static_cast<double>(draws)) : nowhere;
+}
+
 Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width) {
   const Eigen::Index d = x.size();
   const auto value = [&](const Eigen::VectorXd& at) {

@@ -11,9 +11,10 @@
 //    diagonal of the scouts' box. Mirror images and repeated modes lie on such lines in any dimension.
 // 3. From each start uphill, by a trust region with a BFGS model so that no step jumps into another basin. It ends
 //    where p is as high as in the bulk of the draws and q knows the place, p(x) <= level q(x), or at a maximum.
-// 4. The mass of an unknown maximum is Laplace's, p(m) (2 pi)^(d/2) |S|^(1/2). S is the inverse of the curvature,
+// 4. The mass of an unknown maximum is first Laplace's, p(m) (2 pi)^(d/2) |S|^(1/2). S is the inverse of the curvature,
 //    shortened along its axes to where p still is of the maximum's order: on a curved ridge it is the mass of a
-//    straight piece.
+//    straight piece. Where that would matter, draws of this normal law tell how much mass lies inside the support
+//    where q does not know it: in a corner of a flat density Laplace's is too large by 2 for each face.
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -62,6 +63,10 @@ struct Knowledge {
     return true;
   }
 };
+
+/// Log of the mass of p in places that the knowledge does not reach, by importance sampling from a peak's normal law,
+/// wider by a third; minus infinity where no draw finds such a place.
+double log_unknown_mass(const Target& target, const Peak& peak, const Knowledge& knowledge, std::int64_t& evaluations);
 
 struct Search {
   std::vector<Peak> modes;  ///< unknown maxima, each once

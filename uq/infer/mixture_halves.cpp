@@ -94,8 +94,11 @@ std::string find_unknown(const Target& target, const Scouts& scouts, const Popul
     result.searched_starts += search.starts;
     std::vector<Peak> matter;
     double share = 0.0;
-    for (const Peak& mode : search.modes) {
-      const double mass = std::exp(std::min(mode.log_mass - log_evidence, 50.0));
+    for (Peak mode : search.modes) {
+      const auto mass_of = [&] { return std::exp(std::min(mode.log_mass - log_evidence, 50.0)); };
+      if (mass_of() < options.unknown_mass) continue;
+      mode.log_mass = log_unknown_mass(target, mode, knowledge, result.evaluations);
+      const double mass = mass_of();
       if (mass < options.unknown_mass) continue;
       matter.push_back(mode);
       share += mass;

@@ -38,15 +38,17 @@ std::string missed_maxima(const Target& target, Draws& draws, const SecondCheckO
   const Scouts scouts = send_scouts(target, random, options.explore);
   Eigen::Index highest = 0;
   log_density.maxCoeff(&highest);
-  const Search search = search_unknown(target, scouts,
-                                       {.mixtures = {mixture},
-                                        .log_levels = {log_evidence + std::log(options.ratio)},
-                                        .log_bulk = quantile(log_density, 0.1)},
-                                       {.through = kept.row(highest).transpose()}, options.explore);
+  const Knowledge knowledge{.mixtures = {mixture},
+                            .log_levels = {log_evidence + std::log(options.ratio)},
+                            .log_bulk = quantile(log_density, 0.1)};
+  const Search search =
+      search_unknown(target, scouts, knowledge, {.through = kept.row(highest).transpose()}, options.explore);
   draws.evaluations += search.evaluations + scouts.x.rows();
   draws.scouts = static_cast<int>(scouts.x.rows());
   draws.searched_starts += search.starts;
-  for (const Peak& mode : search.modes) {
+  for (Peak mode : search.modes) {
+    if (mode.log_mass - log_evidence > std::log(options.mass))
+      mode.log_mass = log_unknown_mass(target, mode, knowledge, draws.evaluations);
     const double mass = std::exp(std::min(mode.log_mass - log_evidence, 50.0)), share = mass / (1.0 + mass);
     const auto near = static_cast<double>(draws_near(mode, all));
     if (share < options.mass || near > 0.05 * share * static_cast<double>(all.rows())) continue;

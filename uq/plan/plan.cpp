@@ -358,7 +358,7 @@ class Planner {
       const double now = sd_now(static_cast<int>(k)), left = std::max(1.0 - share.shares[k], 1e-12);
       report.runs.parameters.push_back({.name = name_of(static_cast<int>(k)),
                                         .unit = unit_of(static_cast<int>(k)).symbol,
-                                        .information = -0.5 * std::log(left),
+                                        .information = std::max(0.0, -0.5 * std::log(left)),
                                         .sd_now = now,
                                         .sd_after = now * std::sqrt(left),
                                         .words = {},
@@ -410,8 +410,10 @@ class Planner {
       report.notes.push_back("The posterior has not converged: the ranking may change.");
   }
 
+  /// With as many digits as it takes to tell the width now from that afterwards, three at most.
   std::string width(const PlannedParameter& parameter, double sd) const {
-    return fmt::format("{:.2g}{}{}", sd, parameter.unit.empty() ? "" : " ", parameter.unit);
+    const bool two = fmt::format("{:.2g}", parameter.sd_now) != fmt::format("{:.2g}", parameter.sd_after);
+    return fmt::format("{:.{}g}{}{}", sd, two ? 2 : 3, parameter.unit.empty() ? "" : " ", parameter.unit);
   }
 
   std::string chance_of_identified(const std::string& name, const PlannedParameter& gain) const {

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "uq/infer/diagnostics.hpp"
 #include "uq/infer/factor.hpp"
+#include "uq/infer/optimise.hpp"
 #include "uq/posterior/fisher.hpp"
 #include "uq/posterior/posterior.hpp"
 
@@ -201,6 +203,34 @@ std::vector<PredictiveCurve> mean_curves(const data::Study& study, const CaseMod
   return curves_of(study, model, u.transpose(), Eigen::VectorXd::Zero(1));
 }
 
+namespace {
+
+/// How far each measured number lies from the prediction of the most likely point that the priors allow, in sd: where
+/// draws of the priors all miss a number, the priors may still allow it. Allowed is the central 99.99 % of each prior.
+Eigen::VectorXd least_deviations(const CaseModel& model, const Eigen::MatrixXd& draws, const Eigen::VectorXd& y) {
+  constexpr Eigen::Index starts = 3;
+  constexpr double tail = 5e-5;
+  Eigen::VectorXd low(model.dimension()), high(model.dimension());
+  for (Eigen::Index s = 0; s < low.size(); ++s) {
+    low[s] = model.slots[s].prior.inverse_cdf(tail);
+    high[s] = model.slots[s].prior.inverse_cdf(1.0 - tail);
+  }
+  const Eigen::VectorXd level = log_likelihoods(model, draws);
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(draws.rows()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return level[a] > level[b]; });
+  order.resize(std::min<std::size_t>(order.size(), starts));
+  Eigen::MatrixXd from = draws(order, Eigen::all);
+  for (Eigen::Index i = 0; i < from.rows(); ++i)
+    from.row(i) = from.row(i).cwiseMax(low.transpose()).cwiseMin(high.transpose());
+  const Maximum best =
+      maximise([&](const Eigen::VectorXd& u) { return log_likelihood_gradient(model, u); }, {low, high}, from);
+  const StackedPrediction prediction = predict(model, best.x);
+  return (y - prediction.mean).cwiseQuotient(prediction.total().diagonal().cwiseSqrt()).cwiseAbs();
+}
+
+}  // namespace
+
 void check_priors(const data::Study& study, const CaseModel& model) {
   const Eigen::VectorXd y = observed(model);
   const std::vector<RowOrigin> from = origins(model);
@@ -210,12 +240,14 @@ void check_priors(const data::Study& study, const CaseModel& model) {
   struct Reach {
     Eigen::VectorXd nearest;
     Eigen::VectorXd lowest, highest;
+    Eigen::MatrixXd draws;
   };
   auto reach = [&](int count, auto draw) {
     Reach found{.nearest = Eigen::VectorXd::Constant(y.size(), 1e300),
                 .lowest = Eigen::VectorXd::Constant(y.size(), 1e300),
-                .highest = Eigen::VectorXd::Constant(y.size(), -1e300)};
-    Eigen::MatrixXd draws(count, d);
+                .highest = Eigen::VectorXd::Constant(y.size(), -1e300),
+                .draws = Eigen::MatrixXd(count, d)};
+    Eigen::MatrixXd& draws = found.draws;
     for (int i = 0; i < count; ++i) draws.row(i) = draw().transpose();
     for_each_law(model, draws, [&](Eigen::Index i, const std::vector<GroupLaw>& laws) {
       const RowMoments prediction = moments(model, laws, draws.row(i).transpose());
@@ -239,6 +271,9 @@ void check_priors(const data::Study& study, const CaseModel& model) {
   std::vector<Eigen::Index> excluded;
   for (Eigen::Index i = 0; i < y.size(); ++i)
     if (out_of_reach(prior, i)) excluded.push_back(i);
+  if (excluded.empty()) return;
+  const Eigen::VectorXd least = least_deviations(model, prior.draws, y);
+  std::erase_if(excluded, [&](Eigen::Index i) { return least[i] <= 5.0; });
   if (excluded.empty()) return;
   const Reach range = reach(1000, [&] {
     // Parameters anywhere in their ranges; a nuisance has no range but its prior's.

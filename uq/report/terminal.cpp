@@ -86,7 +86,7 @@ std::string parameter_lines(const CaseReport& result, int columns) {
 
 std::string case_text(const CaseReport& result, int columns) {
   std::string text = harmless(result.name) + "\n";
-  if (!result.fits) {
+  if (!result.fits && result.doubt.empty()) {
     text += fold("  ! ",
                  fmt::format("The model does not fit (posterior predictive p = {}).",
                              significant(result.ppp, 2, Typography::ascii)),

@@ -62,6 +62,30 @@ std::vector<SetFit> fits_alone(const data::Study& study, const CaseModel& model,
   return found;
 }
 
+std::optional<LoneReading> lone_reading(const data::Study& study, const CaseModel& model, const Eigen::VectorXd& start,
+                                        const VerdictThresholds& thresholds) {
+  constexpr std::size_t rows_most = 60;
+  const std::vector<RowOrigin> from = origins(model);
+  if (from.size() > rows_most || replaces_errors(model)) return {};
+  const Eigen::VectorXd y = observed(model), stated = observed_variance(model);
+  const Eigen::MatrixXd starts = starting_points(study, model, start);
+  std::optional<LoneReading> found;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    Eigen::VectorXd variance = stated;
+    variance[static_cast<Eigen::Index>(i)] *= variance_of_others;
+    const CaseModel others = with_data(model, y, variance);
+    const Maximum best = maximum_likelihood(others, starts);
+    const int dof = static_cast<int>(from.size()) - 1 - fisher_spectrum(others, best.x).known_directions;
+    if (dof < 2) return {};
+    const double p = gsl_cdf_chisq_Q(chi_squared(others, best.x), dof);
+    if (p < thresholds.best_fit_p) continue;
+    if (found) return {};
+    found = LoneReading{from[i], p};
+  }
+  if (found && found->p_without < thresholds.poor_fit_p) found.reset();
+  return found;
+}
+
 Contradiction describe_contradiction(const std::vector<SetFit>& sets, double least_p) {
   std::vector<std::string> fit, unfit;
   for (const SetFit& set : sets) (set.best_fit_p >= least_p ? fit : unfit).push_back(set.name);

@@ -184,6 +184,8 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
                           .range_high = report.prior_high,
                           .low_pinned_by = report.low_pinned_by,
                           .high_pinned_by = report.high_pinned_by};
+    if (profile.conditional_on)
+      one.conditional_on = model.slots[static_cast<std::size_t>(*profile.conditional_on)].label;
     if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
     one.surrogate_share = surrogate.shares[k];
     one.facts.influences = all.influence[k].some || limited(one.facts, thresholds);

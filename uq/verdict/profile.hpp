@@ -7,6 +7,7 @@
 // support ends, open when the support's bound is met first: a bound is not a finding. Nor is an end that is there only
 // because another unknown has come to the end of its range, so that the ridge cannot go on (pinned): with that unknown
 // held where the data would have it, the deviance at the end would be at least twice as large. That side is open, too.
+// So is the side to which the unknown would move if another could go beyond the end of its range (range_end.hpp).
 // An unknown without influence (influence.hpp) pins nothing, and nor does a bound at 0 that nature sets.
 // Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take it away, the
 // hole is in doubt, and the interval goes through it.
@@ -19,6 +20,7 @@
 #include "uq/infer/optimise.hpp"
 #include "uq/posterior/case_model.hpp"
 #include "uq/verdict/influence.hpp"
+#include "uq/verdict/range_end.hpp"
 
 namespace uq {
 
@@ -48,6 +50,7 @@ struct Profile {
   Eigen::MatrixXd path;                                  ///< points x unknowns: the maximiser at each
   std::optional<double> low, high;                       ///< ends of the interval, in u; none: open
   std::optional<int> low_pinned, high_pinned;            ///< unknown at the end of whose range an open side ends
+  std::optional<int> conditional_on;                     ///< unknown whose range's end decides the value, if one does
   double deviance_at_low = 0.0, deviance_at_high = 0.0;  ///< at the support's bounds
   std::vector<ProfilePart> parts;                        ///< rising; holes in doubt are filled
   std::vector<ProfileBarrier> barriers;                  ///< all, those in doubt too
@@ -64,6 +67,7 @@ struct Profiles {
   Maximum best;                      ///< largest likelihood of all that was seen
   std::vector<Maximum> maxima;       ///< other places where the likelihood is largest, nearly as good
   std::vector<Influence> influence;  ///< per unknown
+  std::vector<RangeEnd> ends;        ///< of unknowns whose range ends where the likelihood still rises
 };
 struct Guides {
   Eigen::MatrixXd draws;

@@ -87,6 +87,18 @@ std::optional<int> pinned(const CaseModel& model, const Box& box, const Profiles
   return {};
 }
 
+/// Opens the side to which the unknown would move if another could go beyond the end of its range.
+void open_beyond(const Profiles& all, Profile& profile, const VerdictThresholds& thresholds) {
+  const auto k = static_cast<Eigen::Index>(profile.unknown);
+  for (const RangeEnd& end : all.ends) {
+    if (end.unknown == profile.unknown || std::abs(end.shift[k]) < thresholds.range_shift) continue;
+    const bool upwards = end.shift[k] > 0.0;
+    (upwards ? profile.high : profile.low).reset();
+    (upwards ? profile.high_pinned : profile.low_pinned) = end.unknown;
+    profile.conditional_on = end.unknown;
+  }
+}
+
 /// Whether an error of two of the surrogate's sds would take the barrier away: between its highest point and either of
 /// the two parts.
 bool in_doubt(const CaseModel& model, const Yardstick& yardstick, const Profile& profile, Eigen::Index peak,
@@ -145,6 +157,8 @@ void finish_profile(const CaseModel& model, const Profiles& all, Profile& profil
     profile.high_pinned = pinned(model, box, all, profile, last, thresholds);
     if (!profile.high_pinned) profile.high = parts.back().high;
   }
+
+  open_beyond(all, profile, thresholds);
 
   // Barriers between them.
   profile.parts = {parts.front()};

@@ -109,12 +109,15 @@ std::vector<std::pair<std::string, std::string>> describe(const VerdictThreshold
        fmt::format("deviance at its end at least {:g} times as large with that parameter in the middle of its own "
                    "interval",
                    thresholds.pinned_drops)},
+      {"value that depends on where another's range ends",
+       fmt::format("it would move by at least {:g} of its error if that range went on", thresholds.range_shift)},
       {"several values",
        fmt::format("parts of the interval with a barrier that two of the surrogate's sds do not explain; contraction "
                    "within them at least {:g}",
                    thresholds.contraction_weak)},
       {"posterior predictive p for a fit", fmt::format("at least {:g}", thresholds.predictive_p)},
       {"chi-squared tail of the best fit for a fit", fmt::format("at least {:g}", thresholds.best_fit_p)},
+      {"chi-squared tail of a poor fit", fmt::format("below {:g}", thresholds.poor_fit_p)},
       {"combination of traded parameters",
        fmt::format("its sd at most {:g} of that of any of its terms", thresholds.combination_share)},
       {"curved relation",
@@ -145,6 +148,11 @@ ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fi
   ParameterVerdict found;
   const std::string value = in_unit(
       with_error(parameter.mean, parameter.sd) + " +- " + with_error(parameter.sd, parameter.sd), parameter.unit);
+  if (!parameter.unsupported.empty()) {
+    found.reason = Reason::unsupported;
+    found.sentence = fmt::format("{} is not identified: {}.", parameter.name, parameter.unsupported);
+    return found;
+  }
   if (!fit.fits(thresholds)) {
     found.verdict = Verdict::does_not_fit;
     found.borderline = fit.predictive_p > 0.5 * thresholds.predictive_p && fit.best_fit_p > 0.5 * thresholds.best_fit_p;
@@ -152,11 +160,6 @@ ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fi
         "{}: the model does not fit the data at any value (posterior predictive p {:.2g}, best-fit p {:.2g}), so its "
         "{} means nothing.",
         parameter.name, fit.predictive_p, fit.best_fit_p, value);
-    return found;
-  }
-  if (!parameter.unsupported.empty()) {
-    found.reason = Reason::unsupported;
-    found.sentence = fmt::format("{} is not identified: {}.", parameter.name, parameter.unsupported);
     return found;
   }
   const WordFacts& facts = parameter.facts;

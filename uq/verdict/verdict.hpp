@@ -1,6 +1,7 @@
 #pragma once
 // From numbers to a word: the verdict on one parameter. Nothing here knows what the parameter is called or is.
 //
+//   not identified      the runs do not support a word, the sampler has not converged, or the surrogate is unusable
 //   does not fit        the case's posterior predictive p or best-fit p is below its threshold: nothing is identified
 //   not identified      the parameter has no influence (influence.hpp)
 //   several values      the profile interval has several parts, closed on both sides, and within the parts the
@@ -9,7 +10,7 @@
 //                       `contraction_identified`
 //   weakly identified   closed, and contraction is at least `contraction_weak`; or an upper limit: closed above, and
 //                       open below only because the parameter cannot go below its physical bound 0
-//   not identified      anything else; and whatever is not supported by runs, or rests on an unusable surrogate
+//   not identified      anything else
 // The reason, and what can be done about it, is in uq/verdict/verdict_words.hpp. Borderline: over repeats of the data
 // (uq/verdict/repeats.hpp) another word has a probability of at least `borderline_probability`.
 #include <optional>
@@ -53,8 +54,9 @@ struct ParameterEvidence {
   bool structural = false;                    ///< a better measurement of the same kind would not close it
   std::string unsupported =
       {};  ///< why the runs cannot carry a verdict, a clause; empty: they can (uq/posterior/support.hpp)
-  bool undecided = false;        ///< the surrogate is not sharp enough to tell
-  double surrogate_share = 0.0;  ///< of the variance, where two values are compared
+  std::string conditional_on = {};  ///< another parameter whose range's end decides the value; may be empty
+  bool undecided = false;           ///< the surrogate is not sharp enough to tell
+  double surrogate_share = 0.0;     ///< of the variance, where two values are compared
   double silent_sds = 0.0;  ///< of the data's errors: what the surrogate's own error leaves room for, without influence
 };
 

@@ -45,6 +45,7 @@ struct Remedy {
 struct Sorted {
   Names known, several, weak, unknown;                               ///< by word
   Names silent, structural, practical, surrogate, one_sided, bound;  ///< by reason
+  Names conditional, ends_of;  ///< values that depend on where another's range ends, and whose ranges these are
   double of_structure = 0.0, of_measurement = 0.0, of_surrogate = 0.0, of_range = 0.0;
   double largest_surrogate = 0.0;  ///< share of one parameter
 };
@@ -63,12 +64,15 @@ Sorted sort_parameters(const std::vector<ParameterReport>& parameters) {
     }
     if (parameter.verdict == Verdict::not_identified) sorted.unknown.push_back(name);
     if (!reason) continue;
-    (*reason == Reason::structural  ? sorted.structural
-     : *reason == Reason::practical ? sorted.practical
-     : *reason == Reason::surrogate ? sorted.surrogate
-     : *reason == Reason::one_sided ? sorted.one_sided
-                                    : sorted.bound)
+    (*reason == Reason::structural         ? sorted.structural
+     : *reason == Reason::practical        ? sorted.practical
+     : *reason == Reason::surrogate        ? sorted.surrogate
+     : *reason == Reason::one_sided        ? sorted.one_sided
+     : *reason == Reason::range_of_another ? sorted.conditional
+                                           : sorted.bound)
         .push_back(name);
+    if (*reason == Reason::range_of_another)
+      add(sorted.ends_of, parameter.high_pinned_by.empty() ? parameter.low_pinned_by : parameter.high_pinned_by);
     sorted.of_structure += parameter.share_structure;
     sorted.of_measurement += parameter.share_measurement;
     sorted.of_surrogate += parameter.share_surrogate;
@@ -128,6 +132,10 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
   if (!sorted.one_sided.empty())
     say(fmt::format("Only a limit of {} is known; the value given depends on where the range ends.",
                     listed(sorted.one_sided)));
+  if (!sorted.conditional.empty())
+    say(fmt::format("{} of {} {} on where the range of {} ends, and can only be used if that end is real.",
+                    one_or(sorted.conditional, "The value", "The values"), listed(sorted.conditional),
+                    one_or(sorted.conditional, "depends", "depend"), listed(sorted.ends_of)));
   if (!sorted.bound.empty())
     say(fmt::format("The limit of {} can be used as such; {} is not excluded.", listed(sorted.bound),
                     one_or(sorted.bound, "its bound", "their bound")));
@@ -168,7 +176,7 @@ std::string partners(const CaseFacts& facts, const Names& names) {
 }
 
 std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
-  if (sorted.known.size() == facts.parameters.size()) return "None needed.";
+  if (sorted.known.size() == facts.parameters.size()) return none_needed;
   std::vector<Remedy> remedies;
   if (!sorted.several.empty())
     remedies.push_back({static_cast<double>(sorted.several.size()),
@@ -192,8 +200,7 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
   if (hidden && (surrogate >= notable || !sorted.surrogate.empty())) {
     const bool first = surrogate >= mostly || !sorted.surrogate.empty();
     remedies.push_back({first ? std::max(sorted.of_surrogate, sorted.of_measurement + 1e-9) : 1e-9,
-                        surrogate < notable ? "Make more training runs where the posterior lies (demcal train STUDY "
-                                              "--until posterior): only a sharper "
+                        surrogate < notable ? "Make more training runs (demcal train STUDY --runs N): only a sharper "
                                               "surrogate shows whether a better measurement would help."
                         : first             ? surrogate_remedy(sorted.largest_surrogate)
                                 : fmt::format("More training runs would help, too: up to {:.0f} % of the posterior "
@@ -214,6 +221,12 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
         {sorted.of_range, fmt::format("Widen the range of {}, with training runs there, or measure where the response "
                                       "still changes with {}.",
                                       listed(sorted.one_sided), one_or(sorted.one_sided, "it", "them"))});
+  const bool widened = std::all_of(sorted.ends_of.begin(), sorted.ends_of.end(), [&](const std::string& name) {
+    return std::find(sorted.one_sided.begin(), sorted.one_sided.end(), name) != sorted.one_sided.end();
+  });
+  if (!sorted.conditional.empty() && !widened)
+    remedies.push_back(
+        {sorted.of_range, fmt::format("Widen the range of {}, with training runs there.", listed(sorted.ends_of))});
   if (!sorted.bound.empty())
     remedies.push_back(
         {sorted.of_measurement, fmt::format("A smaller measurement error would lower the limit of {} or show a value.",
@@ -246,6 +259,7 @@ std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict ve
   if (verdict != Verdict::not_identified && verdict != Verdict::weakly_identified) return {};
   const WordFacts& facts = parameter.facts;
   if (!facts.influences) return Reason::no_influence;
+  if (!parameter.conditional_on.empty()) return Reason::range_of_another;
   if (parameter.structural) return Reason::structural;
   if (facts.open_low && !facts.open_high && facts.physical_low) return Reason::bound;
   const bool pinned = !parameter.low_pinned_by.empty() || !parameter.high_pinned_by.empty();
@@ -265,6 +279,9 @@ std::string because(Reason reason, const ParameterEvidence& parameter) {
       return parameter.surrogate_share > mostly
                  ? "; the surrogate's error hides it"
                  : "; the surrogate's error leaves open whether a better measurement would help";
+    case Reason::range_of_another:
+      return fmt::format("; its value depends on where the range of {} ends, which the data would go beyond",
+                         parameter.conditional_on);
     case Reason::one_sided:
     case Reason::bound:
     case Reason::unsupported:  // its sentence says why by itself
@@ -284,7 +301,8 @@ std::string because(Reason reason, const ParameterEvidence& parameter) {
 WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason> reason) {
   const double surrogate = std::clamp(parameter.surrogate_share, 0.0, 1.0);
   if (reason == Reason::structural) return {.measurement = 0.0, .surrogate = 0.0, .structure = 1.0, .range = 0.0};
-  if (reason == Reason::one_sided) return {.measurement = 0.0, .surrogate = 0.0, .structure = 0.0, .range = 1.0};
+  if (reason == Reason::one_sided || reason == Reason::range_of_another)
+    return {.measurement = 0.0, .surrogate = 0.0, .structure = 0.0, .range = 1.0};
   if (reason == Reason::no_influence)
     return parameter.silent_sds > hides
                ? WidthShares{.measurement = 0.0, .surrogate = 1.0, .structure = 0.0, .range = 0.0}

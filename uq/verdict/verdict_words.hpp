@@ -8,6 +8,8 @@
 //   one-sided     the data no longer change towards the range's end            wider range, other settings
 //   bound         it cannot be told from its physical bound                    a smaller error lowers the limit
 //   no influence  nothing that was measured depends on it                      a quantity that does, or fix it
+//   range of      another parameter sits at the end of its range, and the     wider range of that one
+//    another      value depends on where that is
 //   unsupported   no run speaks where the posterior lies                       training runs there
 //   (none) several values                                                      the measurement that parts them
 //
@@ -30,6 +32,9 @@ std::string because(Reason reason, const ParameterEvidence& parameter);
 
 /// What the shares of a width are, given the reason.
 WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason> reason);
+
+/// The remedy of a case in which all is known.
+inline constexpr const char* none_needed = "None needed.";
 
 /// The case's verdicts in one finding, what follows from it, and what to do.
 struct Words {

@@ -352,3 +352,45 @@ TEST_CASE("the draws as a CSV are those of the posterior, row by row", "[uq]") {
   CHECK(last == Approx(slot.prior.parameter().unit.from_si(slot.value(chains.back().x(row, 0)))));
   CHECK(csv.number(csv.rows.back(), csv.column("lp")) == Approx(chains.back().log_density[row]));
 }
+
+TEST_CASE("one reading typed wrong is named, and nothing else is advised", "[uq]") {
+  Input input = other_code();
+  data::Observation& wrong = input.study.observations[0].points[3];
+  wrong.values[0] *= 1.4;
+  const CaseReport found =
+      calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false}).report.cases[0];
+  CHECK_FALSE(found.fits);
+  CHECK(found.lone_reading == "bench.csv:" + std::to_string(wrong.line));
+  CHECK_THAT(found.finding, Catch::Contains("contradicts all others"));
+  CHECK_THAT(found.remedy, Catch::StartsWith("Check that reading"));
+}
+
+TEST_CASE("a fit that data of the model's own would seldom give is called poor, and is not used without a look",
+          "[uq]") {
+  Input input = other_code();
+  // Readings off in turn by 1.4 of their errors.
+  const CaseReport clean =
+      calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false}).report.cases[0];
+  double sign = 1.4;
+  for (data::Observation& point : input.study.observations[0].points)
+    point.values[0] += (sign = -sign) * point.standard_errors[0];
+  const CaseReport found =
+      calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false}).report.cases[0];
+  REQUIRE(found.fits);
+  CHECK_THAT(clean.finding, !Catch::Contains("fit is poor"));
+  CHECK_THAT(found.finding, Catch::Contains("The fit is poor: chi2"));
+  CHECK_THAT(found.remedy, Catch::StartsWith("Look first at what the residuals have in common."));
+}
+
+TEST_CASE("draws that have not converged carry no word", "[uq]") {
+  const Input input = other_code();
+  const std::vector<FittedSurrogate> fitted = fit_surrogates(input.study, input.table);
+  SampledCase sampled = sample_case(input.study, emulators_of(fitted), 0);
+  sampled.draws.converged = false;
+  sampled.draws.reason = "R-hat 1.4";
+  const CaseReport found = report_case(input.study, sampled);
+  CHECK_THAT(found.finding, Catch::StartsWith("No verdict: the sampler has not converged"));
+  for (const ParameterReport& one : found.parameters) CHECK(one.reason == Reason::unsupported);
+  CHECK_THAT(found.consequence, !Catch::Contains("can be used"));
+  CHECK(found.traded.empty());
+}

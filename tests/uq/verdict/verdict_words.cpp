@@ -153,3 +153,12 @@ TEST_CASE("separate values are never averaged: the consequence says so, the reme
   CHECK(words.remedy == "Measure torque at speed 50 rpm, where they part.");
   CHECK(has(words.consequence, "their mean fits nothing"));
 }
+
+TEST_CASE("where no run speaks a misfit is not the model's", "[uq]") {
+  ParameterEvidence evidence;
+  evidence.name = "friction";
+  evidence.unsupported = "no run speaks there";
+  const ParameterVerdict found = judge(evidence, {.predictive_p = 0.0, .best_fit_p = 0.0}, {}, {});
+  CHECK(found.verdict == Verdict::not_identified);
+  CHECK(found.reason == Reason::unsupported);
+}

@@ -1,0 +1,69 @@
+#include "uq/verdict/range_end.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/infer/factor.hpp"
+#include "uq/posterior/posterior.hpp"
+#include "uq/verdict/profile.hpp"
+
+namespace uq {
+namespace {
+
+enum class End { inside, low_end, high_end };
+
+End end_of(const Eigen::VectorXd& best, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper, Eigen::Index s) {
+  const double slack = 1e-4 * (upper[s] - lower[s]);
+  return best[s] - lower[s] <= slack ? End::low_end : upper[s] - best[s] <= slack ? End::high_end : End::inside;
+}
+
+/// J' S^-1 J, with what the priors add.
+Eigen::MatrixXd information(const CaseModel& model, const Eigen::VectorXd& best) {
+  Eigen::MatrixXd slopes = sensitivity(model, best);
+  factor(predict(model, best).total(), "the data at the best fit").llt.matrixL().solveInPlace(slopes);
+  Eigen::MatrixXd found = slopes.transpose() * slopes;
+  for (Eigen::Index s = 0; s < best.size(); ++s) found(s, s) += 1.0 / std::pow(model.slots[s].prior.sd(), 2);
+  return found;
+}
+
+}  // namespace
+
+std::vector<RangeEnd> range_ends(const CaseModel& model, const Eigen::VectorXd& best) {
+  const Eigen::VectorXd lower = model.lower(), upper = model.upper();
+  const Eigen::Index dimension = best.size();
+  std::vector<Eigen::Index> inside, pulled;
+  Eigen::VectorXd gradient;
+  for (Eigen::Index s = 0; s < dimension; ++s) {
+    const End end = end_of(best, lower, upper, s);
+    if (end == End::inside) {
+      inside.push_back(s);
+      continue;
+    }
+    if (end == End::low_end && physical_low(model.slots[s])) continue;
+    if (gradient.size() == 0) gradient = profiled(model)(best).gradient;
+    if (end == End::low_end ? gradient[s] < 0.0 : gradient[s] > 0.0) pulled.push_back(s);
+  }
+  std::vector<RangeEnd> found;
+  if (pulled.empty() || inside.empty()) return found;
+  const Eigen::MatrixXd all = information(model, best);
+  const Eigen::VectorXd held_variance = Eigen::MatrixXd(all(inside, inside))
+                                            .llt()
+                                            .solve(Eigen::MatrixXd::Identity(std::ssize(inside), std::ssize(inside)))
+                                            .diagonal();
+  for (const Eigen::Index s : pulled) {
+    std::vector<Eigen::Index> free = inside;
+    free.push_back(s);
+    Eigen::VectorXd pull = Eigen::VectorXd::Zero(std::ssize(free));
+    pull[pull.size() - 1] = gradient[s];
+    const Eigen::VectorXd shift = Eigen::MatrixXd(all(free, free)).llt().solve(pull);
+    RangeEnd moved{.unknown = static_cast<int>(s), .shift = Eigen::VectorXd::Zero(dimension)};
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      moved.shift[inside[i]] = shift[at] / std::sqrt(held_variance[at]);
+    }
+    found.push_back(std::move(moved));
+  }
+  return found;
+}
+
+}  // namespace uq
