@@ -112,27 +112,34 @@ std::string standstill_reading(const data::TorqueLog& log, const std::vector<dat
            log.time[i] <= options.to;
   };
   std::vector<std::string> readings;
-  double first_mean = 0.0;
-  bool matters = false;
-  for (std::size_t first = 0; first < log.time.size(); ++first) {
-    if (!stands(first)) continue;
-    std::size_t last = first;
+  data::SeriesMean first;
+  bool matters = false, zero_moves = false;
+  for (std::size_t begin = 0; begin < log.time.size(); ++begin) {
+    if (!stands(begin)) continue;
+    std::size_t last = begin;
     while (stands(last + 1)) ++last;
-    if (log.time[last] - log.time[first] >= options.shortest) {
-      const data::SeriesMean zero = data::mean_of_hold({log.torque.data() + first, last - first + 1});
+    if (log.time[last] - log.time[begin] >= options.shortest) {
+      const data::SeriesMean zero = data::mean_of_hold({log.torque.data() + begin, last - begin + 1});
       matters = matters || std::abs(zero.mean) > 3.0 * std::hypot(zero.standard_error, least_error);
-      if (readings.empty()) first_mean = log.torque_unit.from_si(zero.mean);
+      if (readings.empty()) first = zero;
+      zero_moves = zero_moves || std::abs(zero.mean - first.mean) >
+                                     5.0 * std::hypot(zero.standard_error, first.standard_error, least_error);
       readings.push_back(fmt::format("{:.4g} +- {:.2g} {} from {:.4g} s on", log.torque_unit.from_si(zero.mean),
                                      zero.standard_error / log.torque_unit.factor, log.torque_unit.symbol,
-                                     log.time[first]));
+                                     log.time[begin]));
     }
-    first = last;
+    begin = last;
   }
   if (!matters) return {};
+  if (zero_moves)
+    return fmt::format(
+        "at standstill the meter reads {}: its zero moves, and no one value can be taken off. Read the empty machine "
+        "before and after each speed, or state what it may be off by (common_error)",
+        fmt::join(readings, ", "));
   return fmt::format(
       "at standstill the meter reads {}, and nothing is taken off: if that is its zero, and not powder that "
       "leans on the mixer, take it off (--idle {:.4g})",
-      fmt::join(readings, ", "), first_mean);
+      fmt::join(readings, ", "), log.torque_unit.from_si(first.mean));
 }
 
 std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
@@ -148,7 +155,11 @@ std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vect
                                        ? "every torque is"
                                        : fmt::format("{} of {} torques are", negative, plateaus.size()),
                                    idle.kind == Idle::Kind::none ? "" : ", and is so much idle torque meant"));
-  if (log.missing > 0) warnings.push_back(fmt::format("{} samples without all three values are left out", log.missing));
+  if (log.missing > 0)
+    warnings.push_back(fmt::format(
+        "{} samples without all three values are left out: where the sensor was beyond its range then, means are too "
+        "small",
+        log.missing));
   if (log.uneven_share > 0.05)
     warnings.push_back(
         fmt::format("{:.0f} % of the samples are not evenly spaced in time: the errors, which take them "
@@ -228,7 +239,8 @@ std::string left_over(const data::TorqueLog& log, const std::vector<data::Platea
   const double standstill = data::standstill_speed(log);
   double turning = 0.0, held = 0.0;
   for (std::size_t i = 1; i < log.time.size(); ++i)
-    if (std::abs(log.speed[i]) > standstill && log.time[i] >= options.from && log.time[i] <= options.to)
+    if (std::abs(log.speed[i]) > standstill && log.time[i] >= options.from && log.time[i] <= options.to &&
+        log.time[i] - log.time[i - 1] <= std::max(4.0 * log.interval, options.shortest))  // else nothing was logged
       turning += log.time[i] - log.time[i - 1];
   for (const data::Plateau& plateau : plateaus)
     held += log.time[plateau.first + plateau.count - 1] - log.time[plateau.first];

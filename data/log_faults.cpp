@@ -133,6 +133,25 @@ double drift(const std::vector<double>& values) {
   return std::abs(change) > 5.0 * error ? change : 0.0;
 }
 
+/// The longest run of samples below a tenth of what nine in ten do not exceed, if it is a fiftieth of all and five
+/// samples: a machine that stood still. First, and one past the last; none: equal.
+std::pair<std::size_t, std::size_t> idle_part(const std::vector<double>& values) {
+  std::vector<double> sizes;
+  for (const double value : values) sizes.push_back(std::abs(value));
+  const auto high = sizes.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), high, sizes.end());
+  const double low = 0.1 * *high;
+  std::pair<std::size_t, std::size_t> longest{0, 0};
+  for (std::size_t from = 0; from < values.size(); ++from) {
+    std::size_t to = from;
+    while (to < values.size() && std::abs(values[to]) < low) ++to;
+    if (to - from > longest.second - longest.first) longest = {from, to};
+    from = std::max(from, to);
+  }
+  const std::size_t count = longest.second - longest.first;
+  return count >= 5 && 50 * count >= values.size() ? longest : std::pair<std::size_t, std::size_t>{0, 0};
+}
+
 }  // namespace
 
 std::vector<std::string> remove_no_values(TorqueLog& log) {
@@ -195,10 +214,17 @@ std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& pla
       const Level level = extreme(levels, largest);
       if (levels.size() > coarse_levels && static_cast<double>(level.count) > 0.02 * count && level.count >= 5 &&
           level.count > 3 * level.next)
-        words.push_back(fmt::format(
-            "{}: {:.0f} % of the samples are exactly {:.5g} {}, and none lies {}: clipped there, so its mean is too {}",
-            at, 100.0 * static_cast<double>(level.count) / count, unit.from_si(level.value), unit.symbol,
-            largest ? "above" : "below", largest ? "small" : "large"));
+        words.push_back(
+            level.value == 0.0
+                ? fmt::format(
+                      "{}: {:.0f} % of the samples are exactly 0: the machine or its sensor was off then, so its "
+                      "mean is too small",
+                      at, 100.0 * static_cast<double>(level.count) / count)
+                : fmt::format(
+                      "{}: {:.0f} % of the samples are exactly {:.5g} {}, and none lies {}: clipped there, so its "
+                      "mean is too {}",
+                      at, 100.0 * static_cast<double>(level.count) / count, unit.from_si(level.value), unit.symbol,
+                      largest ? "above" : "below", largest ? "small" : "large"));
     }
     std::vector<double> steps;
     for (auto one = levels.begin(); std::next(one) != levels.end(); ++one)
@@ -211,6 +237,17 @@ std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& pla
           "{:.2g} {} beyond its error",
           at, levels.size(), step / unit.factor, unit.symbol, 0.5 * step / unit.factor, unit.symbol));
   }
+  if (plateau.off_speed > 0.1)
+    words.push_back(
+        fmt::format("{}: {:.0f} % of the samples lie off that speed by more than the tolerance: the tachometer is "
+                    "coarse or the speed "
+                    "swings, and the speed is the mean of all",
+                    at, 100.0 * plateau.off_speed));
+  if (const auto [from, to] = idle_part(values); to > from)
+    words.push_back(
+        fmt::format("{}: the torque falls to nearly nothing from {:.4g} to {:.4g} s: where the machine stood "
+                    "still, leave that out (--window FROM TO)",
+                    at, log.time[plateau.used_from + from], log.time[plateau.used_from + to - 1]));
   std::vector<std::size_t> spikes;
   double sum = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -1,7 +1,7 @@
 // Plateaus. A sample belongs to the running plateau while its speed lies within the tolerance of the plateau's mean so
-// far. One to `lone` samples further away are a logger's dropouts and stay in the torque series, whose even spacing the
-// autocorrelation needs; more in a row end the plateau. A gap in time, where a logger lost samples, ends it where another
-// plateau could have been in it: from the shortest one's length on.
+// far. A few samples further away (`lone` of them, or a twentieth of a second) are a logger's dropouts. They stay in the
+// torque series, whose even spacing the autocorrelation needs. More in a row end the plateau. A gap in time, where a
+// logger lost samples, ends it where another plateau could have been in it: from the shortest one's length on.
 #include "data/torque_log.hpp"
 
 #include <algorithm>
@@ -13,6 +13,13 @@ namespace data {
 namespace {
 
 constexpr std::size_t lone = 4;
+constexpr double lone_time = 0.05;  // s; no mixer changes its speed and comes back in that
+
+/// Samples in a row that may lie off a plateau's speed.
+std::size_t drop_outs(const TorqueLog& log) {
+  if (!(log.interval > 0.0)) return lone;
+  return std::max(lone, static_cast<std::size_t>(lone_time / log.interval));
+}
 
 /// The straight line through a stretch's speeds.
 struct Trend {
@@ -58,12 +65,38 @@ void mark_ramps(const TorqueLog& log, std::vector<Plateau>& plateaus, double tol
   const auto goes_on = [&](std::size_t from, std::size_t to) {
     const double ratio = trends[to].slope / trends[from].slope;
     const Plateau &first = plateaus[std::min(from, to)], &second = plateaus[std::max(from, to)];
-    const bool adjoins = second.first - (first.first + first.count) <= lone;
+    const bool adjoins = second.first - (first.first + first.count) <= drop_outs(log);
     if (plateaus[from].ramp && adjoins && ratio > 0.5 && ratio < 2.0 && trends[to].change > 2.0 * trends[to].scatter)
       plateaus[to].ramp = true;
   };
   for (std::size_t k = 1; k < plateaus.size(); ++k) goes_on(k - 1, k);
   for (std::size_t k = plateaus.size(); k-- > 1;) goes_on(k, k - 1);
+}
+
+/// Mean and sd of the speed over what is used. Single dropouts count in neither. Where many samples lie off, the
+/// tachometer is coarse or the speed swings, and all of them count.
+void set_speed(const TorqueLog& log, Plateau& plateau, double tolerance) {
+  constexpr double many = 0.1;
+  const auto gather = [&](bool all) {
+    std::vector<double> speeds;
+    for (std::size_t i = plateau.used_from; i < plateau.first + plateau.count; ++i)
+      if (all || std::abs(log.speed[i] - plateau.speed) <= tolerance * std::abs(plateau.speed))
+        speeds.push_back(log.speed[i]);
+    return speeds;
+  };
+  std::vector<double> speeds = gather(false);
+  const auto used = static_cast<double>(plateau.first + plateau.count - plateau.used_from);
+  plateau.off_speed = 1.0 - static_cast<double>(speeds.size()) / used;
+  if (plateau.off_speed > many) speeds = gather(true);
+  if (speeds.empty()) return;
+  double sum = 0.0, squares = 0.0;
+  for (const double speed : speeds) {
+    sum += speed - plateau.speed;
+    squares += (speed - plateau.speed) * (speed - plateau.speed);
+  }
+  const auto members = static_cast<double>(speeds.size());
+  plateau.speed += sum / members;
+  if (members > 1.0) plateau.speed_sd = std::sqrt(std::max(0.0, squares - sum * sum / members) / (members - 1.0));
 }
 
 /// Mean and error of a stretch of constant `speed`.
@@ -75,17 +108,67 @@ Plateau reduce(const TorqueLog& log, std::size_t first, std::size_t count, doubl
   const std::size_t left = first + count - plateau.used_from;
   plateau.torque = mean_of_hold({log.torque.data() + plateau.used_from, left}, options.spikes_count);
   plateau.used_from += plateau.torque.dropped;
-  // Dropouts count in neither the speed nor its sd.
-  double sum = 0.0, squares = 0.0, members = 0.0;
-  for (std::size_t i = plateau.used_from; i < first + count; ++i) {
-    if (std::abs(log.speed[i] - speed) > options.tolerance * std::abs(speed)) continue;
-    sum += log.speed[i] - speed;
-    squares += (log.speed[i] - speed) * (log.speed[i] - speed);
-    members += 1.0;
-  }
-  if (members > 0.0) plateau.speed = speed + sum / members;
-  if (members > 1.0) plateau.speed_sd = std::sqrt(std::max(0.0, squares - sum * sum / members) / (members - 1.0));
+  set_speed(log, plateau, options.tolerance);
   return plateau;
+}
+
+/// Joins plateaus that are one hold. Either nothing but a few samples parts two of the same speed, as of a coarse
+/// tachometer; or the speed goes up and down between short neighbours, three times or more, about one mean.
+void join_swings(const TorqueLog& log, std::vector<Plateau>& plateaus, const PlateauOptions& options) {
+  constexpr std::size_t few_samples = 8;
+  constexpr double few_seconds = 1.0;
+  const auto length = [&](const Plateau& p) { return log.time[p.first + p.count - 1] - log.time[p.first]; };
+  const auto gap = [&](std::size_t k) {
+    return log.time[plateaus[k].first] - log.time[plateaus[k - 1].first + plateaus[k - 1].count - 1];
+  };
+  const auto step = [&](std::size_t k) { return plateaus[k].speed - plateaus[k - 1].speed; };
+  const auto within = [&](std::size_t k, double tolerances) {
+    return std::abs(step(k)) <= tolerances * options.tolerance * std::abs(plateaus[k - 1].speed);
+  };
+  const auto same = [&](std::size_t k) {
+    return within(k, 1.0) && gap(k) <= std::max(few_seconds, static_cast<double>(few_samples) * log.interval);
+  };
+  const auto swings = [&](std::size_t k, std::size_t from) {
+    return within(k, 4.0) && gap(k) <= options.shortest && length(plateaus[k]) < 4.0 * options.shortest &&
+           length(plateaus[k - 1]) < 4.0 * options.shortest && (k == from + 1 || step(k) * step(k - 1) < 0.0);
+  };
+  std::vector<Plateau> joined;
+  for (std::size_t k = 0, end = 0; k < plateaus.size(); k = end) {
+    end = k + 1;
+    while (end < plateaus.size() && same(end)) ++end;
+    if (end == k + 1) {
+      while (end < plateaus.size() && swings(end, k)) ++end;
+      if (end - k < 3) end = k + 1;
+    }
+    if (end == k + 1) {
+      joined.push_back(plateaus[k]);
+      continue;
+    }
+    const std::size_t first = plateaus[k].first, last = plateaus[end - 1].first + plateaus[end - 1].count - 1;
+    double sum = 0.0;
+    for (std::size_t i = first; i <= last; ++i) sum += log.speed[i];
+    joined.push_back(reduce(log, first, last - first + 1, sum / static_cast<double>(last - first + 1), options));
+  }
+  plateaus = std::move(joined);
+}
+
+/// Whether the autocorrelation swings to the other side once it has come to zero, as that of a hum does.
+bool swings_back(std::span<const double> series) {
+  constexpr double clearly = -0.1;
+  const std::size_t n = series.size(), most = n / 10;
+  double mean = 0.0, squares = 0.0;
+  for (const double value : series) mean += value / static_cast<double>(n);
+  for (const double value : series) squares += (value - mean) * (value - mean);
+  const auto correlation = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t i = lag; i < n; ++i) sum += (series[i] - mean) * (series[i - lag] - mean);
+    return sum / squares;
+  };
+  std::size_t zero = 1;
+  while (zero < most && correlation(zero) > 0.0) ++zero;
+  for (std::size_t lag = zero; lag < std::min(3 * zero + 1, most); ++lag)
+    if (correlation(lag) < clearly) return true;
+  return false;
 }
 
 }  // namespace
@@ -93,9 +176,12 @@ Plateau reduce(const TorqueLog& log, std::size_t first, std::size_t count, doubl
 SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count) {
   constexpr double few = 60.0;
   SeriesMean found = mean_with_error(torque, {.spikes_count = spikes_count});
-  if (!(found.effective_samples < few)) return found;
+  if (found.sd == 0.0) return found;
   const std::span<const double> rest = torque.subspan(found.dropped);
-  const SeriesMean slow = steadiness(spikes_count ? rest : std::span<const double>(without_spikes(rest).series)).mean;
+  const std::vector<double> without = spikes_count ? std::vector<double>() : without_spikes(rest).series;
+  const std::span<const double> used = spikes_count ? rest : std::span<const double>(without);
+  if (!(found.effective_samples < few) && !swings_back(used)) return found;
+  const SeriesMean slow = steadiness(used).mean;
   if (!slow.reliable || !(slow.standard_error > 0.0)) return found;
   found.standard_error = slow.standard_error;
   found.integrated_time = slow.integrated_time;
@@ -104,9 +190,20 @@ SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count) {
 }
 
 double standstill_speed(const TorqueLog& log) {
-  double fastest = 0.0;
-  for (const double speed : log.speed) fastest = std::max(fastest, std::abs(speed));
-  return 0.01 * fastest;
+  if (log.speed.empty()) return 0.0;
+  // The largest speed but for spikes of the tachometer.
+  std::vector<double> sizes;
+  for (const double speed : log.speed) sizes.push_back(std::abs(speed));
+  const auto fast = sizes.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), fast, sizes.end());
+  const double fastest = *fast;
+  // What the tachometer scatters by where the machine hardly moves, from one sample to the next.
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < log.speed.size(); ++i)
+    if (std::max(std::abs(log.speed[i]), std::abs(log.speed[i - 1])) <= 0.01 * fastest)
+      steps.push_back(std::abs(log.speed[i] - log.speed[i - 1]));
+  const double scatter = steps.empty() ? 0.0 : 1.4826 / std::sqrt(2.0) * median_of(std::move(steps));
+  return std::clamp(5.0 * scatter, 0.002 * fastest, 0.01 * fastest);
 }
 
 std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& options) {
@@ -117,6 +214,7 @@ std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& o
 
 std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& options) {
   const double standstill = standstill_speed(log);
+  const std::size_t few = drop_outs(log);
   const auto inside = [&](std::size_t i) { return log.time[i] >= options.from && log.time[i] <= options.to; };
 
   std::vector<Plateau> plateaus;
@@ -129,7 +227,7 @@ std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& 
     }
     double sum = log.speed[first];
     std::size_t members = 1, last = first;
-    for (std::size_t i = first + 1; i < n && i - last <= lone && inside(i); ++i) {
+    for (std::size_t i = first + 1; i < n && i - last <= few && inside(i); ++i) {
       if (log.time[i] - log.time[i - 1] > std::max(static_cast<double>(lone) * log.interval, options.shortest)) break;
       const double mean = sum / static_cast<double>(members);
       if (std::abs(log.speed[i] - mean) > options.tolerance * std::abs(mean)) continue;
@@ -144,8 +242,10 @@ std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& 
       const Plateau plateau = reduce(log, first, last - first + 1, mean, options);
       if (plateau.used_from <= last) plateaus.push_back(plateau);
     }
-    first = !turning || long_enough ? last + 1 : first + 1;
+    // A hold may begin within a ramp. Its front is found to a sixty-fourth of the ramp's piece, and long logs in no time.
+    first = !turning || long_enough ? last + 1 : first + std::max<std::size_t>(1, (last - first) / 64);
   }
+  join_swings(log, plateaus, options);
   mark_ramps(log, plateaus, options.tolerance);
   return plateaus;
 }

@@ -68,10 +68,12 @@ struct Plateau {
   std::size_t used_from = 0;           ///< the first sample after dead time and start-up
   bool ramp = false;                   ///< the speed changes all the time, slowly: no plateau
   double speed = 0.0, speed_sd = 0.0;  ///< rad/s, of the samples used
+  double off_speed = 0.0;              ///< share of these that lie off it by more than the tolerance
   SeriesMean torque;                   ///< N m
 };
 
-/// At this speed and below the machine stands still: a hundredth of the log's largest [rad/s].
+/// At this speed and below the machine stands still [rad/s]: what cannot be told from the tachometer's scatter there,
+/// between a five hundredth and a hundredth of the log's largest.
 double standstill_speed(const TorqueLog& log);
 
 /// The plateaus in the order of time; standstill is none.
@@ -85,9 +87,10 @@ struct MeanTorque {
   double value = 0.0, error = 0.0;
 };
 
-/// Mean and error of the torque of a hold. Of few independent samples the integrated time is hardly known, and errors that
-/// come from it scatter: means of series with 20, 30 and 50 lie 1.35, 1.2 and 1.1 of them from the truth. Errors from the
-/// slowest modes (steadiness.hpp) give 1.2, 1.1 and 1.05.
+/// Mean and error of the torque of a hold. The error comes from the slowest modes (steadiness.hpp) in two cases.
+/// Of few independent samples the integrated time is hardly known: means of series with 20, 30 and 50 lie 1.35, 1.2 and
+/// 1.1 errors from the truth, and 1.2, 1.1 and 1.05 by modes. Where the torque hums, at the mains' or the blade's
+/// frequency, Sokal's window closes on the hum, and the error of what is slower is lost (a factor of 3 to 11).
 SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count = true);
 
 /// The idle torque at a speed, from the plateaus of a log of the empty machine: the mean, weighted by the errors, of

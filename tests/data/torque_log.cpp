@@ -180,3 +180,97 @@ TEST_CASE("the idle torque at a speed is the weighted mean of the empty machine'
   CHECK(at->error == Approx(1.0 / std::sqrt(125.0)));
   CHECK_FALSE(data::idle_at(idle, 15.0, 0.02));
 }
+
+namespace {
+
+/// A log of samples every `interval` s with torque and speed given by their numbers.
+template <class Torque, class Speed>
+data::TorqueLog log_of(int samples, double interval, Torque torque, Speed speed) {
+  data::TorqueLog log;
+  log.file = "log.csv";
+  log.torque_unit = data::parse_unit("mN m");
+  log.speed_unit = data::parse_unit("rpm");
+  log.interval = interval;
+  for (int i = 0; i < samples; ++i) {
+    log.time.push_back(interval * i);
+    log.torque.push_back(log.torque_unit.to_si(torque(i)));
+    log.speed.push_back(log.speed_unit.to_si(speed(i)));
+  }
+  return log;
+}
+
+}  // namespace
+
+TEST_CASE("the error of a mean is that of the slow noise, whatever hums on top of it") {
+  // Autoregressive noise of sd 0.3 and memory 0.99: var(mean) = sd^2 (1 + 0.99)/(1 - 0.99)/n.
+  for (const double hum : {0.0, 0.3, 1.0, 3.0}) {
+    constexpr int n = 8000, draws = 60;
+    double squares = 0.0;
+    for (std::uint64_t seed = 0; seed < draws; ++seed) {
+      data::RandomStream random(seed, data::Purpose::test, 9);
+      std::vector<double> series;
+      double slow = 0.3 * random.normal();
+      const double phase = 6.283 * random.uniform();
+      for (int i = 0; i < n; ++i) {
+        slow = 0.99 * slow + 0.3 * std::sqrt(1.0 - 0.99 * 0.99) * random.normal();
+        series.push_back(slow + hum * std::sin(phase + 6.283185307 * 0.05 * i));
+      }
+      const data::SeriesMean mean = data::mean_of_hold(series);
+      squares += std::pow(mean.mean / mean.standard_error, 2) / draws;
+    }
+    INFO("hum " << hum);
+    CHECK(std::sqrt(squares) > 0.7);
+    CHECK(std::sqrt(squares) < 1.3);
+  }
+}
+
+TEST_CASE("a hold a hundred times slower than the fastest is one, and standstill with its scatter is none") {
+  const auto speeds = [](int i) { return i < 600 ? 1.0 : i < 1200 ? 200.0 : 0.0; };
+  data::RandomStream random(3, data::Purpose::test, 10);
+  const data::TorqueLog slow = log_of(
+      1800, 0.1, [](int) { return 5.0; }, [&](int i) { return speeds(i) + 0.01 * random.normal(); });
+  const std::vector<data::Plateau> found = data::find_plateaus(slow);
+  REQUIRE(found.size() == 2);
+  CHECK(found[0].speed == Approx(1.0 * rpm).epsilon(0.01));
+  const data::TorqueLog noisy = log_of(
+      1800, 0.1, [](int) { return 5.0; }, [&](int i) { return i < 900 ? 200.0 : 0.5 * random.normal(); });
+  CHECK(data::find_plateaus(noisy).size() == 1);
+}
+
+TEST_CASE("a spike of the tachometer does not make slow holds standstill") {
+  const data::TorqueLog log = log_of(
+      1200, 0.1, [](int) { return 5.0; }, [](int i) { return i == 700  ? 8000.0
+                                                             : i < 600 ? 50.0
+                                                                       : 100.0; });
+  CHECK(data::find_plateaus(log).size() == 2);
+}
+
+TEST_CASE("the speed of a coarse tachometer is the mean of its steps, and that is said") {
+  data::RandomStream random(4, data::Purpose::test, 11);
+  const data::TorqueLog log = log_of(
+      1200, 0.1, [](int i) { return 3.0 + 0.1 * std::sin(0.7 * i); },
+      [&](int) { return random.uniform() < 0.3 ? 6.0 : 5.0; });
+  double mean = 0.0;
+  for (const double speed : log.speed) mean += speed / 1200.0;
+  for (const data::Plateau& hold : data::find_plateaus(log)) {
+    CHECK(hold.speed == Approx(mean).epsilon(0.05));
+    CHECK(hold.off_speed > 0.1);
+  }
+}
+
+TEST_CASE("a speed that swings about one mean is one hold, and steps that rise are as many as there are") {
+  const data::TorqueLog swings = log_of(
+      1200, 0.1, [](int) { return 3.0; }, [](int i) { return 100.0 + 3.0 * std::sin(2.0 * 3.14159 * 0.005 * i); });
+  const std::vector<data::Plateau> one = data::find_plateaus(swings);
+  REQUIRE(one.size() == 1);
+  CHECK(one[0].speed == Approx(100.0 * rpm).epsilon(0.005));
+  const data::TorqueLog steps = log_of(
+      1200, 0.1, [](int) { return 3.0; }, [](int i) { return 100.0 + 4.0 * (i / 300); });
+  CHECK(data::find_plateaus(steps).size() == 4);
+}
+
+TEST_CASE("a tachometer that reads nothing for some milliseconds ends no hold") {
+  const data::TorqueLog log = log_of(
+      20000, 0.001, [](int) { return 3.0; }, [](int i) { return i % 2000 < 8 ? 0.0 : 100.0; });
+  CHECK(data::find_plateaus(log).size() == 1);
+}

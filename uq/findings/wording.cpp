@@ -195,7 +195,7 @@ std::string slug(std::string_view text) {
 }
 
 Verdict shown_verdict(const CaseReport& result, const ParameterReport& parameter) {
-  return result.fits || !result.doubt.empty() ? parameter.verdict : Verdict::does_not_fit;
+  return result.fits || (!result.doubt.empty() && !result.unusable) ? parameter.verdict : Verdict::does_not_fit;
 }
 
 std::string shown_sentence(const CaseReport& result, const ParameterReport& parameter) {

@@ -7,6 +7,7 @@
 
 #include "uq/infer/diagnostics.hpp"
 #include "uq/posterior/posterior.hpp"
+#include "uq/posterior/support.hpp"
 #include "uq/posterior/surrogate_share.hpp"
 #include "uq/verdict/structure.hpp"
 #include "uq/verdict/traded.hpp"
@@ -187,6 +188,7 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
     if (profile.conditional_on)
       one.conditional_on = model.slots[static_cast<std::size_t>(*profile.conditional_on)].label;
     if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
+    one.unusable = !doubt_of(model).empty();
     one.surrogate_share = surrogate.shares[k];
     one.facts.influences = all.influence[k].some || limited(one.facts, thresholds);
     one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);

@@ -148,7 +148,7 @@ ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fi
   ParameterVerdict found;
   const std::string value = in_unit(
       with_error(parameter.mean, parameter.sd) + " +- " + with_error(parameter.sd, parameter.sd), parameter.unit);
-  if (!parameter.unsupported.empty()) {
+  if (!parameter.unsupported.empty() && (!parameter.unusable || fit.fits(thresholds))) {
     found.reason = Reason::unsupported;
     found.sentence = fmt::format("{} is not identified: {}.", parameter.name, parameter.unsupported);
     return found;

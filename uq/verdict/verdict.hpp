@@ -53,7 +53,8 @@ struct ParameterEvidence {
   std::string low_pinned_by, high_pinned_by;  ///< another parameter whose range ends an open side; may be empty
   bool structural = false;                    ///< a better measurement of the same kind would not close it
   std::string unsupported =
-      {};  ///< why the runs cannot carry a verdict, a clause; empty: they can (uq/posterior/support.hpp)
+      {};                 ///< why the runs cannot carry a verdict, a clause; empty: they can (uq/posterior/support.hpp)
+  bool unusable = false;  ///< the runs say too little anywhere: then a misfit is the stronger finding
   std::string conditional_on = {};  ///< another parameter whose range's end decides the value; may be empty
   bool undecided = false;           ///< the surrogate is not sharp enough to tell
   double surrogate_share = 0.0;     ///< of the variance, where two values are compared
