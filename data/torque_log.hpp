@@ -31,7 +31,11 @@ struct LogColumns {
                           "zeitstempel", "t"}};
   /// No usual unit: it must be said somewhere.
   LogColumn torque{.name = "torque", .unit = "", .usual = "", .also = {"drehmoment", "moment", "m"}};
-  LogColumn speed{.name = "rpm", .unit = "", .usual = "rpm", .also = {"speed", "rotational speed", "drehzahl", "n"}};
+  LogColumn speed{
+      .name = "rpm",
+      .unit = "",
+      .usual = "rpm",
+      .also = {"speed", "rotational speed", "rotation speed", "velocity", "angular velocity", "drehzahl", "n"}};
   std::optional<double> constant_speed;  ///< rad/s, of a log that has no column for it
   std::optional<double> rate;            ///< 1/s: the samples follow each other so, whatever their stamps say
 };

@@ -25,10 +25,13 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::stri
   };
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < csv.columns.size(); ++i)
-    if (named(i, wanted.name)) return i;
-  for (std::size_t i = 0; i < csv.columns.size(); ++i)
-    if (std::any_of(wanted.also.begin(), wanted.also.end(), [&](const std::string& name) { return named(i, name); }))
-      found.push_back(i);
+    if (named(i, wanted.name)) found.push_back(i);
+  if (found.empty())
+    for (std::size_t i = 0; i < csv.columns.size(); ++i)
+      if (std::any_of(wanted.also.begin(), wanted.also.end(), [&](const std::string& name) { return named(i, name); }))
+        found.push_back(i);
+  while (found.size() > 1 && csv.headings[found[0]] == csv.headings[found[1]] && csv.same_values(found[0], found[1]))
+    found.erase(found.begin() + 1);
   if (found.size() == 1) return found.front();
   if (found.size() > 1)
     refuse_data(heading_place(csv),

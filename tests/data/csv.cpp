@@ -132,7 +132,7 @@ TEST_CASE("a table gives the same numbers however it is written, and says how it
       {with(plain, "1234.5", "1'234.5"), ""},
       {std::string(plain) + "End of file\n", "1 lines of words below the table left out"},
       {"speed [rpm],torque (mNm),\"torque_se, mNm\"\n" + rows, ""},
-      {with(plain, "100,", "speed,torque,torque_se\n100,"), "the heading again in 1 lines"},
+      {with(plain, "100,", "speed,torque,torque_se\n100,"), "the heading again in line 3: the rows joined"},
   };
   for (const auto& [text, took] : written) {
     INFO(text);
@@ -140,6 +140,71 @@ TEST_CASE("a table gives the same numbers however it is written, and says how it
     CHECK(data::parse_csv(text, "bench.csv").took_line().find(took) != std::string::npos);
   }
   CHECK(data::parse_csv(plain, "bench.csv").took_line().empty());
+}
+
+namespace {
+
+/// The numbers of a column, one row after the other.
+std::vector<double> column_of(const std::string& text, const std::string& name) {
+  const data::Csv csv = data::parse_csv(text, "bench.csv");
+  std::vector<double> numbers;
+  for (const data::CsvRow& row : csv.rows) numbers.push_back(csv.number(row, csv.column(name)));
+  return numbers;
+}
+
+}  // namespace
+
+TEST_CASE("rows below each heading of a file are joined, whichever block is the longest") {
+  const std::vector<double> expected{1.0, 2.0, 3.0, 4.0, 5.0};
+  const std::string more = "3,3\n4,4\n5,5\n";
+  for (const std::string between :
+       {"\nspeed,torque\n", ",\nspeed,torque\n", "speed,torque\n", "\n# speed,torque\n", "\n\nSpeed,Torque\n",
+        "\n[step]\nPeak hold - 2\nspeed,torque\n", "\nHold:,2,120\nspeed,torque\n", "\n\n# hold 2\n"}) {
+    INFO(between);
+    CHECK(column_of("speed,torque\n1,1\n2,2\n" + between + more, "torque") == expected);
+  }
+  const std::string units = "speed,torque\nrpm,mN m\n";
+  CHECK(column_of(units + "1,1\n2,2\n" + units + more, "torque") == expected);
+  CHECK(column_of("# speed,torque\n# hold 1\n1,1\n2,2\n\n# speed,torque\n" + more, "torque") == expected);
+}
+
+TEST_CASE("a block in other units is converted to those of the first, and one without is refused") {
+  const std::vector<double> expected{1000.0, 2000.0, 3000.0};
+  CHECK(column_of("rpm,torque [mN m]\n1,1000\n\nrpm,torque [N m]\n2,2\n3,3\n", "torque") == expected);
+  CHECK(column_of("rpm,torque\nrpm,mNm\n1,1000\nrpm,torque\nrpm,Nm\n2,2\n3,3\n", "torque") == expected);
+  CHECK(column_of("# rpm torque[mNm]\n1 1000\n\n\n# rpm torque[Nm]\n2 2\n3 3\n", "torque") == expected);
+  CHECK(column_of("# units: torque [mN m]\nrpm,torque\n1,1000\n# units: torque [N m]\nrpm,torque\n2,2\n3,3\n",
+                  "torque") == expected);
+  const TemporaryFolder folder;
+  CHECK(
+      failure_of(folder, [&] { column_of("rpm,torque [mN m]\n1,1\n\nrpm,torque\n2,2\n3,3\n", "torque"); }) ==
+      "65: bench.csv:4: torque: is without a unit in the 2 rows below, but in 'mN m' in the 1 rows below line 1 (write "
+      "the unit into both headings)");
+  CHECK(failure_of(folder, [&] {
+          column_of("rpm,torque [mN m]\n1,1\n\nrpm,torque [kg]\n2,2\n", "torque");
+        }).find("is in 'kg' in the 1 rows below, but in 'mN m'") != std::string::npos);
+}
+
+TEST_CASE("a second table is refused with both headings, and numbers of a preamble are named") {
+  const TemporaryFolder folder;
+  CHECK(failure_of(folder, [&] { column_of("rpm,torque\n1,1\n2,2\n\nspeed,flow\n1,1\n2,2\n3,3\n", "flow"); }) ==
+        "65: bench.csv:1: a heading with 2 rows (rpm, torque) is another than that of line 5 with 3 rows (speed, flow) "
+        "(name the columns alike in both, in one order, or put each table into a file of its own)");
+  CHECK(failure_of(folder, [&] {
+          column_of("1,1\n2,2\n\nrpm,torque\n1,1\n2,2\n3,3\n", "torque");
+        }).find("65: bench.csv:1: there are numbers where the header line belongs, in 2 lines above") == 0);
+  CHECK(failure_of(folder, [&] {
+          column_of("rpm,torque,x\n1,1,1\n2,2\nrpm,torque,x\n3,3,3\n", "torque");
+        }).find("65: bench.csv:3: has 2 fields where the header has 3") == 0);
+  const std::string preamble = "Parameter,Value,Unit\nFill,250,g\nTemperature,25,C\nrpm,torque,torque_se\n1,1,1\n";
+  CHECK(data::parse_csv(preamble, "bench.csv").took_line().find("below a preamble (numbers in lines 2, 3 left out)") !=
+        std::string::npos);
+}
+
+TEST_CASE("a name that two columns have matters where it is asked for and they differ") {
+  CHECK(column_of("torque,status,status\n1,0,1\n", "torque") == std::vector<double>{1.0});
+  CHECK(column_of("time [s],torque,time [s],rpm\n1,2,1,3\n2,2,2,3\n", "time") == std::vector<double>{1.0, 2.0});
+  CHECK(failure("torque,torque\n1,2\n").find("the column 'torque' is there twice") != std::string::npos);
 }
 
 TEST_CASE("what can be read in two ways is asked back, not guessed") {

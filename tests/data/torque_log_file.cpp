@@ -153,6 +153,22 @@ TEST_CASE("columns are found by their usual names, in several languages and unit
   CHECK(log_of("time,torque [Nm]\n0,1\n1,1\n", constant).speed[1] == Approx(50.0 * rpm));
 }
 
+TEST_CASE("an instrument's export of one section a hold is one log") {
+  std::string text = "Filename\tpowder\nOperator\tA\n";
+  for (int hold = 0; hold < 3; ++hold) {
+    text += fmt::format("[step]\nPeak hold - {}\nTime\tTorque\tVelocity\tTime\ns\tmN.m\trad/s\ts\n", hold + 1);
+    for (int i = 0; i < 10 * (3 - hold); ++i) {
+      const double time = 100.0 * hold + i;
+      text += fmt::format("{:.1f}\t{:.1f}\t5.25\t{:.1f}\n", time, 1.0 + hold, time);
+    }
+    text += "\n";
+  }
+  const data::TorqueLog log = log_of(text);
+  CHECK(log.time.size() == 60);
+  CHECK(log.torque.back() == Approx(3e-3));
+  CHECK(log.speed.front() == Approx(5.25));
+}
+
 TEST_CASE("times that can be read in two ways are asked back") {
   CHECK(refusal("time,torque [Nm],rpm\n14:02,1,1\n14:03,1,1\n")
             .find("'14:02' may be hours and minutes, or minutes and seconds") != std::string::npos);
