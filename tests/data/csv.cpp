@@ -221,8 +221,28 @@ TEST_CASE("what can be read in two ways is asked back, not guessed") {
             .find("'1,5' has a decimal comma, but '2.5' in line 3 a decimal point") != std::string::npos);
   CHECK(refused("speed;torque\n50;1,5\n1.500;2,5\n").find("'1.500' may be a decimal number or thousands") !=
         std::string::npos);
+  // Between commas, too: decimal commas in quotes, as a spreadsheet writes them in German.
+  CHECK(refused("speed,torque\n50,\"12,383\"\n100,\"12,5\"\n").empty());
+  CHECK(refused("speed,torque\n50,\"12,383\"\n100,\"11,941\"\n")
+            .find("65: bench.csv:2: '12,383' may be 12.383 or 12383") == 0);
+  CHECK(refused("speed,torque,x\n50,\"12,383\",0.5\n").find("'12,383' may be 12.383 or 12383") != std::string::npos);
+  // Whole numbers beside thousands with a point.
+  CHECK(refused("speed;torque\n50;950\n100;1.012\n") ==
+        "65: bench.csv:3: '1.012' may be 1012, like the whole numbers of its column, or 1.012 (write 1012 or 1.0120)");
+  CHECK(refused("speed;torque\n50;10\n100;9.419\n").empty());
+  CHECK(refused("speed;torque\n50;950\n100;1.0120\n").empty());
   CHECK(refused("50,1\n100,2\n").find("65: bench.csv:1: there are numbers where the header line belongs") == 0);
   CHECK(refused(std::string("speed,torque\n50,1\0\0,2\n60,2\n", 27)).find("65: bench.csv:2: holds zero bytes") == 0);
+}
+
+TEST_CASE("a number with both marks says what they are in the numbers with one") {
+  CHECK(column_of("time\ttorque\n900\t980.9\n1,000\t1,012.3\n", "time") == std::vector<double>{900.0, 1000.0});
+  CHECK(column_of("speed,torque\n\"1,050\",\"9,418.8\"\n", "speed") == std::vector<double>{1050.0});
+}
+
+TEST_CASE("a comment among the rows that names the columns in other units counts as a heading") {
+  CHECK(column_of("# time [s] torque [mN m]\n0 1000\n1 2000\n\n# time [s] torque [N m]\n2 3\n", "torque") ==
+        std::vector<double>{1000.0, 2000.0, 3.0e3});
 }
 
 TEST_CASE("words for no value are no numbers, and other words are named") {
