@@ -68,6 +68,8 @@ Idle find_idle(const ObserveOptions& options, const data::TorqueLog& log, const 
     idle.kind = Idle::Kind::log;
     data::TorqueLog empty = options.idle_log.empty() ? log : data::read_torque_log(options.idle_log, options.columns);
     if (!options.idle_log.empty())
+      for (const std::string& note : empty.notes) say(options.common, fmt::format("note: {}: {}", empty.file, note));
+    if (!options.idle_log.empty())
       for (const std::string& words : data::remove_no_values(empty))
         say(options.common, fmt::format("warning: {}: {}", empty.file, words));
     data::PlateauOptions part = options.plateaus;
@@ -251,6 +253,7 @@ data::ExitStatus observe(ObserveOptions options) {
   }
   data::TorqueLog log = data::read_torque_log(options.log, options.columns);
   if (!log.took.empty()) say(options.common, fmt::format("{}: read as: {}", log.file, fmt::join(log.took, ", ")));
+  for (const std::string& note : log.notes) say(options.common, "note: " + note);
   std::vector<std::string> warnings = data::remove_no_values(log);
   options.plateaus.from = options.window.from();
   options.plateaus.to = options.window.to();
@@ -326,6 +329,7 @@ data::ExitStatus observe(ObserveOptions options) {
          fmt::format("{} observation{}: {} (picture: {})", plateaus.size(), plateaus.size() == 1 ? "" : "s",
                      out.string(), observe_pictures(out).front().string()));
   json["warnings"] = warnings;
+  notes.insert(notes.begin(), log.notes.begin(), log.notes.end());
   json["notes"] = notes;
   print_json(options.common, json);
   return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;

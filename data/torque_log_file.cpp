@@ -69,25 +69,82 @@ double per_shown_unit(const Csv& csv, std::size_t column, const LogColumn& wante
   return unit && unit->symbol == "60 rpm" ? 60.0 : 1.0;
 }
 
+double median_interval(const std::vector<double>& times) {
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < times.size(); ++i) gaps.push_back(times[i] - times[i - 1]);
+  if (gaps.empty()) return 0.0;
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return *middle;
+}
+
+/// Median interval, and the share of those that differ from it.
+void check_spacing(TorqueLog& log) {
+  log.interval = median_interval(log.time);
+  std::size_t uneven = 0;
+  for (std::size_t i = 1; i < log.time.size(); ++i)
+    uneven += std::abs(log.time[i] - log.time[i - 1] - log.interval) > 0.2 * log.interval;
+  log.uneven_share = static_cast<double>(uneven) / static_cast<double>(log.time.size() - 1);
+}
+
 /// The stamps of all rows, s; NaN where there is none.
 struct Stamps {
   std::vector<double> seconds;
-  bool of_day = false;
+  bool clock = false;    ///< times of day, with or without a date
+  bool of_day = false;   ///< without
+  bool assumed = false;  ///< numbers whose unit nothing states
   std::vector<std::string> took;
 };
+
+/// Seconds since the beginning of some calendar, not of the log: from three years on.
+constexpr double of_calendar = 1e8;
+
+const char* const say_time_unit =
+    "say which with --time-unit s, ms, min or d, or give the samples per second with --rate";
+
+/// Numbers without a unit are taken as seconds where they can be seconds: not the days, milliseconds and ticks of
+/// computers' clocks.
+void refuse_no_seconds(const Csv& csv, std::size_t column, const std::vector<double>& times) {
+  const std::string place = csv.place(csv.rows.front(), column);
+  const double first = times.front(), last = times.back();
+  if (first > 2e4 && first < 8e4 && last - first < 1.0)
+    refuse_data(place,
+                fmt::format("{} looks like a spreadsheet's day, not like seconds", csv.rows.front().fields[column]),
+                "say which with --time-unit d or --time-unit s");
+  if (first > 1e10)
+    refuse_data(
+        place,
+        fmt::format("has no unit, and {} is too large for the seconds of a clock: these count from 1970 or 1904",
+                    csv.rows.front().fields[column]),
+        say_time_unit);
+  const double interval = median_interval(times);
+  if (!(interval < 1e-6) && !(interval > 100.0)) return;
+  refuse_data(place,
+              fmt::format("has no unit, and taken as seconds the samples lie {:.3g} s apart, which is {}", interval,
+                          interval > 100.0 ? "more than 100 s" : "less than 1e-6 s"),
+              say_time_unit);
+}
+
+std::string assumed_seconds(const std::vector<double>& times) {
+  return fmt::format(
+      "time taken as s, as nothing states its unit: {} samples every {:.4g} s, {:.6g} s in all "
+      "(--time-unit says otherwise)",
+      times.size(), median_interval(times), times.back() - times.front());
+}
 
 Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) {
   Stamps stamps;
   const auto first = std::find_if(csv.rows.begin(), csv.rows.end(),
                                   [&](const CsvRow& row) { return !is_missing(row.fields[column]); });
-  const bool clock = first != csv.rows.end() && read_time(first->fields[column]).has_value();
-  const Unit unit = clock ? parse_unit("s") : find_unit(csv, column, wanted, {"s", "time"});
+  stamps.clock = first != csv.rows.end() && read_time(first->fields[column]).has_value();
+  stamps.assumed = !stamps.clock && wanted.unit.empty() && csv.units[column].empty();
+  const Unit unit = stamps.clock ? parse_unit("s") : find_unit(csv, column, wanted, {"s", "time"});
   bool dated = false, either = false;
   for (const CsvRow& row : csv.rows) {
     const std::string& field = row.fields[column];
     if (is_missing(field)) {
       stamps.seconds.push_back(std::numeric_limits<double>::quiet_NaN());
-    } else if (!clock) {
+    } else if (!stamps.clock) {
       stamps.seconds.push_back(unit.to_si(csv.number(row, column)));
     } else {
       const auto time = read_time(field);
@@ -102,32 +159,12 @@ Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) 
       stamps.seconds.push_back(time->seconds);
     }
   }
-  if (clock) stamps.took.push_back(dated ? "dates and times" : "times of day");
-  stamps.of_day = clock && !dated;
+  if (stamps.clock) stamps.took.push_back(dated ? "dates and times" : "times of day");
+  stamps.of_day = stamps.clock && !dated;
   if (dated && either)
     refuse_data(csv.place(*first, column), "has dates whose day and month cannot be told apart beside others",
                 "write dates like 2024-05-31");
-  // Days since 1900, as spreadsheets count them, in a column without a unit.
-  const bool no_unit = !clock && wanted.unit.empty() && csv.units[column].empty();
-  if (no_unit && csv.rows.size() > 2 && stamps.seconds.front() > 2e4 && stamps.seconds.front() < 8e4 &&
-      stamps.seconds.back() - stamps.seconds.front() < 1.0)
-    refuse_data(csv.place(csv.rows.front(), column),
-                fmt::format("{} looks like a spreadsheet's day, not like seconds", csv.rows.front().fields[column]),
-                "say which with --time-unit d or --time-unit s");
   return stamps;
-}
-
-/// Median interval, and the share of those that differ from it.
-void check_spacing(TorqueLog& log) {
-  std::vector<double> gaps;
-  for (std::size_t i = 1; i < log.time.size(); ++i) gaps.push_back(log.time[i] - log.time[i - 1]);
-  if (gaps.empty()) return;
-  std::vector<double> sorted = gaps;
-  std::sort(sorted.begin(), sorted.end());
-  log.interval = sorted[sorted.size() / 2];
-  const auto uneven = std::count_if(gaps.begin(), gaps.end(),
-                                    [&](double gap) { return std::abs(gap - log.interval) > 0.2 * log.interval; });
-  log.uneven_share = static_cast<double>(uneven) / static_cast<double>(gaps.size());
 }
 
 /// The times of the rows that have one, made good; rows without stay NaN.
@@ -145,8 +182,13 @@ std::vector<double> times_of(const Csv& csv, std::size_t column, const LogColumn
   if (pass_midnight(there, stamps.of_day) > 0) log.took.push_back("times that go on past midnight");
   if (shares_stamps(there))
     if (const std::string how = spread_stamps(there); !how.empty()) log.took.push_back(how);
-  const bool from_zero = !log.took.empty() && !there.empty() && !stamps.took.empty();
-  const double start = from_zero ? there.front() : 0.0;
+  if (stamps.assumed && there.size() > 2) {
+    refuse_no_seconds(csv, column, there);
+    log.notes.push_back(assumed_seconds(there));
+  }
+  const bool of_clock = !there.empty() && (stamps.clock || std::abs(there.front()) > of_calendar);
+  if (of_clock && !stamps.clock) log.took.push_back("times of a clock, counted from the first");
+  const double start = of_clock ? there.front() : 0.0;
   std::size_t next = 0;
   for (double& one : stamps.seconds)
     if (std::isfinite(one)) one = there[next++] - start;

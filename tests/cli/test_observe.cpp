@@ -121,6 +121,19 @@ TEST_CASE("what the meter reads at standstill is said where nothing is taken off
   CHECK_THAT(negative.err, Contains("every torque is negative") && Contains("so much idle torque"));
 }
 
+TEST_CASE("the unit of times that nothing states is said, and stands in the JSON") {
+  const Folder folder;
+  std::string text = log_text(2.0, 0.0, 8);
+  text.replace(0, text.find(','), "time");
+  write(folder, "log.csv", text);
+  const auto outcome = folder.demcal({"observe", "log.csv", "--json"});
+  CHECK(outcome.status == 0);
+  CHECK_THAT(outcome.err, Contains("note: time taken as s, as nothing states its unit: 6000 samples every 0.01 s"));
+  CHECK(nlohmann::json::parse(outcome.out)["notes"].size() == 1);
+  CHECK(folder.demcal({"observe", "log.csv", "--time-unit", "s", "--out", "o.csv"}).err.find("taken as s") ==
+        std::string::npos);
+}
+
 TEST_CASE("a log that cannot be used is refused with what to do, and is never overwritten") {
   const Folder folder;
   write(folder, "log.csv", log_text(2.0, 0.0, 4));

@@ -178,6 +178,45 @@ TEST_CASE("times that can be read in two ways are asked back") {
         std::string::npos);
 }
 
+TEST_CASE("times without a unit are seconds where they can be, and that is said") {
+  const auto log = [](double first, double step) {
+    std::string text = "time,torque [Nm],rpm\n";
+    for (int i = 0; i < 6; ++i) text += fmt::format("{:.9f},1,1\n", first + step * i);
+    return text;
+  };
+  REQUIRE(log_of(log(0.0, 10.0)).notes.size() == 1);
+  CHECK(
+      log_of(log(0.0, 10.0)).notes[0].find("time taken as s, as nothing states its unit: 6 samples every 10 s, 50 s") ==
+      0);
+  CHECK(log_of("time [s],torque [Nm],rpm\n0,1,1\n1,1,1\n2,1,1\n").notes.empty());
+  CHECK(log_of("time,torque [Nm],rpm\n14:00:00,1,1\n14:00:01,1,1\n14:00:02,1,1\n").notes.empty());
+  data::LogColumns in_days;
+  in_days.time.unit = "d";
+  CHECK(log_of(log(739375.58, 1e-5), in_days).notes.empty());
+  CHECK(refusal(log(0.0, 1000.0))
+            .find("65: log.csv:2: time: has no unit, and taken as seconds the samples lie 1e+03 s apart") == 0);
+  CHECK(refusal(log(0.0, 1000.0)).find("--time-unit s, ms, min or d") != std::string::npos);
+  CHECK(refusal(log(0.58, 1e-7)).find("less than 1e-6 s") != std::string::npos);         // a day's share
+  CHECK(refusal(log(739375.58, 1.2e-7)).find("less than 1e-6 s") != std::string::npos);  // MATLAB's datenum
+  CHECK(refusal(log(1714730520000.0, 10.0)).find("too large for the seconds") != std::string::npos);  // ms since 1970
+  CHECK(refusal(log(133591041200000000.0, 100000.0)).find("too large for the seconds") !=
+        std::string::npos);  // FILETIME
+}
+
+TEST_CASE("times of any clock count from the log's first sample") {
+  const std::vector<double> expected{0.0, 1.0, 2.0};
+  for (const std::string text :
+       {"timestamp,torque [Nm],rpm\n1714730520,1,1\n1714730521,1,1\n1714730522,1,1\n",
+        "time [ms],torque [Nm],rpm\n1714730520000,1,1\n1714730521000,1,1\n1714730522000,1,1\n",
+        "time [s],torque [Nm],rpm\n3797575320,1,1\n3797575321,1,1\n3797575322,1,1\n",
+        "time,torque [Nm],rpm\n14:02:00,1,1\n14:02:01,1,1\n14:02:02,1,1\n",
+        "time,torque [Nm],rpm\n2024-05-03 14:02:00,1,1\n2024-05-03 14:02:01,1,1\n2024-05-03 14:02:02,1,1\n"}) {
+    INFO(text);
+    CHECK(log_of(text).time == expected);
+  }
+  CHECK(log_of("time [s],torque [Nm],rpm\n5,1,1\n6,1,1\n7,1,1\n").time.front() == 5.0);
+}
+
 TEST_CASE("clocks go on past midnight, and stamps are spread as their order allows") {
   std::vector<double> times{86398.0, 86399.0, 0.0, 1.0};
   CHECK(data::pass_midnight(times, true) == 1);
