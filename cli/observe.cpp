@@ -173,14 +173,13 @@ std::string in_comment(std::string text) {
   return text;
 }
 
-/// One row per plateau; beside the columns that a study reads, what the mean rests on.
+/// One row per plateau; beside the columns that a study reads, what the mean rests on. Units stand in the heading:
+/// a spreadsheet that saves the file again may break up its comments.
 std::string to_csv(const ObserveOptions& options, const data::TorqueLog& log,
                    const std::vector<data::Plateau>& plateaus, const Idle& idle, const data::Unit& unit) {
   std::string text = fmt::format("# {}\n# from {} (XXH3 {}), by demcal observe\n", data::blank_mark(),
                                  in_comment(fs::path(options.log).filename().string()), data::hash_file(options.log));
-  text += fmt::format(
-      "# units: {} [{}], {} [{}]; seconds: length of the part used; independent: its uncorrelated samples\n",
-      options.control, log.speed_unit.symbol, options.output, unit.symbol);
+  text += "# from_s, seconds: beginning and length of the part used; independent: its uncorrelated samples\n";
   if (idle.kind == Idle::Kind::value) {
     text +=
         fmt::format("# idle torque {:.6g} {} taken off every row", unit.from_si(idle.at.front().value), unit.symbol);
@@ -194,9 +193,12 @@ std::string to_csv(const ObserveOptions& options, const data::TorqueLog& log,
                     options.idle_log.empty() ? "same log" : in_comment(fs::path(options.idle_log).filename().string()),
                     options.output);
   }
-  text += fmt::format("{},{},{},idle,from_s,seconds,independent,{}\n", data::csv_field(options.control),
-                      data::csv_field(options.output), data::csv_field(options.output + "_se"),
-                      data::csv_field(options.control + "_sd"));
+  const auto heading = [](const std::string& name, const data::Unit& of) {
+    return data::csv_field(fmt::format("{} [{}]", name, of.symbol));
+  };
+  text += fmt::format("{},{},{},{},from_s,seconds,independent,{}\n", heading(options.control, log.speed_unit),
+                      heading(options.output, unit), heading(options.output + "_se", unit), heading("idle", unit),
+                      heading(options.control + "_sd", log.speed_unit));
   for (std::size_t i = 0; i < plateaus.size(); ++i) {
     const data::Plateau& plateau = plateaus[i];
     const data::MeanTorque found = observed_torque(plateau, idle, i);
@@ -308,6 +310,7 @@ data::ExitStatus observe(ObserveOptions options) {
                        unit.symbol, log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
                        plateau.torque.effective_samples));
     json["rows"].push_back({{options.control, log.speed_unit.from_si(plateau.speed)},
+                            {options.control + "_unit", log.speed_unit.symbol},
                             {options.output, mean},
                             {options.output + "_se", error},
                             {"unit", unit.symbol},

@@ -308,11 +308,14 @@ struct CsvColumns {
   std::vector<std::string> names, units;
 };
 
+/// A spreadsheet that saved the file again may have put the comment's parts into cells: separators and quotes in it are
+/// passed over.
 void add_units_of_comment(CsvColumns& columns, const std::string& comment) {
   if (!comment.starts_with("units: ")) return;
-  std::string list = comment.substr(7, comment.find(';') - 7) + ",";
-  for (std::size_t at = 0, comma = 0; (comma = list.find(',', at)) != std::string::npos; at = comma + 1) {
-    const Heading split = read_heading(std::string_view(list).substr(at, comma - at));
+  std::string list = comment.substr(7) + ",";
+  list.erase(std::remove(list.begin(), list.end(), '"'), list.end());
+  for (std::size_t at = 0, end = 0; (end = list.find_first_of(",;\t", at)) != std::string::npos; at = end + 1) {
+    const Heading split = read_heading(std::string_view(list).substr(at, end - at));
     const auto found = std::find(columns.names.begin(), columns.names.end(), split.name);
     if (found == columns.names.end() || split.unit.empty()) continue;
     std::string& unit = columns.units[found - columns.names.begin()];

@@ -53,6 +53,28 @@ TEST_CASE("a log becomes observations that a calibration reads, with a picture")
   }
 }
 
+TEST_CASE("observations keep their units where a spreadsheet loses the comments, and the JSON names them") {
+  const Folder folder;
+  std::string text = "time [s],torque [N m],omega [rad/s]\n";
+  data::RandomStream random(9, data::Purpose::test);
+  for (int i = 0; i < 600; ++i)
+    text += fmt::format("{:.1f},{:.6f},15.707963\n", 0.1 * i, 0.01 + 1e-4 * random.normal());
+  write(folder, "log.csv", text);
+  const auto outcome = folder.demcal({"observe", "log.csv", "--rpm", "omega", "--control", "speed", "--json"});
+  REQUIRE(outcome.status == 0);
+  const nlohmann::json row = nlohmann::json::parse(outcome.out)["rows"][0];
+  CHECK(row["speed"].get<double>() == Approx(15.708).epsilon(1e-4));
+  CHECK(row["speed_unit"] == "rad/s");
+  CHECK(row["unit"] == "N m");
+  std::string saved = folder.read("log-observed.csv");
+  while (saved.front() == '#') saved.erase(0, saved.find('\n') + 1);
+  CHECK_THAT(saved, Catch::StartsWith("speed [rad/s],torque [N m],torque_se [N m],"));
+  write(folder, "saved.csv", saved);
+  const data::Csv csv = data::read_csv((folder.path / "saved.csv").string());
+  CHECK(csv.unit(csv.column("speed"), data::parse_unit("rpm")).factor == Approx(1.0));
+  CHECK(csv.unit(csv.column("torque_se"), data::parse_unit("mN m")).factor == Approx(1.0));
+}
+
 TEST_CASE("an idle torque given as one value is an error common to all rows, and the file says how to state it") {
   const Folder folder;
   write(folder, "log.csv", log_text(2.0, 0.0, 3));

@@ -265,6 +265,9 @@ TEST_CASE("the unit of a column is the heading's, that of a row below it, or tha
   CHECK(
       factor("# from log.csv, by demcal observe\n# units: rpm [rpm], torque [mN m]; seconds: s\nrpm,torque\n50,1\n") ==
       Approx(1e-3));
+  // Saved again by a spreadsheet, which put the comment into cells.
+  CHECK(factor("# units: rpm [rpm];\"torque [mN m]; seconds: length\";;\nrpm;torque;seconds\n50;1,5;2\n") ==
+        Approx(1e-3));
   const TemporaryFolder folder;
   CHECK(failure_of(folder, [&] { factor("rpm,torque [kg]\n50,1\n"); }) ==
         "65: x.csv:1: torque: is in 'kg', which does not measure what the study's 'uN m' does (correct the unit in the "

@@ -175,7 +175,7 @@ OBSERVATIONS = [
     code("no header", write("bench.csv", "100,8.1,0.2\n200,8.3,0.2\n"), DATA, "bench.csv"),
     code("a column too few in a row", write("bench.csv", "speed,torque,torque_se\n100,8.1,0.2\n200,8.3\n"), DATA, "bench.csv:3"),
     code("a column too many in a row", write("bench.csv", "speed,torque,torque_se\n100,8.1,0.2\n200,8.3,0.2,7\n"), DATA, "bench.csv:3"),
-    code("a column twice", write("bench.csv", "speed,torque,torque,torque_se\n100,8.1,8.1,0.2\n"), DATA, "torque"),
+    code("a column twice", write("bench.csv", "speed,torque,torque,torque_se\n100,8.1,8.2,0.2\n"), DATA, "torque"),
     code("the control's column is missing", write("bench.csv", "torque,torque_se\n8.1,0.2\n"), DATA, "speed"),
     code("the output's column is missing", write("bench.csv", "speed,torqe,torque_se\n100,8.1,0.2\n"), DATA, "torque"),
     code("the error's column is missing", write("bench.csv", "speed,torque\n100,8.1\n"), DATA, "torque_se"),
