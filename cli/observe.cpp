@@ -166,6 +166,15 @@ std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vect
   return warnings;
 }
 
+/// A unit that a study reads, too: the log's own, or N m where that is a spelling of instruments.
+data::Unit unit_of_studies(const data::Unit& unit) {
+  try {
+    if (data::convertible(unit.symbol, "N m")) return data::parse_unit(unit.symbol);
+  } catch (const std::invalid_argument&) {
+  }
+  return data::parse_unit("N m");
+}
+
 /// A name within a line of comment.
 std::string in_comment(std::string text) {
   std::replace_if(
@@ -185,7 +194,7 @@ std::string to_csv(const ObserveOptions& options, const data::TorqueLog& log,
         fmt::format("# idle torque {:.6g} {} taken off every row", unit.from_si(idle.at.front().value), unit.symbol);
     text += options.idle_error
                 ? fmt::format("; its error is common to all of them: common_error = \"{:.3g} {}\" in [[observe]]\n",
-                              idle.at.front().error / unit.factor, unit.symbol)
+                              idle.at.front().error / unit_of_studies(unit).factor, unit_of_studies(unit).symbol)
                 : std::string("\n");
   } else if (idle.kind == Idle::Kind::log) {
     text +=

@@ -28,14 +28,14 @@ struct LogColumns {
                  .unit = "",
                  .usual = "s",
                  .also = {"timestamp", "x_value", "time stamp", "datetime", "date time", "elapsed time", "zeit",
-                          "zeitstempel", "t"}};
+                          "zeitstempel", "temps", "t"}};
   /// No usual unit: it must be said somewhere.
-  LogColumn torque{.name = "torque", .unit = "", .usual = "", .also = {"drehmoment", "moment", "m"}};
-  LogColumn speed{
-      .name = "rpm",
-      .unit = "",
-      .usual = "rpm",
-      .also = {"speed", "rotational speed", "rotation speed", "velocity", "angular velocity", "drehzahl", "n"}};
+  LogColumn torque{.name = "torque", .unit = "", .usual = "", .also = {"drehmoment", "moment", "couple", "m"}};
+  LogColumn speed{.name = "rpm",
+                  .unit = "",
+                  .usual = "rpm",
+                  .also = {"speed", "rotational speed", "rotation speed", "velocity", "angular velocity", "drehzahl",
+                           "vitesse", "omega", "n"}};
   std::optional<double> constant_speed;  ///< rad/s, of a log that has no column for it
   std::optional<double> rate;            ///< 1/s: the samples follow each other so, whatever their stamps say
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "data/csv.hpp"
@@ -18,6 +19,11 @@ namespace {
 
 std::string heading_place(const Csv& csv) { return fmt::format("{}:{}", csv.file, csv.header_line); }
 
+bool is_named(const std::string& name, const LogColumn& wanted) {
+  const auto same = [&](const std::string& other) { return lower_case(name) == lower_case(other); };
+  return same(wanted.name) || std::any_of(wanted.also.begin(), wanted.also.end(), same);
+}
+
 /// The column of a quantity, by its name or, where there is none, by one of the other names.
 std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::string& option) {
   const auto named = [&](std::size_t i, const std::string& name) {
@@ -30,6 +36,12 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::stri
     for (std::size_t i = 0; i < csv.columns.size(); ++i)
       if (std::any_of(wanted.also.begin(), wanted.also.end(), [&](const std::string& name) { return named(i, name); }))
         found.push_back(i);
+  // "t" and "T" are a time and a torque.
+  const auto as_written = [&](std::size_t i) {
+    return std::find(wanted.also.begin(), wanted.also.end(), csv.columns[i]) != wanted.also.end();
+  };
+  if (found.size() > 1 && std::count_if(found.begin(), found.end(), as_written) == 1)
+    found = {*std::find_if(found.begin(), found.end(), as_written)};
   while (found.size() > 1 && csv.headings[found[0]] == csv.headings[found[1]] && csv.same_values(found[0], found[1]))
     found.erase(found.begin() + 1);
   if (found.size() == 1) return found.front();
@@ -49,6 +61,21 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::stri
       remedy);
 }
 
+/// What a unit of speed amounts to in rpm, where UDUNITS-2 reads it as so many of them: 60 for Hz.
+std::optional<double> multiple_of_rpm(const Unit& unit) {
+  if (!unit.symbol.ends_with(" rpm")) return {};
+  return std::strtod(unit.symbol.c_str(), nullptr);
+}
+
+/// A unit for messages: revolutions per second as rpm, and what UDUNITS-2 reads as a multiple of another unit in the
+/// user's own words, "oz-in".
+Unit shown_unit(const Unit& meant, const std::string& given) {
+  if (multiple_of_rpm(meant)) return parse_unit("rpm");
+  Unit unit = meant;
+  if (!unit.symbol.empty() && unit.symbol.front() >= '0' && unit.symbol.front() <= '9') unit.symbol = trimmed(given);
+  return unit;
+}
+
 Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
                const std::pair<std::string, std::string>& of) {
   const auto& [dimension, option] = of;
@@ -57,7 +84,7 @@ Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
   if (symbol.empty())
     refuse_data(heading_place(csv), fmt::format("the column '{}' has no unit", csv.headings[column]),
                 fmt::format("write it in the header, '{} [N m]', or give --{}-unit", wanted.name, option));
-  if (auto unit = unit_meant(symbol, dimension)) return unit->symbol == "60 rpm" ? parse_unit("rpm") : *unit;
+  if (const auto unit = unit_meant(symbol, dimension)) return shown_unit(*unit, symbol);
   refuse_data(heading_place(csv), fmt::format("'{}' is not a unit of {}", symbol, option),
               fmt::format("a unit like '{}'; --{}-unit overrides the header", dimension, option));
 }
@@ -66,7 +93,20 @@ Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
 double per_shown_unit(const Csv& csv, std::size_t column, const LogColumn& wanted) {
   const std::string& symbol = wanted.unit.empty() ? csv.units[column] : wanted.unit;
   const auto unit = unit_meant(symbol, "rpm");
-  return unit && unit->symbol == "60 rpm" ? 60.0 : 1.0;
+  return unit ? multiple_of_rpm(*unit).value_or(1.0) : 1.0;
+}
+
+/// Headings like "Torque_Nm" of the three quantities are parted into name and unit.
+void part_headings(Csv& csv, const LogColumns& columns) {
+  for (const auto& [wanted, dimension] :
+       {std::pair(&columns.time, "s"), {&columns.torque, "N m"}, {&columns.speed, "rpm"}})
+    for (std::size_t i = 0; i < csv.columns.size(); ++i) {
+      if (is_named(csv.columns[i], *wanted)) continue;
+      const auto split = heading_with_unit(csv.headings[i], dimension);
+      if (!split || !is_named(split->name, *wanted)) continue;
+      csv.columns[i] = split->name;
+      csv.units[i] = split->unit;
+    }
 }
 
 double median_interval(const std::vector<double>& times) {
@@ -198,7 +238,8 @@ std::vector<double> times_of(const Csv& csv, std::size_t column, const LogColumn
 }  // namespace
 
 TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
-  const Csv csv = read_csv(path);
+  Csv csv = read_csv(path);
+  part_headings(csv, columns);
   TorqueLog log{.file = csv.file};
   log.took = csv.took;
   const std::size_t time = columns.rate ? 0 : find_column(csv, columns.time, "time");
@@ -206,7 +247,8 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
   log.torque_unit = find_unit(csv, torque, columns.torque, {"N m", "torque"});
   std::optional<std::size_t> speed;
   double in_unit = 1.0;
-  log.speed_unit = parse_unit(columns.speed.unit.empty() ? "rpm" : columns.speed.unit);
+  const std::string given_speed = columns.speed.unit.empty() ? "rpm" : columns.speed.unit;
+  log.speed_unit = shown_unit(unit_meant(given_speed, "rpm").value_or(parse_unit("rpm")), given_speed);
   if (!columns.constant_speed) {
     speed = find_column(csv, columns.speed, "rpm");
     log.speed_unit = find_unit(csv, *speed, columns.speed, {"rpm", "rpm"});

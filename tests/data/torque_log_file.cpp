@@ -148,6 +148,18 @@ TEST_CASE("columns are found by their usual names, in several languages and unit
   CHECK(log_of("Time [ms],Torque [Ncm],Speed [Hz]\n0,1,2\n100,1,2\n").time[1] == Approx(0.1));
   CHECK(refusal("time,torque [Nm],speed,drehzahl\n0,1,1,1\n1,1,1,1\n")
             .find("both 'speed' and 'drehzahl' may be the column 'rpm'") != std::string::npos);
+  for (const std::string heading :
+       {"Time_s,Torque_Nm,Speed_rpm", "t in s,M in Nm,n in 1/min", "Time {s},Torque {Nm},Speed {rpm}",
+        "t / s,M / Nm,n / (1/min)", "Temps [s],Couple [N.m],Vitesse [tr/min]", "t [s],M [Nm],omega [rpm]"}) {
+    INFO(heading);
+    const data::TorqueLog read = log_of(heading + "\n0,2,60\n3,2,60\n");
+    CHECK(read.time[1] == 3.0);
+    CHECK(read.torque[0] == Approx(2.0));
+    CHECK(read.speed[0] == Approx(60.0 * rpm));
+    CHECK(read.notes.empty());
+  }
+  CHECK(log_of("time [s],torque [oz-in],rpm\n0,2,60\n3,2,60\n").torque_unit.symbol == "oz-in");
+  CHECK(log_of("Time (hh:mm:ss),torque [Nm],rpm\n00:00:01,2,60\n00:00:02,2,60\n").time[1] == 1.0);
   data::LogColumns constant;
   constant.constant_speed = 50.0 * rpm;
   CHECK(log_of("time,torque [Nm]\n0,1\n1,1\n", constant).speed[1] == Approx(50.0 * rpm));
