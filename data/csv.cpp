@@ -31,7 +31,9 @@ struct Table {
   Dialect dialect;
   std::vector<CsvRecord> records;
   std::vector<CsvBlock> blocks;  ///< with the same columns; the first one's heading is the table's
+  std::vector<bool> texts;       ///< columns of remarks, whose numbers say nothing of the decimal mark; empty: none
 
+  bool is_text(std::size_t column) const { return column < texts.size() && texts[column]; }
   std::string line(const CsvRecord& record) const { return fmt::format("{}:{}", csv.file, record.line); }
   /// Every line among the rows of the blocks that is no comment.
   template <class Visit>
@@ -191,8 +193,9 @@ struct MarkEvidence {
 MarkEvidence mark_evidence(const Table& table) {
   MarkEvidence found;
   table.each_row([&](const CsvRecord& record) {
-    for (const std::string& field : record.fields) {
-      if (field.find_first_of(".,") == std::string::npos) continue;
+    for (std::size_t i = 0; i < record.fields.size(); ++i) {
+      const std::string& field = record.fields[i];
+      if (field.find_first_of(".,") == std::string::npos || table.is_text(i)) continue;
       switch (decimal_evidence(field)) {
         case Evidence::point:
           found.point.note(record, field);
@@ -268,11 +271,31 @@ void ask_for_thousands(const Table& table, const MarkEvidence& found) {
           fmt::format("write {} or {}0", plain_number(column.field, DecimalMark::comma).value_or("?"), column.field));
 }
 
+/// Columns of which half and more of the fields are words.
+std::vector<bool> text_columns(const Table& table) {
+  std::vector<std::size_t> words(table.csv.headings.size()), filled(words.size());
+  table.each_row([&](const CsvRecord& record) {
+    for (std::size_t i = 0; i < std::min(words.size(), record.fields.size()); ++i) {
+      const std::string& field = record.fields[i];
+      if (is_missing(field)) continue;
+      ++filled[i];
+      words[i] += !plain_number(field, DecimalMark::point) && !plain_number(field, DecimalMark::comma);
+    }
+  });
+  std::vector<bool> texts;
+  for (std::size_t i = 0; i < words.size(); ++i) texts.push_back(filled[i] > 0 && 2 * words[i] >= filled[i]);
+  return texts;
+}
+
 /// Which decimal mark the numbers have, by those that can be read in one way alone. Between commas, a comma in quotes
 /// may stand in a text: it is a decimal mark only where no number has a point.
-DecimalMark find_mark(const Table& table) {
-  const MarkEvidence found = mark_evidence(table);
+DecimalMark find_mark(Table& table) {
+  MarkEvidence found = mark_evidence(table);
   const bool between_commas = table.dialect.separator == ',';
+  if (found.comma && found.point && !between_commas) {
+    table.texts = text_columns(table);
+    found = mark_evidence(table);
+  }
   if (found.comma && found.point && !between_commas)
     refuse_data(table.line(*found.comma.record),
                 fmt::format("'{}' has a decimal comma, but '{}' in line {} a decimal point", found.comma.field,
@@ -435,7 +458,7 @@ void read_rows(Table& table) {
         continue;
       }
       for (std::size_t c = 0; c < fields->size(); ++c) {
-        const auto plain = plain_number((*fields)[c], mark);
+        const auto plain = table.is_text(c) ? std::nullopt : plain_number((*fields)[c], mark);
         if (plain) (*fields)[c] = changes[c] ? changes[c]->to.digits(changes[c]->from.to_si(*plain)) : *plain;
       }
       table.csv.rows.push_back({std::move(*fields), record.line});
@@ -453,15 +476,22 @@ void read_rows(Table& table) {
 }  // namespace
 
 std::optional<std::size_t> Csv::find(std::string_view column) const {
-  for (const std::vector<std::string>* names : {&columns, &headings}) {
-    const auto found = std::find(names->begin(), names->end(), column);
-    if (found == names->end()) continue;
-    const auto first = static_cast<std::size_t>(found - names->begin());
-    for (std::size_t again = first + 1; again < names->size(); ++again)
-      if ((*names)[again] == column && !same_values(first, again))
-        refuse_data(fmt::format("{}:{}", file, header_line), fmt::format("the column '{}' is there twice", column),
-                    "rename or remove one");
-    return first;
+  // "Speed" is speed; of names of one letter, capitals may be other quantities.
+  const bool any_case = column.size() > 1;
+  for (const bool lower : {false, true}) {
+    if (lower && !any_case) break;
+    const std::string wanted = lower ? lower_case(column) : std::string(column);
+    const auto named = [&](const std::string& one) { return (lower ? lower_case(one) : one) == wanted; };
+    for (const std::vector<std::string>* names : {&columns, &headings}) {
+      const auto found = std::find_if(names->begin(), names->end(), named);
+      if (found == names->end()) continue;
+      const auto first = static_cast<std::size_t>(found - names->begin());
+      for (std::size_t again = first + 1; again < names->size(); ++again)
+        if (named((*names)[again]) && !same_values(first, again))
+          refuse_data(fmt::format("{}:{}", file, header_line), fmt::format("the column '{}' is there twice", column),
+                      "rename or remove one");
+      return first;
+    }
   }
   return {};
 }
@@ -499,6 +529,12 @@ double Csv::number(const CsvRow& row, std::size_t column) const {
   }
   if (error != std::errc{} || rest != end) {
     if (is_missing(field)) return std::numeric_limits<double>::quiet_NaN();
+    if (field.find("\xc2\xb1") != std::string::npos || field.find("+-") != std::string::npos ||
+        field.find("+/-") != std::string::npos)
+      refuse_data(
+          place(row, column), fmt::format("'{}' is a number with an error", field),
+          fmt::format("write the error into a column of its own, {}_se, if it is the standard error of the mean",
+                      columns.at(column)));
     refuse_data(place(row, column), fmt::format("'{}' is not a number", field),
                 "write a plain number with a decimal point");
   }

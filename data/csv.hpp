@@ -6,7 +6,7 @@
 //   text       UTF-8, UTF-16, Latin-1, Shift-JIS; any line ends; zeros behind the end, as of a logger that lost power
 //   columns    parted by commas, semicolons, tabs, bars or blanks; "sep=;"; quotes; separators behind the last column
 //   numbers    decimal point or comma, thousands, exponents of Fortran: in `fields` as plain decimals
-//   missing    empty, nan, N/A, -, #N/A, NULL, 1.#QNAN, ****
+//   missing    empty, nan, N/A, -, ---.--, #N/A, #####, ?, NULL, 1.#QNAN, ****
 //   heading    behind any preamble, or in a comment; a unit in it, in a row below it, or in a line "# units: a [m]"
 //   blocks     the heading again, as where a logger appended to its file: joined, units converted to the first one's
 //   comments   lines that begin with '#', '%' or "//"
@@ -36,7 +36,7 @@ struct Csv {
   std::string no_time;            ///< why there is no column of times, where the file's form has one
   std::vector<std::string> took;  ///< how the table was read, where it is not plain CSV: "separated by semicolons"
 
-  /// By name, with or without its unit. Throws InputError (65) where two columns have it and differ.
+  /// By name, with or without its unit; where none is spelled so, whatever its capitals. Throws InputError (65) where two columns have it and differ.
   std::optional<std::size_t> find(std::string_view column) const;
   /// Whether two columns hold the same in every row.
   bool same_values(std::size_t one, std::size_t other) const;

@@ -29,15 +29,37 @@ std::string without_brackets(const std::string& field) {
   return in_brackets ? field.substr(1, field.size() - 2) : field;
 }
 
-/// A "1" among units is one; so that no row of numbers is taken for units, two others must stand beside it.
+bool in_square_brackets(const std::string& field) {
+  return field.size() >= 2 && field.front() == '[' && field.back() == ']';
+}
+
+/// Fields that name a unit; a "1" or "-" says nothing.
+std::size_t units_in(const CsvRecord& record) {
+  return static_cast<std::size_t>(
+      std::count_if(record.fields.begin(), record.fields.end(), [](const std::string& field) {
+        const std::string bare = without_brackets(field);
+        return !bare.empty() && bare != "-" && bare != "1" && (in_square_brackets(field) || is_unit(bare));
+      }));
+}
+
+/// Whether all fields are units. A "1" among them is one; so that no row of numbers is taken for units, two others must
+/// stand beside it.
 bool is_units_row(const CsvRecord& record) {
-  std::size_t units = 0;
-  for (const std::string& field : record.fields) {
+  const bool all = std::all_of(record.fields.begin(), record.fields.end(), [](const std::string& field) {
     const std::string bare = without_brackets(field);
-    if (!bare.empty() && !is_unit(bare)) return false;
-    units += !bare.empty() && bare != "-" && bare != "1";
-  }
-  return units >= (holds_number(record) ? 2 : 1);
+    return bare.empty() || in_square_brackets(field) || is_unit(bare);
+  });
+  return all && units_in(record) >= (holds_number(record) ? 2 : 1);
+}
+
+/// Whether a line below a line of names holds their units, some of which may be unknown ("% r.F.", "Skt"): half of the
+/// fields and two at least are units, and more than above.
+bool is_units_row_below(const CsvRecord& names, const CsvRecord& record) {
+  if (is_units_row(record)) return true;
+  const auto filled = static_cast<std::size_t>(
+      std::count_if(record.fields.begin(), record.fields.end(), [](const std::string& one) { return !one.empty(); }));
+  const std::size_t units = units_in(record);
+  return is_words(record) && units >= 2 && 2 * units >= filled && units > units_in(names);
 }
 
 Texts units_of(const CsvRecord& record) {
@@ -114,7 +136,7 @@ class BlockFinder {
     if (block.headings.empty()) return {};
     block.first = next_line(at);
     if (block.first < records_.size() && has_as_many(records_[block.first], block.headings.size()) &&
-        is_units_row(records_[block.first])) {
+        is_units_row_below(record, records_[block.first])) {
       block.units = units_of(records_[block.first]);
       block.units_line = records_[block.first].line;
       block.first = next_line(block.first);

@@ -201,6 +201,39 @@ TEST_CASE("a second table is refused with both headings, and numbers of a preamb
         std::string::npos);
 }
 
+TEST_CASE("an unknown unit among others leaves the row of units one") {
+  const data::Csv csv = data::parse_csv(
+      "Time;Torque;Humidity;Level;Clock\ns;mNm;% r.F.;Skt;hh:mm:ss\n0,5;1,5;45;1;12:00:00\n1,0;1,5;45;1;12:00:01\n",
+      "x.csv");
+  CHECK(csv.columns.front() == "Time");
+  CHECK(csv.units == std::vector<std::string>{"s", "mNm", "% r.F.", "Skt", "hh:mm:ss"});
+  CHECK(csv.rows.size() == 2);
+}
+
+TEST_CASE("a heading in a comment is found above lines and remarks of gnuplot") {
+  for (const std::string below : {"# -----------------\n", "# hold 1\n", "# measured by hand\n"}) {
+    INFO(below);
+    CHECK(column_of("# time [s]   torque [mN m]   rpm\n" + below + "0 1 50\n1 2 50\n\n\n# hold 2\n2 3 50\n",
+                    "torque") == std::vector<double>{1.0, 2.0, 3.0});
+  }
+}
+
+TEST_CASE("remarks that hold a separator or a decimal comma change neither") {
+  const std::vector<double> expected{1.5, 2.5, 3.5};
+  CHECK(column_of("a;torque;fill\n1;1.5;\n1;2.5;2,5 kg\n1;3.5;2,5\n", "torque") == expected);
+  CHECK(column_of("a,torque,event\n1,1.5,\n1,2.5,start; 50 rpm\n1,3.5,ok; go\n", "torque") == expected);
+}
+
+TEST_CASE("a column is found whatever its capitals, and an error in a field is asked for a column of its own") {
+  CHECK(column_of("Speed,Torque [mN m]\n1,2\n", "torque") == std::vector<double>{2.0});
+  CHECK(column_of("torque,Torque\n1,2\n", "torque") == std::vector<double>{1.0});
+  CHECK(failure("M,Speed\n1,2\n").find("the column 'torque' is missing") != std::string::npos);
+  CHECK(failure("speed,torque\n1,9.42 \xc2\xb1 0.28\n") ==
+        "65: bench.csv:2: torque: '9.42 \xc2\xb1 0.28' is a number with an error (write the error into a column of its "
+        "own, "
+        "torque_se, if it is the standard error of the mean)");
+}
+
 TEST_CASE("a name that two columns have matters where it is asked for and they differ") {
   CHECK(column_of("torque,status,status\n1,0,1\n", "torque") == std::vector<double>{1.0});
   CHECK(column_of("time [s],torque,time [s],rpm\n1,2,1,3\n2,2,2,3\n", "time") == std::vector<double>{1.0, 2.0});
