@@ -70,6 +70,9 @@ Idle find_idle(const ObserveOptions& options, const data::TorqueLog& log, const 
     if (!options.idle_log.empty())
       for (const std::string& note : empty.notes) say(options.common, fmt::format("note: {}: {}", empty.file, note));
     if (!options.idle_log.empty())
+      for (const std::string& words : empty.warnings)
+        say(options.common, fmt::format("warning: {}: {}", empty.file, words));
+    if (!options.idle_log.empty())
       for (const std::string& words : data::remove_no_values(empty))
         say(options.common, fmt::format("warning: {}: {}", empty.file, words));
     data::PlateauOptions part = options.plateaus;
@@ -265,7 +268,8 @@ data::ExitStatus observe(ObserveOptions options) {
   data::TorqueLog log = data::read_torque_log(options.log, options.columns);
   if (!log.took.empty()) say(options.common, fmt::format("{}: read as: {}", log.file, fmt::join(log.took, ", ")));
   for (const std::string& note : log.notes) say(options.common, "note: " + note);
-  std::vector<std::string> warnings = data::remove_no_values(log);
+  std::vector<std::string> warnings = log.warnings;
+  for (std::string& words : data::remove_no_values(log)) warnings.push_back(std::move(words));
   options.plateaus.from = options.window.from();
   options.plateaus.to = options.window.to();
   std::vector<data::Plateau> plateaus = data::find_stretches(log, options.plateaus);

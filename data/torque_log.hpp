@@ -43,15 +43,16 @@ struct LogColumns {
 /// Samples in SI, in the order of time.
 struct TorqueLog {
   std::string file;
-  Unit torque_unit, speed_unit;    ///< the log's own
-  std::vector<double> time;        ///< s
-  std::vector<double> torque;      ///< N m
-  std::vector<double> speed;       ///< rad/s
-  std::size_t missing = 0;         ///< samples left out because a field was empty or NaN
-  std::vector<std::string> took;   ///< how the file was read, where it is not plain CSV in seconds
-  std::vector<std::string> notes;  ///< what was assumed of it, in words: the unit of its times
-  double interval = 0.0;           ///< s, median between samples
-  double uneven_share = 0.0;       ///< share of the intervals that differ from the median by more than a fifth
+  Unit torque_unit, speed_unit;       ///< the log's own
+  std::vector<double> time;           ///< s
+  std::vector<double> torque;         ///< N m
+  std::vector<double> speed;          ///< rad/s
+  std::size_t missing = 0;            ///< samples left out because a field was empty or NaN
+  std::vector<std::string> took;      ///< how the file was read, where it is not plain CSV in seconds
+  std::vector<std::string> notes;     ///< what was assumed of it, in words: the unit of its times
+  std::vector<std::string> warnings;  ///< what is doubtful in its fields, in words: a meter beyond its range
+  double interval = 0.0;              ///< s, median between samples
+  double uneven_share = 0.0;          ///< share of the intervals that differ from the median by more than a fifth
 };
 
 /// Reads a log. Times are numbers with a unit, times of day or dates with times; those that start again at midnight go

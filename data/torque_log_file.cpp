@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 
 #include "data/csv.hpp"
 #include "data/error.hpp"
@@ -172,6 +174,17 @@ std::string assumed_seconds(const std::vector<double>& times) {
       times.size(), median_interval(times), times.back() - times.front());
 }
 
+/// The column of dates beside one of times of day.
+std::optional<std::size_t> find_dates(const Csv& csv, std::size_t times, const CsvRow& first) {
+  for (std::size_t i = 0; i < csv.columns.size(); ++i) {
+    const std::string name = lower_case(csv.columns[i]);
+    if (i == times || (name != "date" && name != "datum")) continue;
+    const auto both = read_time(first.fields[i] + " " + first.fields[times]);
+    if (both && both->dated && !read_time(first.fields[times])->dated) return i;
+  }
+  return {};
+}
+
 Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) {
   Stamps stamps;
   const auto first = std::find_if(csv.rows.begin(), csv.rows.end(),
@@ -179,6 +192,8 @@ Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) 
   stamps.clock = first != csv.rows.end() && read_time(first->fields[column]).has_value();
   stamps.assumed = !stamps.clock && wanted.unit.empty() && csv.units[column].empty();
   const Unit unit = stamps.clock ? parse_unit("s") : find_unit(csv, column, wanted, {"s", "time"});
+  const std::optional<std::size_t> dates = stamps.clock ? find_dates(csv, column, *first) : std::nullopt;
+  if (dates) stamps.took.push_back(fmt::format("days by the column '{}'", csv.headings[*dates]));
   bool dated = false, either = false;
   for (const CsvRow& row : csv.rows) {
     const std::string& field = row.fields[column];
@@ -187,7 +202,10 @@ Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) 
     } else if (!stamps.clock) {
       stamps.seconds.push_back(unit.to_si(csv.number(row, column)));
     } else {
-      const auto time = read_time(field);
+      const auto time = read_time(dates ? row.fields[*dates] + " " + field : field);
+      if (!time && dates)
+        refuse_data(csv.place(row, *dates), fmt::format("'{}' is no date like those before", row.fields[*dates]),
+                    "write every date alike");
       if (!time)
         refuse_data(csv.place(row, column), fmt::format("'{}' is no time like those before", field),
                     "write every time alike");
@@ -207,6 +225,64 @@ Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) 
   return stamps;
 }
 
+/// Whether lines are there twice, one behind the other: then equal stamps are no clock's doing.
+bool repeats_lines(const Csv& csv) {
+  return std::adjacent_find(csv.rows.begin(), csv.rows.end(), [](const CsvRow& one, const CsvRow& other) {
+           return one.fields == other.fields;
+         }) != csv.rows.end();
+}
+
+/// Words in the fields of a column that is to hold numbers, with how often and where first.
+struct Words {
+  std::map<std::string, std::size_t> counts;
+  const CsvRow* first = nullptr;
+  std::size_t total = 0;
+  void add(const std::string& word, const CsvRow& row) {
+    ++counts[word];
+    ++total;
+    if (first == nullptr) first = &row;
+  }
+  std::string list() const {
+    constexpr std::size_t shown = 10;
+    std::vector<std::string> texts;
+    for (const auto& [word, count] : counts)
+      if (texts.size() < shown) texts.push_back(fmt::format("'{}' ({})", word, count));
+    return fmt::format("{}{}", fmt::join(texts, ", "), counts.size() > shown ? ", ..." : "");
+  }
+};
+
+bool is_plain_number(const std::string& field) {
+  double value = 0.0;
+  const char* const end = field.data() + field.size();
+  const auto [rest, error] = std::from_chars(field.data() + (field.starts_with('+') ? 1 : 0), end, value);
+  return rest == end && error != std::errc::invalid_argument && std::isfinite(value);
+}
+
+/// Takes a meter's words for "beyond my range" out of a column, with a warning. Throws InputError (65) with all other
+/// words that are neither numbers nor say that there is no value.
+void take_words(Csv& csv, std::size_t column, TorqueLog& log) {
+  Words beyond, others;
+  for (CsvRow& row : csv.rows) {
+    std::string& field = row.fields[column];
+    if (is_plain_number(field)) continue;
+    if (is_overload(field)) {
+      beyond.add(field, row);
+      field.clear();
+    } else if (!is_missing(field)) {
+      others.add(field, row);
+    }
+  }
+  if (others.total > 1)
+    refuse_data(csv.place(*others.first, column),
+                fmt::format("{} fields from here on are no numbers: {}", others.total, others.list()),
+                "write numbers with a decimal point, and nothing where there is no value");
+  if (beyond.total > 0)
+    log.warnings.push_back(
+        fmt::format("{}: {} samples that say the meter was beyond its range, {}, are left out, the first "
+                    "in line {}: the mean of a hold with them is too near to 0",
+                    csv.columns[column], beyond.total, beyond.list(), beyond.first->line));
+}
+
 /// The times of the rows that have one, made good; rows without stay NaN.
 std::vector<double> times_of(const Csv& csv, std::size_t column, const LogColumns& columns, TorqueLog& log) {
   if (columns.rate) {
@@ -220,7 +296,7 @@ std::vector<double> times_of(const Csv& csv, std::size_t column, const LogColumn
   for (const double one : stamps.seconds)
     if (std::isfinite(one)) there.push_back(one);
   if (pass_midnight(there, stamps.of_day) > 0) log.took.push_back("times that go on past midnight");
-  if (shares_stamps(there))
+  if (shares_stamps(there) || (repeats_stamps(there) && !repeats_lines(csv)))
     if (const std::string how = spread_stamps(there); !how.empty()) log.took.push_back(how);
   if (stamps.assumed && there.size() > 2) {
     refuse_no_seconds(csv, column, there);
@@ -254,6 +330,8 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
     log.speed_unit = find_unit(csv, *speed, columns.speed, {"rpm", "rpm"});
     in_unit = per_shown_unit(csv, *speed, columns.speed);
   }
+  take_words(csv, torque, log);
+  if (speed) take_words(csv, *speed, log);
   const std::vector<double> times = times_of(csv, time, columns, log);
   for (std::size_t i = 0; i < csv.rows.size(); ++i) {
     const CsvRow& row = csv.rows[i];

@@ -229,6 +229,53 @@ TEST_CASE("times of any clock count from the log's first sample") {
   CHECK(log_of("time [s],torque [Nm],rpm\n5,1,1\n6,1,1\n7,1,1\n").time.front() == 5.0);
 }
 
+TEST_CASE("days stand in a column of their own beside times of day") {
+  const data::TorqueLog log =
+      log_of("Date,Time,torque [Nm],rpm\n2024-05-03,23:59:58,1,1\n2024-05-03,23:59:59,1,1\n2024-05-05,00:00:01,1,1\n");
+  CHECK(log.time == std::vector<double>{0.0, 1.0, 86403.0});
+  CHECK(refusal("Date,Time,torque [Nm],rpm\n2024-05-03,23:59:58,1,1\n2024-13-03,23:59:59,1,1\n")
+            .find("65: log.csv:3: Date: '2024-13-03' is no date like those before") == 0);
+}
+
+TEST_CASE("a clock that jitters is spread, and a line that is there twice is refused") {
+  std::string text = "time [s],torque [mN m],rpm\n";
+  const int stamps[] = {0, 1, 2, 3, 4, 5, 7, 7, 8, 9, 10, 12, 12, 13, 14};
+  for (int i = 0; i < 15; ++i) text += fmt::format("{:.3f},{:.1f},100\n", 0.001 * stamps[i], 10.0 + 0.1 * i);
+  const data::TorqueLog log = log_of(text);
+  REQUIRE(log.time.size() == 15);
+  for (std::size_t i = 1; i < 15; ++i) CHECK(log.time[i] - log.time[i - 1] == Approx(0.001).epsilon(0.1));
+  CHECK(refusal("time [s],torque [mN m],rpm\n0,1,1\n1,1,1\n1,1,1\n2,1,1\n3,1,1\n4,1,1\n5,1,1\n")
+            .find("does not come after") != std::string::npos);
+}
+
+TEST_CASE("samples that share a stamp before a gap stay near it") {
+  std::vector<double> times{0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 5000.0, 5000.0};
+  CHECK(data::spread_stamps(times) == "samples that share a stamp spread evenly within it");
+  CHECK(times[5] == 2.5);
+}
+
+TEST_CASE("a meter's words for no value and for too much are taken for that, and all others are named at once") {
+  const std::string head = "time [s],torque [mN m],rpm\n0,1,50\n";
+  for (const std::string word : {"#####", "---.--", "?", "NaN"}) {
+    const data::TorqueLog log = log_of(head + "1," + word + ",50\n2,1,50\n");
+    CHECK(log.missing == 1);
+    CHECK(log.warnings.empty());
+  }
+  for (const std::string word : {"OVL", "OL", "+++++", "Over", "inf"}) {
+    const data::TorqueLog log = log_of(head + "1," + word + ",50\n2,1,50\n");
+    CHECK(log.time.size() == 2);
+    REQUIRE(log.warnings.size() == 1);
+    CHECK(log.warnings[0].find("torque: 1 samples that say the meter was beyond its range, '" + word +
+                               "' (1), are left out, "
+                               "the first in line 3") == 0);
+  }
+  CHECK(refusal(head + "1,Bad,50\n2,<0.01,50\n3,Bad,50\n") ==
+        "65: log.csv:3: torque: 3 fields from here on are no numbers: '<0.01' (1), 'Bad' (2) (write numbers with a "
+        "decimal "
+        "point, and nothing where there is no value)");
+  CHECK(refusal(head + "1,low,50\n").find("65: log.csv:3: torque: 'low' is not a number") == 0);
+}
+
 TEST_CASE("clocks go on past midnight, and stamps are spread as their order allows") {
   std::vector<double> times{86398.0, 86399.0, 0.0, 1.0};
   CHECK(data::pass_midnight(times, true) == 1);
