@@ -93,13 +93,14 @@ std::size_t measurements_in(const Table& table, std::size_t from, std::size_t to
 }
 
 /// Another table than the one that is read must not be lost: measurements below another heading, or above the first.
-/// A preamble may hold a line of numbers that is narrower than the table's rows.
+/// A preamble may hold a line of numbers that is narrower than the table's rows, and names with values.
 void refuse_other_tables(const Table& table, const std::vector<CsvBlock>& others, std::size_t first_heading) {
   const CsvBlock& main = table.blocks.front();
   std::size_t rows = 0;
   for (const CsvBlock& block : table.blocks) rows += block.rows;
   for (const CsvBlock& other : others) {
-    const std::size_t lost = measurements_in(table, other.first, other.end);
+    const bool below = other.line > main.line && other.headings.size() > 2;
+    const std::size_t lost = std::max(measurements_in(table, other.first, other.end), below ? other.rows : 0);
     if (lost > 1 || (lost == 1 && other.headings.size() == main.headings.size()))
       refuse_data(fmt::format("{}:{}", table.csv.file, other.line),
                   fmt::format("a heading with {} rows ({}) is another than that of line {} with {} rows ({})", lost,
@@ -475,11 +476,11 @@ void read_rows(Table& table) {
 
 }  // namespace
 
-std::optional<std::size_t> Csv::find(std::string_view column) const {
-  // "Speed" is speed; of names of one letter, capitals may be other quantities.
-  const bool any_case = column.size() > 1;
+std::optional<std::size_t> Csv::find(std::string_view column, Capitals capitals) const {
+  // Of names of one letter, a capital may be another quantity.
+  const bool any = capitals == Capitals::any && column.size() > 1;
   for (const bool lower : {false, true}) {
-    if (lower && !any_case) break;
+    if (lower && !any) break;
     const std::string wanted = lower ? lower_case(column) : std::string(column);
     const auto named = [&](const std::string& one) { return (lower ? lower_case(one) : one) == wanted; };
     for (const std::vector<std::string>* names : {&columns, &headings}) {
@@ -502,7 +503,7 @@ bool Csv::same_values(std::size_t one, std::size_t other) const {
 }
 
 std::size_t Csv::column(std::string_view name) const {
-  if (const auto found = find(name)) return *found;
+  if (const auto found = find(name, Capitals::any)) return *found;
   std::string remedy = fmt::format("the columns are {}", fmt::join(headings, ", "));
   // torque_sd is not torque_se: an sd of the samples is no error of their mean.
   const bool of_error = name.ends_with("_se");

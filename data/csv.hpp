@@ -36,11 +36,13 @@ struct Csv {
   std::string no_time;            ///< why there is no column of times, where the file's form has one
   std::vector<std::string> took;  ///< how the table was read, where it is not plain CSV: "separated by semicolons"
 
-  /// By name, with or without its unit; where none is spelled so, whatever its capitals. Throws InputError (65) where two columns have it and differ.
-  std::optional<std::size_t> find(std::string_view column) const;
+  /// By name, with or without its unit; with Capitals::any, where none is spelled so, "Speed" for speed. Throws
+  /// InputError (65) where two columns have the name and differ.
+  enum class Capitals { as_written, any };
+  std::optional<std::size_t> find(std::string_view column, Capitals capitals = Capitals::as_written) const;
   /// Whether two columns hold the same in every row.
   bool same_values(std::size_t one, std::size_t other) const;
-  /// Throws InputError (65) naming the columns that are there.
+  /// Whatever its capitals. Throws InputError (65) naming the columns that are there.
   std::size_t column(std::string_view name) const;
   /// Of a row's field. Throws InputError (65) with line and column name; NaN where there is no value.
   double number(const CsvRow& row, std::size_t column) const;

@@ -73,14 +73,27 @@ bool names_units(const Texts& headings) {
                      [](const std::string& heading) { return !read_heading(heading).unit.empty(); });
 }
 
-/// Whether a column holds numbers in one row and words in the other.
-bool kinds_differ(const CsvRecord& one, const CsvRecord& other) {
-  for (std::size_t i = 0; i < std::min(one.fields.size(), other.fields.size()); ++i)
-    if (!is_missing(one.fields[i]) && !is_missing(other.fields[i]) &&
-        is_number_field(one.fields[i]) != is_number_field(other.fields[i]))
-      return true;
-  return false;
-}
+/// What the columns hold in a row.
+class Kinds {
+ public:
+  explicit Kinds(const CsvRecord& record) {
+    for (const std::string& field : record.fields)
+      kinds_.push_back(is_missing(field) ? Kind::nothing : is_number_field(field) ? Kind::number : Kind::words);
+  }
+  /// Whether a column holds numbers in the one row and words in the other.
+  bool differ_from(const CsvRecord& record) const {
+    for (std::size_t i = 0; i < std::min(kinds_.size(), record.fields.size()); ++i) {
+      const std::string& field = record.fields[i];
+      if (kinds_[i] == Kind::nothing || is_number_field(field) == (kinds_[i] == Kind::number)) continue;
+      if (!is_missing(field)) return true;
+    }
+    return false;
+  }
+
+ private:
+  enum class Kind { nothing, number, words };
+  std::vector<Kind> kinds_;
+};
 
 /// Finds the blocks in one pass over the records.
 class BlockFinder {
@@ -102,7 +115,7 @@ class BlockFinder {
       }
       if (!blocks_.empty() && !records_[i].comment && is_row(records_[i]) && !is_blank_record(records_[i]) &&
           has_as_many(records_[i], columns())) {
-        if (!kinds_differ(records_[blocks_.back().first], records_[i])) last_row_ = i;
+        if (!kinds_->differ_from(records_[i])) last_row_ = i;
         ++blocks_.back().rows;
       }
     }
@@ -144,7 +157,7 @@ class BlockFinder {
     if (!rows_follow(block.first, block.headings.size())) return {};
     const bool apart = blocks_.empty() || record.gap_above || block.units_line > 0 || names_units(block.headings) ||
                        columns() != block.headings.size() || same_columns(blocks_.back().headings, block.headings) ||
-                       kinds_differ(records_[last_row_], records_[block.first]);
+                       Kinds(records_[last_row_]).differ_from(records_[block.first]);
     return apart ? std::optional(block) : std::nullopt;
   }
 
@@ -196,6 +209,7 @@ class BlockFinder {
   void begin(CsvBlock block) {
     if (!blocks_.empty()) end_before(block.heading);
     last_row_ = block.first;
+    kinds_.emplace(records_[block.first]);
     blocks_.push_back(std::move(block));
   }
 
@@ -232,7 +246,8 @@ class BlockFinder {
   const std::vector<CsvRecord>& records_;
   char separator_;
   std::vector<CsvBlock> blocks_;
-  std::size_t last_row_ = 0;  ///< of the last block, with numbers where its first one has them
+  std::optional<Kinds> kinds_;  ///< of the last block's first row
+  std::size_t last_row_ = 0;    ///< of the last block, with numbers where its first one has them
 };
 
 }  // namespace

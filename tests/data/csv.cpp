@@ -196,6 +196,9 @@ TEST_CASE("a second table is refused with both headings, and numbers of a preamb
   CHECK(failure_of(folder, [&] {
           column_of("rpm,torque,x\n1,1,1\n2,2\nrpm,torque,x\n3,3,3\n", "torque");
         }).find("65: bench.csv:3: has 2 fields where the header has 3") == 0);
+  CHECK(failure_of(folder, [&] {
+          column_of("case,state,mu,torque\na,ok,1,1\nb,ok,2,2\n\ncase,state,flow,x\na,ok,1,1\nb,ok,2,2\n", "torque");
+        }).find("65: bench.csv:5: a heading with 2 rows (case, state, flow, x) is another than that of line 1") == 0);
   const std::string preamble = "Parameter,Value,Unit\nFill,250,g\nTemperature,25,C\nrpm,torque,torque_se\n1,1,1\n";
   CHECK(data::parse_csv(preamble, "bench.csv").took_line().find("below a preamble (numbers in lines 2, 3 left out)") !=
         std::string::npos);
