@@ -93,7 +93,7 @@ runs = 48
 standard_error = 0.03          # wanted of each run's mean torque, relative
 unsteady = "leave_out"         # or use: the runs that are not of the steady flow
 
-[[observe]]                    # your measurement: a CSV with the columns rpm, torque, torque_se
+[[observe]]                    # your measurement: a CSV with the columns rpm, torque, torque_se, or torque [mN m]
 name = "bench"
 material = "powder"
 file = "bench.csv"

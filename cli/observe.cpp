@@ -68,6 +68,11 @@ Idle find_idle(const ObserveOptions& options, const data::TorqueLog& log, const 
     idle.kind = Idle::Kind::log;
     data::TorqueLog empty = options.idle_log.empty() ? log : data::read_torque_log(options.idle_log, options.columns);
     if (!options.idle_log.empty())
+      for (const std::string& note : empty.notes) say(options.common, fmt::format("note: {}: {}", empty.file, note));
+    if (!options.idle_log.empty())
+      for (const std::string& words : empty.warnings)
+        say(options.common, fmt::format("warning: {}: {}", empty.file, words));
+    if (!options.idle_log.empty())
       for (const std::string& words : data::remove_no_values(empty))
         say(options.common, fmt::format("warning: {}: {}", empty.file, words));
     data::PlateauOptions part = options.plateaus;
@@ -175,6 +180,15 @@ std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vect
   return warnings;
 }
 
+/// A unit that a study reads, too: the log's own, or N m where that is a spelling of instruments.
+data::Unit unit_of_studies(const data::Unit& unit) {
+  try {
+    if (data::convertible(unit.symbol, "N m")) return data::parse_unit(unit.symbol);
+  } catch (const std::invalid_argument&) {
+  }
+  return data::parse_unit("N m");
+}
+
 /// A name within a line of comment.
 std::string in_comment(std::string text) {
   std::replace_if(
@@ -182,7 +196,8 @@ std::string in_comment(std::string text) {
   return text;
 }
 
-/// One row per plateau; beside the columns that a study reads, what the mean rests on.
+/// One row per plateau; beside the columns that a study reads, what the mean rests on. Names are plain, for programs that
+/// look for them; the comment of units is read also as a spreadsheet saves it again.
 std::string to_csv(const ObserveOptions& options, const data::TorqueLog& log,
                    const std::vector<data::Plateau>& plateaus, const Idle& idle, const data::Unit& unit) {
   std::string text = fmt::format("# {}\n# from {} (XXH3 {}), by demcal observe\n", data::blank_mark(),
@@ -195,7 +210,7 @@ std::string to_csv(const ObserveOptions& options, const data::TorqueLog& log,
         fmt::format("# idle torque {:.6g} {} taken off every row", unit.from_si(idle.at.front().value), unit.symbol);
     text += options.idle_error
                 ? fmt::format("; its error is common to all of them: common_error = \"{:.3g} {}\" in [[observe]]\n",
-                              idle.at.front().error / unit.factor, unit.symbol)
+                              idle.at.front().error / unit_of_studies(unit).factor, unit_of_studies(unit).symbol)
                 : std::string("\n");
   } else if (idle.kind == Idle::Kind::log) {
     text +=
@@ -263,7 +278,9 @@ data::ExitStatus observe(ObserveOptions options) {
   }
   data::TorqueLog log = data::read_torque_log(options.log, options.columns);
   if (!log.took.empty()) say(options.common, fmt::format("{}: read as: {}", log.file, fmt::join(log.took, ", ")));
-  std::vector<std::string> warnings = data::remove_no_values(log);
+  for (const std::string& note : log.notes) say(options.common, "note: " + note);
+  std::vector<std::string> warnings = log.warnings;
+  for (std::string& words : data::remove_no_values(log)) warnings.push_back(std::move(words));
   options.plateaus.from = options.window.from();
   options.plateaus.to = options.window.to();
   std::vector<data::Plateau> plateaus = data::find_stretches(log, options.plateaus);
@@ -317,6 +334,7 @@ data::ExitStatus observe(ObserveOptions options) {
                        unit.symbol, log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
                        plateau.torque.effective_samples));
     json["rows"].push_back({{options.control, log.speed_unit.from_si(plateau.speed)},
+                            {options.control + "_unit", log.speed_unit.symbol},
                             {options.output, mean},
                             {options.output + "_se", error},
                             {"unit", unit.symbol},
@@ -338,6 +356,7 @@ data::ExitStatus observe(ObserveOptions options) {
          fmt::format("{} observation{}: {} (picture: {})", plateaus.size(), plateaus.size() == 1 ? "" : "s",
                      out.string(), observe_pictures(out).front().string()));
   json["warnings"] = warnings;
+  notes.insert(notes.begin(), log.notes.begin(), log.notes.end());
   json["notes"] = notes;
   print_json(options.common, json);
   return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;

@@ -6,8 +6,9 @@
 //   text       UTF-8, UTF-16, Latin-1, Shift-JIS; any line ends; zeros behind the end, as of a logger that lost power
 //   columns    parted by commas, semicolons, tabs, bars or blanks; "sep=;"; quotes; separators behind the last column
 //   numbers    decimal point or comma, thousands, exponents of Fortran: in `fields` as plain decimals
-//   missing    empty, nan, N/A, -, #N/A, NULL, 1.#QNAN, ****
+//   missing    empty, nan, N/A, -, ---.--, #N/A, #####, ?, NULL, 1.#QNAN, ****
 //   heading    behind any preamble, or in a comment; a unit in it, in a row below it, or in a line "# units: a [m]"
+//   blocks     the heading again, as where a logger appended to its file: joined, units converted to the first one's
 //   comments   lines that begin with '#', '%' or "//"
 //   LabVIEW    measurement files (.lvm) by their headers (lvm.hpp)
 #include <optional>
@@ -35,9 +36,13 @@ struct Csv {
   std::string no_time;            ///< why there is no column of times, where the file's form has one
   std::vector<std::string> took;  ///< how the table was read, where it is not plain CSV: "separated by semicolons"
 
-  /// By name, with or without its unit.
-  std::optional<std::size_t> find(std::string_view column) const;
-  /// Throws InputError (65) naming the columns that are there.
+  /// By name, with or without its unit; with Capitals::any, where none is spelled so, "Speed" for speed. Throws
+  /// InputError (65) where two columns have the name and differ.
+  enum class Capitals { as_written, any };
+  std::optional<std::size_t> find(std::string_view column, Capitals capitals = Capitals::as_written) const;
+  /// Whether two columns hold the same in every row.
+  bool same_values(std::size_t one, std::size_t other) const;
+  /// Whatever its capitals. Throws InputError (65) naming the columns that are there.
   std::size_t column(std::string_view name) const;
   /// Of a row's field. Throws InputError (65) with line and column name; NaN where there is no value.
   double number(const CsvRow& row, std::size_t column) const;

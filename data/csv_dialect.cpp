@@ -34,38 +34,68 @@ struct Fit {
   std::size_t fields = 1;
 };
 
-Fit fit_of(const std::vector<std::string_view>& lines, char separator) {
-  std::map<std::size_t, std::size_t> counts;
-  std::vector<std::vector<std::string>> split;
-  std::vector<bool> comment;
+struct SplitLine {
+  std::vector<std::string> fields;  ///< up to the last one that is not empty
+  std::size_t all = 0;              ///< with the empty ones behind
+  bool comment = false;
+};
+
+std::vector<SplitLine> split_lines(const std::vector<std::string_view>& lines, char separator) {
+  std::vector<SplitLine> split;
   for (std::string_view line : lines) {
     std::string_view rest;
-    comment.push_back(is_comment(line, rest));
-    split.push_back(split_line(comment.back() ? rest : line, separator));
-    while (split.back().size() > 1 && split.back().back().empty()) split.back().pop_back();  // trailing separators
-    if (!comment.back()) ++counts[split.back().size()];
+    const bool comment = is_comment(line, rest);
+    SplitLine one{.fields = split_line(comment ? rest : line, separator), .comment = comment};
+    one.all = one.fields.size();
+    while (one.fields.size() > 1 && one.fields.back().empty()) one.fields.pop_back();
+    split.push_back(std::move(one));
   }
-  Fit fit;
-  std::size_t most = 0, all = 0;
-  for (const auto& [count, times] : counts) {
-    all += times;
-    if (count > 1 && times >= most) {
-      most = times;
-      fit.fields = count;
+  return split;
+}
+
+/// The number of fields that most lines have, beyond one; `times` is in how many.
+std::size_t most_common(const std::map<std::size_t, std::size_t>& counts, std::size_t& times) {
+  std::size_t common = 1;
+  times = 0;
+  for (const auto& [count, here] : counts)
+    if (count > 1 && here >= times) {
+      times = here;
+      common = count;
     }
-  }
-  if (most == 0) return fit;
-  fit.lines = static_cast<double>(most) / static_cast<double>(all);
-  std::size_t numbers = 0, fields = 0;
-  for (std::size_t i = 0; i < split.size(); ++i) {
-    if (split[i].size() != fit.fields) continue;
+  return common;
+}
+
+/// Fields behind the last one that is not empty may be of the table, where its last column is mostly empty, or not.
+Fit fit_of(const std::vector<std::string_view>& lines, char separator) {
+  const std::vector<SplitLine> split = split_lines(lines, separator);
+  std::map<std::size_t, std::size_t> filled, with_empty;
+  std::size_t rows = 0, times = 0, ignored = 0;
+  for (const SplitLine& line : split)
+    if (!line.comment) {
+      ++filled[line.fields.size()];
+      ++with_empty[line.all];
+      ++rows;
+    }
+  Fit fit;
+  fit.fields = most_common(filled, times);
+  if (times == 0) return fit;
+  const std::size_t wide = std::max(fit.fields, most_common(with_empty, ignored));
+  const auto of_table = [&](const SplitLine& line) {
+    return line.fields.size() >= fit.fields && line.fields.size() <= wide &&
+           (line.fields.size() == fit.fields || line.all == wide);
+  };
+  std::size_t numbers = 0, fields = 0, matching = 0;
+  for (const SplitLine& line : split) {
+    if (!of_table(line)) continue;
+    matching += line.comment ? 0 : 1;
     std::size_t here = 0;
-    for (const std::string& field : split[i]) here += numeric(field, separator) ? 1 : 0;
+    for (const std::string& field : line.fields) here += numeric(field, separator) ? 1 : 0;
     if (here == 0) fit.has_heading = true;
-    if (comment[i] || here == 0) continue;
+    if (line.comment || here == 0) continue;
     numbers += here;
-    fields += fit.fields;
+    fields += line.fields.size();
   }
+  fit.lines = static_cast<double>(matching) / static_cast<double>(rows);
   if (fields > 0) fit.share = static_cast<double>(numbers) / static_cast<double>(fields);
   return fit;
 }
@@ -162,8 +192,11 @@ Dialect find_dialect(std::string_view text) {
     const Fit fit = fit_of(lines, separator);
     if (fit.fields < 2) continue;
     // Blanks stand in names and texts, too: they part columns only where nothing else does.
-    const double worth = separator == ' '  ? (fit.share > 0.99 && fit.has_heading && fit.lines > 0.9 ? 0.01 : -1.0)
-                         : fit.has_heading ? 1.0 + fit.share
+    // A separator that stands in a few remarks parts few lines.
+    const double worth = separator == ' '  ? (fit.share <= 0.99 || fit.lines <= 0.9 ? -1.0
+                                              : fit.has_heading                     ? 0.01
+                                                                                    : 0.005)
+                         : fit.has_heading ? 1.0 + fit.share + fit.lines
                                            : 0.02 + 0.5 * fit.share * fit.lines;
     if (worth > best) {
       best = worth;

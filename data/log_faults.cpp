@@ -141,15 +141,15 @@ std::pair<std::size_t, std::size_t> idle_part(const std::vector<double>& values)
   const auto high = sizes.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(sizes.size() - 1));
   std::nth_element(sizes.begin(), high, sizes.end());
   const double low = 0.1 * *high;
-  std::pair<std::size_t, std::size_t> longest{0, 0};
+  std::pair<std::size_t, std::size_t> idle{0, 0};
   for (std::size_t from = 0; from < values.size(); ++from) {
     std::size_t to = from;
     while (to < values.size() && std::abs(values[to]) < low) ++to;
-    if (to - from > longest.second - longest.first) longest = {from, to};
+    if (to - from > idle.second - idle.first) idle = {from, to};
     from = std::max(from, to);
   }
-  const std::size_t count = longest.second - longest.first;
-  return count >= 5 && 50 * count >= values.size() ? longest : std::pair<std::size_t, std::size_t>{0, 0};
+  const std::size_t count = idle.second - idle.first;
+  return count >= 5 && 50 * count >= values.size() ? idle : std::pair<std::size_t, std::size_t>{0, 0};
 }
 
 }  // namespace

@@ -42,6 +42,10 @@ bool shares_stamps(const std::vector<double>& times) {
          std::is_sorted(times.begin(), times.end());
 }
 
+bool repeats_stamps(const std::vector<double>& times) {
+  return std::is_sorted(times.begin(), times.end()) && std::adjacent_find(times.begin(), times.end()) != times.end();
+}
+
 std::string spread_stamps(std::vector<double>& times) {
   const std::vector<std::size_t> starts = starts_of(times);
   if (starts.size() < 3) return "";  // no interval to tell
@@ -58,9 +62,14 @@ std::string spread_stamps(std::vector<double>& times) {
     for (std::size_t i = 0; i < times.size(); ++i) times[i] = start + interval * static_cast<double>(i);
     return fmt::format("samples that share a stamp spread evenly, {:.4g} s apart", interval);
   }
+  // A longer one is a gap in the log.
+  std::vector<double> widths;
+  for (std::size_t k = 1; k < starts.size(); ++k) widths.push_back(times[starts[k]] - times[starts[k - 1]]);
+  std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2), widths.end());
+  const double usual = widths[widths.size() / 2];
   for (std::size_t k = 0; k < starts.size(); ++k) {
     const std::size_t end = k + 1 < starts.size() ? starts[k + 1] : times.size();
-    const double width = k + 1 < starts.size() ? times[end] - times[starts[k]] : step;
+    const double width = k + 1 < starts.size() ? std::min(usual, times[end] - times[starts[k]]) : step;
     const double first = times[starts[k]];
     for (std::size_t i = starts[k]; i < end; ++i)
       times[i] = first + width * static_cast<double>(i - starts[k]) / static_cast<double>(end - starts[k]);

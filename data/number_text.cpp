@@ -112,8 +112,8 @@ std::string lower_case(std::string_view text) {
 
 bool is_missing(std::string_view given) {
   const std::string_view text = trimmed(given);
-  if (text.find_first_not_of('*') == std::string_view::npos || text.find_first_not_of('-') == std::string_view::npos)
-    return true;  // also when it is empty
+  for (const char* signs : {"*", "-.", "#", "?"})
+    if (text.find_first_not_of(signs) == std::string_view::npos) return true;  // also when it is empty
   std::string lower = lower_case(text);
   if (lower.front() == '-' || lower.front() == '+') lower.erase(0, 1);
   static constexpr std::array known{
@@ -122,6 +122,16 @@ bool is_missing(std::string_view given) {
       "1.#snan", "1.#ind", "1.#inf", "nan(ind)", "\xe2\x80\x93", "\xe2\x80\x94", "."};
   if (std::find(known.begin(), known.end(), lower) != known.end()) return true;
   return lower.starts_with("1.#") || lower.starts_with("1,#");
+}
+
+bool is_overload(std::string_view given) {
+  std::string word = lower_case(trimmed(given));
+  if (!word.empty() && word.find_first_not_of('+') == std::string::npos) return true;
+  std::erase_if(word, [](char c) { return c == ' ' || c == '.' || c == '+' || c == '-'; });
+  static constexpr std::array known{"ol",    "ovl",        "ovld",      "ovf",       "ovr",        "ofl",
+                                    "over",  "overload",   "overflow",  "overrange", "outofrange", "overlimit",
+                                    "under", "underrange", "underflow", "inf",       "infinity",   "1#inf"};
+  return std::find(known.begin(), known.end(), word) != known.end();
 }
 
 Evidence decimal_evidence(std::string_view text) {

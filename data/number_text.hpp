@@ -13,8 +13,11 @@ enum class DecimalMark { point, comma };
 /// an apostrophe or a hard blank, and, where the number has both marks, by the mark that is not the decimal one.
 std::optional<std::string> plain_number(std::string_view text, DecimalMark mark);
 
-/// Whether the text says that there is no value: empty, nan, N/A, -, #N/A, NULL, 1.#QNAN, ****.
+/// Whether the text says that there is no value: empty, nan, N/A, -, ---.--, #N/A, #####, ?, NULL, 1.#QNAN, ****.
 bool is_missing(std::string_view text);
+
+/// Whether the text says that a meter was beyond its range: OL, OVL, Over, +++++, inf.
+bool is_overload(std::string_view text);
 
 /// What a number with a comma or a point in it says of the decimal mark.
 enum class Evidence {

@@ -59,7 +59,7 @@ ObservationSet read_observations(const std::string& path, const Study& study,
   std::vector<std::optional<std::size_t>> error_columns;  // none: MissingErrors::nan
   for (const Control& control : study.controls) {
     const bool set_once = settings.contains(control.name);
-    if (set_once && csv.find(control.name))
+    if (set_once && csv.find(control.name, Csv::Capitals::any))
       throw InputError(ExitStatus::bad_data,
                        Problem{csv.file, fmt::format("has a column {}, which the study also sets", control.name),
                                "keep one of the two"});
@@ -67,10 +67,10 @@ ObservationSet read_observations(const std::string& path, const Study& study,
   }
   for (std::size_t i = 0; i < study.outputs.size(); ++i) {
     const std::string& name = study.outputs[i].name;
-    if (!csv.find(name) && !csv.find(name + "_se")) continue;
+    if (!csv.find(name, Csv::Capitals::any) && !csv.find(name + "_se", Csv::Capitals::any)) continue;
     set.outputs.push_back(i);
     value_columns.push_back(csv.column(name));
-    const bool without = missing == MissingErrors::nan && !csv.find(name + "_se");
+    const bool without = missing == MissingErrors::nan && !csv.find(name + "_se", Csv::Capitals::any);
     error_columns.push_back(without ? std::nullopt : std::optional(csv.column(name + "_se")));
   }
   if (set.outputs.empty() && !study.outputs.empty()) csv.column(study.outputs.front().name);  // says what is missing

@@ -264,7 +264,8 @@ std::vector<Problem> outside_training_range(const Study& study) {
       assert(point.controls.size() == study.controls.size());
       for (std::size_t i = 0; i < study.controls.size(); ++i) {
         const Control& control = study.controls[i];
-        const double slack = 1e-9 * (control.high - control.low);
+        // Speeds converted from another unit are rounded there: 0.83333 Hz are 49.9998 rpm.
+        const double slack = 1e-4 * (control.high - control.low);
         if (point.controls[i] >= control.low - slack && point.controls[i] <= control.high + slack) continue;
         problems.push_back(
             {fmt::format("{}:{}: {}", shown_path(set.file), point.line, control.name),

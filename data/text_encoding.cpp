@@ -9,6 +9,7 @@
 #include <cerrno>
 
 #include "data/error.hpp"
+#include "data/unit_text.hpp"
 
 namespace data {
 namespace {
@@ -98,6 +99,34 @@ std::string from_shift_jis(std::string_view bytes, const std::string& name) {
   return text;
 }
 
+/// Units in brackets that are not ASCII, in the beginning of a text.
+std::size_t known_units(std::string_view text) {
+  std::size_t known = 0;
+  text = text.substr(0, 20000);
+  for (const char* marks : {"[]", "()"})
+    for (std::size_t open = 0; (open = text.find(marks[0], open)) != std::string_view::npos; ++open) {
+      const std::string_view unit = text.substr(open + 1, text.find(marks[1], open) - open - 1);
+      const bool ascii =
+          std::all_of(unit.begin(), unit.end(), [](char c) { return static_cast<std::uint8_t>(c) < 0x80; });
+      known += !ascii && unit.size() < 40 && is_unit(unit);
+    }
+  return known;
+}
+
+/// Whether what may be Shift-JIS is rather Windows-1252: more of its units are known so, or its pairs of bytes are a
+/// quotation mark or a dash before a letter, as in "Operator's".
+bool is_rather_windows_1252(std::string_view bytes, const std::string& japanese) {
+  const std::size_t western = known_units(from_windows_1252(bytes)), eastern = known_units(japanese);
+  if (western != eastern) return western > eastern;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    const std::uint8_t c = byte(bytes, at);
+    if (c < 0x80 || c > 0x9f) continue;
+    const bool mark = c == 0x80 || c == 0x85 || (c >= 0x91 && c <= 0x97) || c == 0x99;
+    if (!mark || at + 1 == bytes.size() || byte(bytes, at + 1) >= 0x80) return false;
+  }
+  return true;
+}
+
 /// ASCII in UTF-16 has a zero in every other byte.
 bool looks_like_utf16(std::string_view bytes, bool big) {
   const std::size_t pairs = std::min<std::size_t>(bytes.size() / 2, 256);
@@ -149,7 +178,10 @@ DecodedText decode_text(std::string_view bytes, const std::string& name) {
   if (looks_like_utf16(bytes, false)) return {from_utf16(bytes, false, name), "UTF-16, little endian"};
   if (looks_like_utf16(bytes, true)) return {from_utf16(bytes, true, name), "UTF-16, big endian"};
   if (is_utf8(bytes)) return {std::string(bytes), ""};
-  if (is_shift_jis(bytes)) return {from_shift_jis(bytes, name), "Shift-JIS"};
+  if (is_shift_jis(bytes)) {
+    std::string japanese = from_shift_jis(bytes, name);
+    if (!is_rather_windows_1252(bytes, japanese)) return {std::move(japanese), "Shift-JIS"};
+  }
   return {from_windows_1252(bytes), "Latin-1"};
 }
 

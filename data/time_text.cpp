@@ -47,6 +47,15 @@ class Cursor {
     return value;
   }
   std::string_view rest() const { return text_; }
+  /// The letters at the front, those that are not ASCII among them.
+  std::string_view word() {
+    std::size_t count = 0;
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80) != 0; };
+    while (count < text_.size() && is_letter(text_[count])) ++count;
+    const std::string_view found = text_.substr(0, count);
+    text_.remove_prefix(count);
+    return found;
+  }
 
  private:
   std::string_view text_;
@@ -63,6 +72,66 @@ std::optional<Date> days(int year, int month, int day) {
                                          std::chrono::day(static_cast<unsigned>(day))};
   if (!date.ok()) return {};
   return Date{86400.0 * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count()), false};
+}
+
+/// The month that a word begins with, in English or German; 0: none.
+int month_of(std::string_view word) {
+  const std::string name = lower_case(word);
+  static constexpr std::array months{"jan", "feb", "mar", "apr", "may", "jun",
+                                     "jul", "aug", "sep", "oct", "nov", "dec"};
+  for (std::size_t i = 0; i < months.size(); ++i)
+    if (name.starts_with(months[i])) return static_cast<int>(i) + 1;
+  for (const auto& [german, month] : {std::pair("mai", 5), std::pair("okt", 10), std::pair("dez", 12),
+                                      std::pair("m\xc3\xa4r", 3), std::pair("mrz", 3)})
+    if (name.starts_with(german)) return month;
+  return 0;
+}
+
+/// 13-May-2024, 13 May 2024, May 13, 2024.
+std::optional<Date> read_date_in_words(Cursor& at) {
+  Cursor ahead = at;
+  const auto mark = [&] {
+    while (ahead.front() == '-' || ahead.front() == '/' || ahead.front() == '.' || ahead.front() == ',' ||
+           ahead.front() == ' ')
+      ahead.take(ahead.front());
+  };
+  auto day = ahead.whole(2);
+  mark();
+  const int month = month_of(ahead.word());
+  if (month == 0) return {};
+  mark();
+  if (!day) day = ahead.whole(2);
+  mark();
+  const auto year = ahead.whole(4);
+  if (!day || !year) return {};
+  const auto date = days(*year < 100 ? 2000 + *year : *year, month, *day);
+  if (date) at = ahead;
+  return date;
+}
+
+/// 20240513, before T, a blank or _ and six digits of a time.
+std::optional<ClockTime> read_compact(std::string_view text) {
+  const auto digits = [&](std::size_t from, std::size_t count) {
+    int value = 0;
+    for (std::size_t i = from; i < from + count; ++i) {
+      if (text[i] < '0' || text[i] > '9') return -1;
+      value = 10 * value + (text[i] - '0');
+    }
+    return value;
+  };
+  if (text.size() < 15 || (text[8] != 'T' && text[8] != ' ' && text[8] != '_')) return {};
+  const int day = digits(0, 8), time = digits(9, 6);
+  if (day < 19000000 || day >= 22000000 || time < 0 || time / 100 % 100 > 59 || time % 100 > 60 || time / 10000 > 24)
+    return {};
+  const auto date = days(day / 10000, day / 100 % 100, day % 100);
+  if (!date) return {};
+  Cursor rest(text.substr(15));
+  const double fraction = rest.fraction();
+  if (rest.front() == 'Z') rest.take('Z');
+  if (!rest.at_end()) return {};
+  return ClockTime{
+      .seconds = date->seconds + 3600.0 * (time / 10000) + 60.0 * (time / 100 % 100) + time % 100 + fraction,
+      .dated = true};
 }
 
 /// The date at the front; the cursor stands behind it, or where it was.
@@ -97,11 +166,24 @@ std::optional<Date> read_date(Cursor& at) {
 
 }  // namespace
 
+namespace {
+
+/// AM, pm, a.m.
+bool is_half_of_day(std::string_view text) {
+  std::string word = lower_case(text);
+  std::erase(word, '.');
+  return word == "am" || word == "pm";
+}
+
+}  // namespace
+
 std::optional<ClockTime> read_time(std::string_view text) {
-  if (text.find(':') == std::string_view::npos) return {};
+  if (text.find(':') == std::string_view::npos) return read_compact(trimmed(text));
   Cursor at(trimmed(text));
   ClockTime time;
-  if (const auto date = read_date(at)) {
+  auto date = read_date(at);
+  if (!date) date = read_date_in_words(at);
+  if (date) {
     time.dated = !date->either;
     time.day_or_month = date->either;
     time.seconds = date->seconds;
@@ -118,6 +200,11 @@ std::optional<ClockTime> read_time(std::string_view text) {
     const auto whole = at.whole(2);
     if (!whole || *whole > 60) return {};
     seconds = *whole + at.fraction();
+    if (at.take(':')) {  // and milliseconds
+      const auto thousandths = at.whole(3);
+      if (!thousandths || at.taken() != 3) return {};
+      seconds += 1e-3 * *thousandths;
+    }
   } else if (at.front() == '.' || at.front() == ',') {  // minutes and seconds
     seconds = *minutes + at.fraction() + 60.0 * *hours;
     if (!at.at_end() || time.dated || time.day_or_month) return {};
@@ -127,11 +214,10 @@ std::optional<ClockTime> read_time(std::string_view text) {
     time.two_parts = !time.dated && !time.day_or_month;
   }
   at.blanks();
-  if (at.rest() == "PM" || at.rest() == "pm" || at.rest() == "AM" || at.rest() == "am") {
+  if (is_half_of_day(at.rest())) {
     if (*hours < 1 || *hours > 12) return {};
     hours = *hours % 12 + (at.front() == 'P' || at.front() == 'p' ? 12 : 0);
-  } else if (at.take('Z')) {
-    if (!at.at_end()) return {};
+  } else if (at.rest() == "Z" || at.rest() == "UTC" || at.rest() == "GMT") {
   } else if (at.front() == '+' || at.front() == '-') {
     const double sign = at.take('-') ? -1.0 : (at.take('+'), 1.0);
     const auto zone = at.whole(4);

@@ -28,10 +28,14 @@ struct LogColumns {
                  .unit = "",
                  .usual = "s",
                  .also = {"timestamp", "x_value", "time stamp", "datetime", "date time", "elapsed time", "zeit",
-                          "zeitstempel", "t"}};
+                          "zeitstempel", "temps", "t"}};
   /// No usual unit: it must be said somewhere.
-  LogColumn torque{.name = "torque", .unit = "", .usual = "", .also = {"drehmoment", "moment", "m"}};
-  LogColumn speed{.name = "rpm", .unit = "", .usual = "rpm", .also = {"speed", "rotational speed", "drehzahl", "n"}};
+  LogColumn torque{.name = "torque", .unit = "", .usual = "", .also = {"drehmoment", "moment", "couple", "m"}};
+  LogColumn speed{.name = "rpm",
+                  .unit = "",
+                  .usual = "rpm",
+                  .also = {"speed", "rotational speed", "rotation speed", "velocity", "angular velocity", "drehzahl",
+                           "vitesse", "omega", "n"}};
   std::optional<double> constant_speed;  ///< rad/s, of a log that has no column for it
   std::optional<double> rate;            ///< 1/s: the samples follow each other so, whatever their stamps say
 };
@@ -39,18 +43,21 @@ struct LogColumns {
 /// Samples in SI, in the order of time.
 struct TorqueLog {
   std::string file;
-  Unit torque_unit, speed_unit;   ///< the log's own
-  std::vector<double> time;       ///< s
-  std::vector<double> torque;     ///< N m
-  std::vector<double> speed;      ///< rad/s
-  std::size_t missing = 0;        ///< samples left out because a field was empty or NaN
-  std::vector<std::string> took;  ///< how the file was read, where it is not plain CSV in seconds
-  double interval = 0.0;          ///< s, median between samples
-  double uneven_share = 0.0;      ///< share of the intervals that differ from the median by more than a fifth
+  Unit torque_unit, speed_unit;       ///< the log's own
+  std::vector<double> time;           ///< s
+  std::vector<double> torque;         ///< N m
+  std::vector<double> speed;          ///< rad/s
+  std::size_t missing = 0;            ///< samples left out because a field was empty or NaN
+  std::vector<std::string> took;      ///< how the file was read, where it is not plain CSV in seconds
+  std::vector<std::string> notes;     ///< what was assumed of it, in words: the unit of its times
+  std::vector<std::string> warnings;  ///< what is doubtful in its fields, in words: a meter beyond its range
+  double interval = 0.0;              ///< s, median between samples
+  double uneven_share = 0.0;          ///< share of the intervals that differ from the median by more than a fifth
 };
 
 /// Reads a log. Times are numbers with a unit, times of day or dates with times; those that start again at midnight go
-/// on, and samples that share a stamp are spread evenly (data/log_times.hpp). Throws InputError: 66 missing; 65 missing
+/// on, and samples that share a stamp are spread evenly (data/log_times.hpp). Times of any clock count from the first.
+/// Numbers without a unit are seconds where they can be; that stands in `notes`. Throws InputError: 66 missing; 65 missing
 /// column, unknown unit, a time that runs backwards, no samples.
 TorqueLog read_torque_log(const std::string& path, const LogColumns& columns = {});
 

@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <map>
 
 #include "data/csv.hpp"
 #include "data/error.hpp"
@@ -18,6 +21,11 @@ namespace {
 
 std::string heading_place(const Csv& csv) { return fmt::format("{}:{}", csv.file, csv.header_line); }
 
+bool is_named(const std::string& name, const LogColumn& wanted) {
+  const auto same = [&](const std::string& other) { return lower_case(name) == lower_case(other); };
+  return same(wanted.name) || std::any_of(wanted.also.begin(), wanted.also.end(), same);
+}
+
 /// The column of a quantity, by its name or, where there is none, by one of the other names.
 std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::string& option) {
   const auto named = [&](std::size_t i, const std::string& name) {
@@ -25,10 +33,19 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::stri
   };
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < csv.columns.size(); ++i)
-    if (named(i, wanted.name)) return i;
-  for (std::size_t i = 0; i < csv.columns.size(); ++i)
-    if (std::any_of(wanted.also.begin(), wanted.also.end(), [&](const std::string& name) { return named(i, name); }))
-      found.push_back(i);
+    if (named(i, wanted.name)) found.push_back(i);
+  if (found.empty())
+    for (std::size_t i = 0; i < csv.columns.size(); ++i)
+      if (std::any_of(wanted.also.begin(), wanted.also.end(), [&](const std::string& name) { return named(i, name); }))
+        found.push_back(i);
+  // "t" and "T" are a time and a torque.
+  const auto as_written = [&](std::size_t i) {
+    return std::find(wanted.also.begin(), wanted.also.end(), csv.columns[i]) != wanted.also.end();
+  };
+  if (found.size() > 1 && std::count_if(found.begin(), found.end(), as_written) == 1)
+    found = {*std::find_if(found.begin(), found.end(), as_written)};
+  while (found.size() > 1 && csv.headings[found[0]] == csv.headings[found[1]] && csv.same_values(found[0], found[1]))
+    found.erase(found.begin() + 1);
   if (found.size() == 1) return found.front();
   if (found.size() > 1)
     refuse_data(heading_place(csv),
@@ -46,6 +63,21 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::stri
       remedy);
 }
 
+/// What a unit of speed amounts to in rpm, where UDUNITS-2 reads it as so many of them: 60 for Hz.
+std::optional<double> multiple_of_rpm(const Unit& unit) {
+  if (!unit.symbol.ends_with(" rpm")) return {};
+  return std::strtod(unit.symbol.c_str(), nullptr);
+}
+
+/// A unit for messages: revolutions per second as rpm, and what UDUNITS-2 reads as a multiple of another unit in the
+/// user's own words, "oz-in".
+Unit shown_unit(const Unit& meant, const std::string& given) {
+  if (multiple_of_rpm(meant)) return parse_unit("rpm");
+  Unit unit = meant;
+  if (!unit.symbol.empty() && unit.symbol.front() >= '0' && unit.symbol.front() <= '9') unit.symbol = trimmed(given);
+  return unit;
+}
+
 Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
                const std::pair<std::string, std::string>& of) {
   const auto& [dimension, option] = of;
@@ -54,7 +86,7 @@ Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
   if (symbol.empty())
     refuse_data(heading_place(csv), fmt::format("the column '{}' has no unit", csv.headings[column]),
                 fmt::format("write it in the header, '{} [N m]', or give --{}-unit", wanted.name, option));
-  if (auto unit = unit_meant(symbol, dimension)) return unit->symbol == "60 rpm" ? parse_unit("rpm") : *unit;
+  if (const auto unit = unit_meant(symbol, dimension)) return shown_unit(*unit, symbol);
   refuse_data(heading_place(csv), fmt::format("'{}' is not a unit of {}", symbol, option),
               fmt::format("a unit like '{}'; --{}-unit overrides the header", dimension, option));
 }
@@ -63,31 +95,117 @@ Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
 double per_shown_unit(const Csv& csv, std::size_t column, const LogColumn& wanted) {
   const std::string& symbol = wanted.unit.empty() ? csv.units[column] : wanted.unit;
   const auto unit = unit_meant(symbol, "rpm");
-  return unit && unit->symbol == "60 rpm" ? 60.0 : 1.0;
+  return unit ? multiple_of_rpm(*unit).value_or(1.0) : 1.0;
+}
+
+/// Headings like "Torque_Nm" of the three quantities are parted into name and unit.
+void part_headings(Csv& csv, const LogColumns& columns) {
+  for (const auto& [wanted, dimension] :
+       {std::pair(&columns.time, "s"), {&columns.torque, "N m"}, {&columns.speed, "rpm"}})
+    for (std::size_t i = 0; i < csv.columns.size(); ++i) {
+      if (is_named(csv.columns[i], *wanted)) continue;
+      const auto split = heading_with_unit(csv.headings[i], dimension);
+      if (!split || !is_named(split->name, *wanted)) continue;
+      csv.columns[i] = split->name;
+      csv.units[i] = split->unit;
+    }
+}
+
+double median_interval(const std::vector<double>& times) {
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < times.size(); ++i) gaps.push_back(times[i] - times[i - 1]);
+  if (gaps.empty()) return 0.0;
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  return *middle;
+}
+
+/// Median interval, and the share of those that differ from it.
+void check_spacing(TorqueLog& log) {
+  log.interval = median_interval(log.time);
+  std::size_t uneven = 0;
+  for (std::size_t i = 1; i < log.time.size(); ++i)
+    uneven += std::abs(log.time[i] - log.time[i - 1] - log.interval) > 0.2 * log.interval;
+  log.uneven_share = static_cast<double>(uneven) / static_cast<double>(log.time.size() - 1);
 }
 
 /// The stamps of all rows, s; NaN where there is none.
 struct Stamps {
   std::vector<double> seconds;
-  bool of_day = false;
+  bool clock = false;    ///< times of day, with or without a date
+  bool of_day = false;   ///< without
+  bool assumed = false;  ///< numbers whose unit nothing states
   std::vector<std::string> took;
 };
+
+/// Seconds since the beginning of some calendar, not of the log: from three years on.
+constexpr double of_calendar = 1e8;
+
+const char* const say_time_unit =
+    "say which with --time-unit s, ms, min or d, or give the samples per second with --rate";
+
+/// Numbers without a unit are taken as seconds where they can be seconds: not the days, milliseconds and ticks of
+/// computers' clocks.
+void refuse_no_seconds(const Csv& csv, std::size_t column, const std::vector<double>& times) {
+  const std::string place = csv.place(csv.rows.front(), column);
+  const double first = times.front(), last = times.back();
+  if (first > 2e4 && first < 8e4 && last - first < 1.0)
+    refuse_data(place,
+                fmt::format("{} looks like a spreadsheet's day, not like seconds", csv.rows.front().fields[column]),
+                "say which with --time-unit d or --time-unit s");
+  if (first > 1e10)
+    refuse_data(
+        place,
+        fmt::format("has no unit, and {} is too large for the seconds of a clock: these count from 1970 or 1904",
+                    csv.rows.front().fields[column]),
+        say_time_unit);
+  const double interval = median_interval(times);
+  if (!(interval < 1e-6) && !(interval > 100.0)) return;
+  refuse_data(place,
+              fmt::format("has no unit, and taken as seconds the samples lie {:.3g} s apart, which is {}", interval,
+                          interval > 100.0 ? "more than 100 s" : "less than 1e-6 s"),
+              say_time_unit);
+}
+
+std::string assumed_seconds(const std::vector<double>& times) {
+  return fmt::format(
+      "time taken as s, as nothing states its unit: {} samples every {:.4g} s, {:.6g} s in all "
+      "(--time-unit says otherwise)",
+      times.size(), median_interval(times), times.back() - times.front());
+}
+
+/// The column of dates beside one of times of day.
+std::optional<std::size_t> find_dates(const Csv& csv, std::size_t times, const CsvRow& first) {
+  for (std::size_t i = 0; i < csv.columns.size(); ++i) {
+    const std::string name = lower_case(csv.columns[i]);
+    if (i == times || (name != "date" && name != "datum")) continue;
+    const auto both = read_time(first.fields[i] + " " + first.fields[times]);
+    if (both && both->dated && !read_time(first.fields[times])->dated) return i;
+  }
+  return {};
+}
 
 Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) {
   Stamps stamps;
   const auto first = std::find_if(csv.rows.begin(), csv.rows.end(),
                                   [&](const CsvRow& row) { return !is_missing(row.fields[column]); });
-  const bool clock = first != csv.rows.end() && read_time(first->fields[column]).has_value();
-  const Unit unit = clock ? parse_unit("s") : find_unit(csv, column, wanted, {"s", "time"});
+  stamps.clock = first != csv.rows.end() && read_time(first->fields[column]).has_value();
+  stamps.assumed = !stamps.clock && wanted.unit.empty() && csv.units[column].empty();
+  const Unit unit = stamps.clock ? parse_unit("s") : find_unit(csv, column, wanted, {"s", "time"});
+  const std::optional<std::size_t> dates = stamps.clock ? find_dates(csv, column, *first) : std::nullopt;
+  if (dates) stamps.took.push_back(fmt::format("days by the column '{}'", csv.headings[*dates]));
   bool dated = false, either = false;
   for (const CsvRow& row : csv.rows) {
     const std::string& field = row.fields[column];
     if (is_missing(field)) {
       stamps.seconds.push_back(std::numeric_limits<double>::quiet_NaN());
-    } else if (!clock) {
+    } else if (!stamps.clock) {
       stamps.seconds.push_back(unit.to_si(csv.number(row, column)));
     } else {
-      const auto time = read_time(field);
+      const auto time = read_time(dates ? row.fields[*dates] + " " + field : field);
+      if (!time && dates)
+        refuse_data(csv.place(row, *dates), fmt::format("'{}' is no date like those before", row.fields[*dates]),
+                    "write every date alike");
       if (!time)
         refuse_data(csv.place(row, column), fmt::format("'{}' is no time like those before", field),
                     "write every time alike");
@@ -99,32 +217,70 @@ Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) 
       stamps.seconds.push_back(time->seconds);
     }
   }
-  if (clock) stamps.took.push_back(dated ? "dates and times" : "times of day");
-  stamps.of_day = clock && !dated;
+  if (stamps.clock) stamps.took.push_back(dated ? "dates and times" : "times of day");
+  stamps.of_day = stamps.clock && !dated;
   if (dated && either)
     refuse_data(csv.place(*first, column), "has dates whose day and month cannot be told apart beside others",
                 "write dates like 2024-05-31");
-  // Days since 1900, as spreadsheets count them, in a column without a unit.
-  const bool no_unit = !clock && wanted.unit.empty() && csv.units[column].empty();
-  if (no_unit && csv.rows.size() > 2 && stamps.seconds.front() > 2e4 && stamps.seconds.front() < 8e4 &&
-      stamps.seconds.back() - stamps.seconds.front() < 1.0)
-    refuse_data(csv.place(csv.rows.front(), column),
-                fmt::format("{} looks like a spreadsheet's day, not like seconds", csv.rows.front().fields[column]),
-                "say which with --time-unit d or --time-unit s");
   return stamps;
 }
 
-/// Median interval, and the share of those that differ from it.
-void check_spacing(TorqueLog& log) {
-  std::vector<double> gaps;
-  for (std::size_t i = 1; i < log.time.size(); ++i) gaps.push_back(log.time[i] - log.time[i - 1]);
-  if (gaps.empty()) return;
-  std::vector<double> sorted = gaps;
-  std::sort(sorted.begin(), sorted.end());
-  log.interval = sorted[sorted.size() / 2];
-  const auto uneven = std::count_if(gaps.begin(), gaps.end(),
-                                    [&](double gap) { return std::abs(gap - log.interval) > 0.2 * log.interval; });
-  log.uneven_share = static_cast<double>(uneven) / static_cast<double>(gaps.size());
+/// Whether lines are there twice, one behind the other: then equal stamps are no clock's doing.
+bool repeats_lines(const Csv& csv) {
+  return std::adjacent_find(csv.rows.begin(), csv.rows.end(), [](const CsvRow& one, const CsvRow& other) {
+           return one.fields == other.fields;
+         }) != csv.rows.end();
+}
+
+/// Words in the fields of a column that is to hold numbers, with how often and where first.
+struct Words {
+  std::map<std::string, std::size_t> counts;
+  const CsvRow* first = nullptr;
+  std::size_t total = 0;
+  void add(const std::string& word, const CsvRow& row) {
+    ++counts[word];
+    ++total;
+    if (first == nullptr) first = &row;
+  }
+  std::string list() const {
+    constexpr std::size_t shown = 10;
+    std::vector<std::string> texts;
+    for (const auto& [word, count] : counts)
+      if (texts.size() < shown) texts.push_back(fmt::format("'{}' ({})", word, count));
+    return fmt::format("{}{}", fmt::join(texts, ", "), counts.size() > shown ? ", ..." : "");
+  }
+};
+
+bool is_plain_number(const std::string& field) {
+  double value = 0.0;
+  const char* const end = field.data() + field.size();
+  const auto [rest, error] = std::from_chars(field.data() + (field.starts_with('+') ? 1 : 0), end, value);
+  return rest == end && error != std::errc::invalid_argument && std::isfinite(value);
+}
+
+/// Takes a meter's words for "beyond my range" out of a column, with a warning. Throws InputError (65) with all other
+/// words that are neither numbers nor say that there is no value.
+void take_words(Csv& csv, std::size_t column, TorqueLog& log) {
+  Words beyond, others;
+  for (CsvRow& row : csv.rows) {
+    std::string& field = row.fields[column];
+    if (is_plain_number(field)) continue;
+    if (is_overload(field)) {
+      beyond.add(field, row);
+      field.clear();
+    } else if (!is_missing(field)) {
+      others.add(field, row);
+    }
+  }
+  if (others.total > 1)
+    refuse_data(csv.place(*others.first, column),
+                fmt::format("{} fields from here on are no numbers: {}", others.total, others.list()),
+                "write numbers with a decimal point, and nothing where there is no value");
+  if (beyond.total > 0)
+    log.warnings.push_back(
+        fmt::format("{}: {} samples that say the meter was beyond its range, {}, are left out, the first "
+                    "in line {}: the mean of a hold with them is too near to 0",
+                    csv.columns[column], beyond.total, beyond.list(), beyond.first->line));
 }
 
 /// The times of the rows that have one, made good; rows without stay NaN.
@@ -140,10 +296,15 @@ std::vector<double> times_of(const Csv& csv, std::size_t column, const LogColumn
   for (const double one : stamps.seconds)
     if (std::isfinite(one)) there.push_back(one);
   if (pass_midnight(there, stamps.of_day) > 0) log.took.push_back("times that go on past midnight");
-  if (shares_stamps(there))
+  if (shares_stamps(there) || (repeats_stamps(there) && !repeats_lines(csv)))
     if (const std::string how = spread_stamps(there); !how.empty()) log.took.push_back(how);
-  const bool from_zero = !log.took.empty() && !there.empty() && !stamps.took.empty();
-  const double start = from_zero ? there.front() : 0.0;
+  if (stamps.assumed && there.size() > 2) {
+    refuse_no_seconds(csv, column, there);
+    log.notes.push_back(assumed_seconds(there));
+  }
+  const bool of_clock = !there.empty() && (stamps.clock || std::abs(there.front()) > of_calendar);
+  if (of_clock && !stamps.clock) log.took.push_back("times of a clock, counted from the first");
+  const double start = of_clock ? there.front() : 0.0;
   std::size_t next = 0;
   for (double& one : stamps.seconds)
     if (std::isfinite(one)) one = there[next++] - start;
@@ -153,7 +314,8 @@ std::vector<double> times_of(const Csv& csv, std::size_t column, const LogColumn
 }  // namespace
 
 TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
-  const Csv csv = read_csv(path);
+  Csv csv = read_csv(path);
+  part_headings(csv, columns);
   TorqueLog log{.file = csv.file};
   log.took = csv.took;
   const std::size_t time = columns.rate ? 0 : find_column(csv, columns.time, "time");
@@ -161,12 +323,15 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
   log.torque_unit = find_unit(csv, torque, columns.torque, {"N m", "torque"});
   std::optional<std::size_t> speed;
   double in_unit = 1.0;
-  log.speed_unit = parse_unit(columns.speed.unit.empty() ? "rpm" : columns.speed.unit);
+  const std::string given_speed = columns.speed.unit.empty() ? "rpm" : columns.speed.unit;
+  log.speed_unit = shown_unit(unit_meant(given_speed, "rpm").value_or(parse_unit("rpm")), given_speed);
   if (!columns.constant_speed) {
     speed = find_column(csv, columns.speed, "rpm");
     log.speed_unit = find_unit(csv, *speed, columns.speed, {"rpm", "rpm"});
     in_unit = per_shown_unit(csv, *speed, columns.speed);
   }
+  take_words(csv, torque, log);
+  if (speed) take_words(csv, *speed, log);
   const std::vector<double> times = times_of(csv, time, columns, log);
   for (std::size_t i = 0; i < csv.rows.size(); ++i) {
     const CsvRow& row = csv.rows[i];

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "data/number_text.hpp"
 
@@ -20,6 +22,7 @@ std::string normalised(std::string_view given) {
                                                                             {"\xe2\x8b\x85", " "},
                                                                             {"\xe2\x88\x99", " "},
                                                                             {"\xe2\x80\xa2", " "},
+                                                                            {"\xc3\x97", " "},
                                                                             {"\xc2\xa0", " "},
                                                                             {"\xe2\x81\xbb", "-"},
                                                                             {"\xe2\x81\xb0", "0"},
@@ -36,31 +39,92 @@ std::string normalised(std::string_view given) {
   return std::string(trimmed(text));
 }
 
+/// Words for the units of a force and a length as their short signs: "Newton-Meter", "inch-pounds", "ft-lbs".
+std::string short_words(const std::string& text) {
+  std::string small = lower_case(text);
+  for (const auto& [from, to] : std::initializer_list<std::pair<std::string_view, std::string_view>>{{"newton", "N"},
+                                                                                                     {"meters", "m"},
+                                                                                                     {"meter", "m"},
+                                                                                                     {"metres", "m"},
+                                                                                                     {"metre", "m"},
+                                                                                                     {"inches", "in"},
+                                                                                                     {"inch", "in"},
+                                                                                                     {"foot", "ft"},
+                                                                                                     {"feet", "ft"},
+                                                                                                     {"pounds", "lb"},
+                                                                                                     {"pound", "lb"},
+                                                                                                     {"ounces", "oz"},
+                                                                                                     {"ounce", "oz"},
+                                                                                                     {"lbs", "lb"}})
+    replace_all(small, from, to);
+  return small == lower_case(text) ? text : small;
+}
+
 /// "mNm" -> "mN m", "kgfcm" -> "kgf cm", "in-lb" -> "lbf in": a force and a length in any order, with any sign or none
-/// between them. A mass stands for its weight.
+/// between them. A mass stands for its weight; grams do so beside mm and cm alone, as "gm" may be grams. "NM" is no other
+/// unit than Nm.
 std::string torque_spelling(const std::string& text) {
-  static constexpr std::array forces{"kgf", "gf", "kp", "ozf", "lbf", "lb", "oz", "kg", "dyn", "N"};
+  static constexpr std::array forces{"kgf", "gf", "kp", "ozf", "lbf", "lb", "oz", "kg", "dyn", "N", "g"};
   static constexpr std::array lengths{"mm", "cm", "m", "in", "ft"};
-  static constexpr std::array prefixes{"", "u", "m", "c", "k", "n", "M"};
+  static constexpr std::array prefixes{"", "u", "m", "c", "d", "da", "k", "n", "M"};
   std::string joined;
-  for (const char c : text)
+  for (const char c : short_words(text))
     if (c != ' ' && c != '.' && c != '-') joined += c;
+  if (joined == "NM") return "N m";
   for (const char* force : forces)
     for (const char* length : lengths)
       for (const char* prefix : prefixes)
         if (joined == std::string(prefix) + force + length || joined == std::string(length) + prefix + force) {
           const std::string name = force;
           const std::string udunits = name == "kp" || name == "kg" ? "kgf"
+                                      : name == "g"                ? "gf"
                                       : name == "lb"               ? "lbf"
                                       : name == "oz"               ? "ozf"
                                       : name == "dyn"              ? "dyne"
                                                                    : name;
           if (name != "N" && *prefix != '\0') continue;
+          if (name == "g" && joined != "gcm" && joined != "gmm") continue;
           if (udunits == "gf") return std::string("0.001 kgf ") + length;
           if (udunits == "ozf") return std::string("0.0625 lbf ") + length;
           return prefix + udunits + " " + length;
         }
   return text;
+}
+
+/// Revolutions per minute and per second in several languages; a speed that is neither stays empty.
+std::string rotation_spelling(const std::string& text) {
+  if (text == "mHz") return "0.06 rpm";
+  std::string word = lower_case(text);
+  word.erase(std::remove_if(word.begin(), word.end(), [](char c) { return c == ' ' || c == '.'; }), word.end());
+  for (const char* per_minute : {"1/min", "min-1",  "u/min",   "r/min",     "rev/min",  "umdr/min",  "rpm",
+                                 "upm",   "/min",   "cpm",     "tr/min",    "tpm",      "revs/min",  "rot/min",
+                                 "umin",  "ob/min", "obr/min", "tours/min", "giri/min", "rounds/min"})
+    if (word == per_minute) return "rpm";
+  for (const char* per_second : {"hz", "1/s", "s-1", "rps", "u/s", "r/s", "rev/s", "revs/s", "tr/s", "/s"})
+    if (word == per_second) return "60 rpm";
+  if (word == "khz") return "60000 rpm";
+  if (word == "deg/s" || word == "degs-1" || word == "\xc2\xb0/s") return "degree/s";
+  return {};
+}
+
+std::string time_spelling(const std::string& text) {
+  std::string word = lower_case(text);
+  if (word.ends_with('.')) word.pop_back();
+  static const std::map<std::string, std::vector<std::string>> words{
+      {"s", {"sec", "secs", "sek", "second", "seconds", "sekunden"}},
+      {"ms", {"msec", "msecs", "millisec", "milliseconds"}},
+      {"us", {"usec", "usecs", "microseconds"}},
+      {"min", {"min", "mins", "minute", "minutes", "minuten"}},
+      {"h", {"hr", "hrs", "hour", "hours", "std", "stunden"}}};
+  for (const auto& [unit, names] : words)
+    if (std::find(names.begin(), names.end(), word) != names.end()) return unit;
+  return {};
+}
+
+/// "hh:mm:ss", "dd.mm.yyyy hh:mm": the form of a clock's times, which stands where a unit would.
+bool is_form_of_times(std::string_view text) {
+  return text.find("mm") != std::string_view::npos && text.find(':') != std::string_view::npos &&
+         lower_case(text).find_first_not_of("hmsdyf:.,/- tz") == std::string::npos;
 }
 
 std::optional<Unit> known(const std::string& symbol, std::string_view dimension) {
@@ -79,26 +143,16 @@ std::optional<Unit> unit_meant(std::string_view given, std::string_view dimensio
   if (auto unit = known(text, dimension)) return unit;
   if (auto unit = known(torque_spelling(text), dimension)) return unit;
   if (text == "-" && convertible(dimension, "1")) return parse_unit("1");
-  if (convertible(dimension, "rpm")) {
-    std::string word = lower_case(text);
-    word.erase(std::remove(word.begin(), word.end(), ' '), word.end());
-    for (const char* per_minute :
-         {"1/min", "min-1", "u/min", "r/min", "rev/min", "u./min", "umdr/min", "rpm", "upm", "r.p.m.", "/min", "cpm"})
-      if (word == per_minute) return parse_unit("rpm");
-    for (const char* per_second : {"hz", "1/s", "s-1", "rps", "u/s", "r/s", "rev/s", "/s"})
-      if (word == per_second) return parse_unit("60 rpm");
-  }
+  if (convertible(dimension, "rpm"))
+    if (auto unit = known(rotation_spelling(text), dimension)) return unit;
   if (convertible(dimension, "s"))
-    for (const char* second : {"sec", "secs", "sec.", "sek", "sek.", "seconds"})
-      if (lower_case(text) == second) return parse_unit("s");
-  if (convertible(dimension, "s") && (lower_case(text) == "msec" || lower_case(text) == "millisec"))
-    return parse_unit("ms");
+    if (auto unit = known(time_spelling(text), dimension)) return unit;
   return {};
 }
 
 bool is_unit(std::string_view given) {
   const std::string text = normalised(given);
-  if (text == "-" || text == "1" || text == "%") return true;
+  if (text == "-" || text == "1" || text == "%" || is_form_of_times(text)) return true;
   if (text.find_first_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ\xc2") == std::string::npos) return false;
   try {
     parse_unit(text);
@@ -115,11 +169,13 @@ Heading read_heading(std::string_view given) {
   const auto part = [&](std::size_t from, std::size_t count = std::string::npos) {
     return std::string(trimmed(std::string_view(text).substr(from, count)));
   };
-  for (const char* marks : {"[]", "()"}) {
+  for (const char* marks : {"[]", "()", "{}"}) {
     const auto open = text.rfind(marks[0]);
     if (open == std::string::npos || open == 0 || text.back() != marks[1]) continue;
     const std::string unit = part(open + 1, text.size() - open - 2);
-    if (!unit.empty() && (marks[0] == '[' || (is_unit(unit) && unit != "1"))) return {part(0, open), unit};
+    std::string name = part(0, open);
+    if (marks[0] == '(' && name.size() > 2 && name.ends_with(" /")) name = trimmed(name.substr(0, name.size() - 2));
+    if (!unit.empty() && (marks[0] == '[' || (is_unit(unit) && unit != "1"))) return {name, unit};
   }
   for (const char* mark : {" / ", ",", "/"}) {
     // The unit may hold a slash itself: "speed / 1/min", "speed/1/min".
@@ -129,6 +185,18 @@ Heading read_heading(std::string_view given) {
     if (is_unit(unit) && unit != "1" && unit != "-") return {part(0, at), unit};
   }
   return {text, ""};
+}
+
+std::optional<Heading> heading_with_unit(std::string_view given, std::string_view dimension) {
+  const std::string text(trimmed(given));
+  for (const std::string_view mark : {" in ", "_", ":", "<", " "}) {
+    const auto at = mark == " in " ? text.find(mark) : text.rfind(mark);
+    if (at == std::string::npos || at == 0) continue;
+    std::string unit(trimmed(std::string_view(text).substr(at + mark.size())));
+    if (mark == "<" && unit.ends_with('>')) unit.pop_back();
+    if (unit_meant(unit, dimension)) return Heading{std::string(trimmed(std::string_view(text).substr(0, at))), unit};
+  }
+  return {};
 }
 
 }  // namespace data

@@ -53,6 +53,32 @@ TEST_CASE("a log becomes observations that a calibration reads, with a picture")
   }
 }
 
+TEST_CASE("observations keep their units where a spreadsheet saves them again, and the JSON names them") {
+  const Folder folder;
+  std::string text = "time [s],torque [N m],omega [rad/s]\n";
+  data::RandomStream random(9, data::Purpose::test);
+  for (int i = 0; i < 600; ++i)
+    text += fmt::format("{:.1f},{:.6f},15.707963\n", 0.1 * i, 0.01 + 1e-4 * random.normal());
+  write(folder, "log.csv", text);
+  const auto outcome = folder.demcal({"observe", "log.csv", "--rpm", "omega", "--control", "speed", "--json"});
+  REQUIRE(outcome.status == 0);
+  const nlohmann::json row = nlohmann::json::parse(outcome.out)["rows"][0];
+  CHECK(row["speed"].get<double>() == Approx(15.708).epsilon(1e-4));
+  CHECK(row["speed_unit"] == "rad/s");
+  CHECK(row["unit"] == "N m");
+  // LibreOffice parts a comment's fields like those of a row, and quotes what holds a comma.
+  std::string saved = folder.read("log-observed.csv");
+  const std::size_t units = saved.find("# units: "), end = saved.find('\n', units), comma = saved.find(", ", units);
+  REQUIRE(comma < end);
+  saved.replace(comma, end - comma, ";\"" + saved.substr(comma + 2, end - comma - 2) + "\"");
+  for (std::size_t at = saved.find('\n', units); at < saved.size(); ++at)
+    if (saved[at] == ',') saved[at] = ';';
+  write(folder, "saved.csv", saved);
+  const data::Csv csv = data::read_csv((folder.path / "saved.csv").string());
+  CHECK(csv.unit(csv.column("speed"), data::parse_unit("rpm")).factor == Approx(1.0));
+  CHECK(csv.unit(csv.column("torque_se"), data::parse_unit("mN m")).factor == Approx(1.0));
+}
+
 TEST_CASE("an idle torque given as one value is an error common to all rows, and the file says how to state it") {
   const Folder folder;
   write(folder, "log.csv", log_text(2.0, 0.0, 3));
@@ -119,6 +145,19 @@ TEST_CASE("what the meter reads at standstill is said where nothing is taken off
   const auto negative = folder.demcal({"observe", "zeroed.csv", "--idle", "5", "--out", "negative.csv"});
   CHECK(negative.status == 2);
   CHECK_THAT(negative.err, Contains("every torque is negative") && Contains("so much idle torque"));
+}
+
+TEST_CASE("the unit of times that nothing states is said, and stands in the JSON") {
+  const Folder folder;
+  std::string text = log_text(2.0, 0.0, 8);
+  text.replace(0, text.find(','), "time");
+  write(folder, "log.csv", text);
+  const auto outcome = folder.demcal({"observe", "log.csv", "--json"});
+  CHECK(outcome.status == 0);
+  CHECK_THAT(outcome.err, Contains("note: time taken as s, as nothing states its unit: 6000 samples every 0.01 s"));
+  CHECK(nlohmann::json::parse(outcome.out)["notes"].size() == 1);
+  CHECK(folder.demcal({"observe", "log.csv", "--time-unit", "s", "--out", "o.csv"}).err.find("taken as s") ==
+        std::string::npos);
 }
 
 TEST_CASE("a log that cannot be used is refused with what to do, and is never overwritten") {

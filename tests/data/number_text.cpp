@@ -46,10 +46,18 @@ TEST_CASE("a number says which decimal mark it has, or that it may be read in tw
 
 TEST_CASE("the words for no value are known, and numbers and names are none of them") {
   for (const std::string word :
-       {"",    "  ",      "nan",  "NaN",  "-nan",    "N/A",     "NA",     "-",         "--",   "---",  "#N/A",
-        "#NV", "#DIV/0!", "NULL", "null", "1.#QNAN", "-1.#IND", "1.#INF", "1.#QNAN00", "****", "None", "."})
+       {"",          "  ",   "nan",  "NaN",     "-nan",  "N/A",    "NA",      "-",       "--",
+        "---",       "#N/A", "#NV",  "#DIV/0!", "NULL",  "null",   "1.#QNAN", "-1.#IND", "1.#INF",
+        "1.#QNAN00", "****", "None", ".",       "#####", "---.--", "?"})
     CHECK(data::is_missing(word));
   for (const std::string word : {"0", "-1", "powder", "n", "1.5", "x-", "inf"}) CHECK_FALSE(data::is_missing(word));
+}
+
+TEST_CASE("the words of meters beyond their range are known") {
+  for (const std::string word : {"OL", "O.L", "OVL", "-OL", "Over", "OVERLOAD", "over range", "+++++", "inf", "-Inf"})
+    CHECK(data::is_overload(word));
+  for (const std::string word : {"", "-", "---", "1", "oil", "Error", "<0.01", "old"})
+    CHECK_FALSE(data::is_overload(word));
 }
 
 TEST_CASE("letters of ASCII are made small, and no byte of another letter changes") {

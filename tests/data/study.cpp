@@ -275,6 +275,9 @@ TEST_CASE("observed controls outside their range are named, not refused") {
   REQUIRE(found.size() == 1);
   CHECK(found[0].place.find("bench.csv:4: speed") != std::string::npos);
   CHECK(found[0].what == "310 rpm is outside the training range, 50 to 300 rpm");
+  // What rounding in another unit leaves beyond the range is none: 0.83333 Hz.
+  folder.write("bench.csv", "speed [Hz],torque,torque_se\n0.83333,8,1\n5.00001,8,1\n");
+  CHECK(data::outside_training_range(read(folder, case_with("free = [\"friction\", \"cohesion\"]\n"))).empty());
 }
 
 TEST_CASE("an override reaches the study") {

@@ -44,6 +44,14 @@ TEST_CASE("the encodings of spreadsheets and instruments give the same text, and
   CHECK(japanese.text == "\xe6\x99\x82\xe9\x96\x93,\xe3\x83\x88\xe3\x83\xab\xe3\x82\xaf\n1,2\n");
 }
 
+TEST_CASE("a quotation mark or a unit of Windows-1252 makes no Japanese of it, nor the other way round") {
+  const auto took = [](const std::string& bytes) { return data::decode_text(bytes, "x").took; };
+  CHECK(took("Operator\x92s mixer\nZeit [s];Drehmoment [\xb5N\xb7m]\n") == "Latin-1");
+  CHECK(took("Operator\x92s mixer\ntime [s],torque [mN m]\n") == "Latin-1");
+  CHECK(took("\x91\xac\x93\x78[rpm],\x83\x67\x83\x8b\x83\x4e[mNm]\n") == "Shift-JIS");  // speed and torque
+  CHECK(took("\x91\xac\x93\x78[rpm],M[mNm]\n") == "Shift-JIS");
+}
+
 TEST_CASE("what is no text in any of them is refused by name") {
   const TemporaryFolder folder;
   const auto failure = [&](const std::string& bytes) {

@@ -148,9 +148,37 @@ TEST_CASE("columns are found by their usual names, in several languages and unit
   CHECK(log_of("Time [ms],Torque [Ncm],Speed [Hz]\n0,1,2\n100,1,2\n").time[1] == Approx(0.1));
   CHECK(refusal("time,torque [Nm],speed,drehzahl\n0,1,1,1\n1,1,1,1\n")
             .find("both 'speed' and 'drehzahl' may be the column 'rpm'") != std::string::npos);
+  for (const std::string heading :
+       {"Time_s,Torque_Nm,Speed_rpm", "t in s,M in Nm,n in 1/min", "Time {s},Torque {Nm},Speed {rpm}",
+        "t / s,M / Nm,n / (1/min)", "Temps [s],Couple [N.m],Vitesse [tr/min]", "t [s],M [Nm],omega [rpm]"}) {
+    INFO(heading);
+    const data::TorqueLog read = log_of(heading + "\n0,2,60\n3,2,60\n");
+    CHECK(read.time[1] == 3.0);
+    CHECK(read.torque[0] == Approx(2.0));
+    CHECK(read.speed[0] == Approx(60.0 * rpm));
+    CHECK(read.notes.empty());
+  }
+  CHECK(log_of("time [s],torque [oz-in],rpm\n0,2,60\n3,2,60\n").torque_unit.symbol == "oz-in");
+  CHECK(log_of("Time (hh:mm:ss),torque [Nm],rpm\n00:00:01,2,60\n00:00:02,2,60\n").time[1] == 1.0);
   data::LogColumns constant;
   constant.constant_speed = 50.0 * rpm;
   CHECK(log_of("time,torque [Nm]\n0,1\n1,1\n", constant).speed[1] == Approx(50.0 * rpm));
+}
+
+TEST_CASE("an instrument's export of one section a hold is one log") {
+  std::string text = "Filename\tpowder\nOperator\tA\n";
+  for (int hold = 0; hold < 3; ++hold) {
+    text += fmt::format("[step]\nPeak hold - {}\nTime\tTorque\tVelocity\tTime\ns\tmN.m\trad/s\ts\n", hold + 1);
+    for (int i = 0; i < 10 * (3 - hold); ++i) {
+      const double time = 100.0 * hold + i;
+      text += fmt::format("{:.1f}\t{:.1f}\t5.25\t{:.1f}\n", time, 1.0 + hold, time);
+    }
+    text += "\n";
+  }
+  const data::TorqueLog log = log_of(text);
+  CHECK(log.time.size() == 60);
+  CHECK(log.torque.back() == Approx(3e-3));
+  CHECK(log.speed.front() == Approx(5.25));
 }
 
 TEST_CASE("times that can be read in two ways are asked back") {
@@ -160,6 +188,92 @@ TEST_CASE("times that can be read in two ways are asked back") {
             .find("looks like a spreadsheet's day") != std::string::npos);
   CHECK(refusal("time,torque [Nm],rpm\n14:02:01,1,1\n7,1,1\n").find("'7' is no time like those before") !=
         std::string::npos);
+}
+
+TEST_CASE("times without a unit are seconds where they can be, and that is said") {
+  const auto log = [](double first, double step) {
+    std::string text = "time,torque [Nm],rpm\n";
+    for (int i = 0; i < 6; ++i) text += fmt::format("{:.9f},1,1\n", first + step * i);
+    return text;
+  };
+  REQUIRE(log_of(log(0.0, 10.0)).notes.size() == 1);
+  CHECK(
+      log_of(log(0.0, 10.0)).notes[0].find("time taken as s, as nothing states its unit: 6 samples every 10 s, 50 s") ==
+      0);
+  CHECK(log_of("time [s],torque [Nm],rpm\n0,1,1\n1,1,1\n2,1,1\n").notes.empty());
+  CHECK(log_of("time,torque [Nm],rpm\n14:00:00,1,1\n14:00:01,1,1\n14:00:02,1,1\n").notes.empty());
+  data::LogColumns in_days;
+  in_days.time.unit = "d";
+  CHECK(log_of(log(739375.58, 1e-5), in_days).notes.empty());
+  CHECK(refusal(log(0.0, 1000.0))
+            .find("65: log.csv:2: time: has no unit, and taken as seconds the samples lie 1e+03 s apart") == 0);
+  CHECK(refusal(log(0.0, 1000.0)).find("--time-unit s, ms, min or d") != std::string::npos);
+  CHECK(refusal(log(0.58, 1e-7)).find("less than 1e-6 s") != std::string::npos);         // a day's share
+  CHECK(refusal(log(739375.58, 1.2e-7)).find("less than 1e-6 s") != std::string::npos);  // MATLAB's datenum
+  CHECK(refusal(log(1714730520000.0, 10.0)).find("too large for the seconds") != std::string::npos);  // ms since 1970
+  CHECK(refusal(log(133591041200000000.0, 100000.0)).find("too large for the seconds") !=
+        std::string::npos);  // FILETIME
+}
+
+TEST_CASE("times of any clock count from the log's first sample") {
+  const std::vector<double> expected{0.0, 1.0, 2.0};
+  for (const std::string text :
+       {"timestamp,torque [Nm],rpm\n1714730520,1,1\n1714730521,1,1\n1714730522,1,1\n",
+        "time [ms],torque [Nm],rpm\n1714730520000,1,1\n1714730521000,1,1\n1714730522000,1,1\n",
+        "time [s],torque [Nm],rpm\n3797575320,1,1\n3797575321,1,1\n3797575322,1,1\n",
+        "time,torque [Nm],rpm\n14:02:00,1,1\n14:02:01,1,1\n14:02:02,1,1\n",
+        "time,torque [Nm],rpm\n2024-05-03 14:02:00,1,1\n2024-05-03 14:02:01,1,1\n2024-05-03 14:02:02,1,1\n"}) {
+    INFO(text);
+    CHECK(log_of(text).time == expected);
+  }
+  CHECK(log_of("time [s],torque [Nm],rpm\n5,1,1\n6,1,1\n7,1,1\n").time.front() == 5.0);
+}
+
+TEST_CASE("days stand in a column of their own beside times of day") {
+  const data::TorqueLog log =
+      log_of("Date,Time,torque [Nm],rpm\n2024-05-03,23:59:58,1,1\n2024-05-03,23:59:59,1,1\n2024-05-05,00:00:01,1,1\n");
+  CHECK(log.time == std::vector<double>{0.0, 1.0, 86403.0});
+  CHECK(refusal("Date,Time,torque [Nm],rpm\n2024-05-03,23:59:58,1,1\n2024-13-03,23:59:59,1,1\n")
+            .find("65: log.csv:3: Date: '2024-13-03' is no date like those before") == 0);
+}
+
+TEST_CASE("a clock that jitters is spread, and a line that is there twice is refused") {
+  std::string text = "time [s],torque [mN m],rpm\n";
+  const int stamps[] = {0, 1, 2, 3, 4, 5, 7, 7, 8, 9, 10, 12, 12, 13, 14};
+  for (int i = 0; i < 15; ++i) text += fmt::format("{:.3f},{:.1f},100\n", 0.001 * stamps[i], 10.0 + 0.1 * i);
+  const data::TorqueLog log = log_of(text);
+  REQUIRE(log.time.size() == 15);
+  for (std::size_t i = 1; i < 15; ++i) CHECK(log.time[i] - log.time[i - 1] == Approx(0.001).epsilon(0.1));
+  CHECK(refusal("time [s],torque [mN m],rpm\n0,1,1\n1,1,1\n1,1,1\n2,1,1\n3,1,1\n4,1,1\n5,1,1\n")
+            .find("does not come after") != std::string::npos);
+}
+
+TEST_CASE("samples that share a stamp before a gap stay near it") {
+  std::vector<double> times{0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 5000.0, 5000.0};
+  CHECK(data::spread_stamps(times) == "samples that share a stamp spread evenly within it");
+  CHECK(times[5] == 2.5);
+}
+
+TEST_CASE("a meter's words for no value and for too much are taken for that, and all others are named at once") {
+  const std::string head = "time [s],torque [mN m],rpm\n0,1,50\n";
+  for (const std::string word : {"#####", "---.--", "?", "NaN"}) {
+    const data::TorqueLog log = log_of(head + "1," + word + ",50\n2,1,50\n");
+    CHECK(log.missing == 1);
+    CHECK(log.warnings.empty());
+  }
+  for (const std::string word : {"OVL", "OL", "+++++", "Over", "inf"}) {
+    const data::TorqueLog log = log_of(head + "1," + word + ",50\n2,1,50\n");
+    CHECK(log.time.size() == 2);
+    REQUIRE(log.warnings.size() == 1);
+    CHECK(log.warnings[0].find("torque: 1 samples that say the meter was beyond its range, '" + word +
+                               "' (1), are left out, "
+                               "the first in line 3") == 0);
+  }
+  CHECK(refusal(head + "1,Bad,50\n2,<0.01,50\n3,Bad,50\n") ==
+        "65: log.csv:3: torque: 3 fields from here on are no numbers: '<0.01' (1), 'Bad' (2) (write numbers with a "
+        "decimal "
+        "point, and nothing where there is no value)");
+  CHECK(refusal(head + "1,low,50\n").find("65: log.csv:3: torque: 'low' is not a number") == 0);
 }
 
 TEST_CASE("clocks go on past midnight, and stamps are spread as their order allows") {

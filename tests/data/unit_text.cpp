@@ -29,7 +29,22 @@ TEST_CASE("units as they are spelled on instruments mean what they can only mean
     CHECK(factor(text, "N m") == Approx(0.1129848).epsilon(1e-6));
   for (const std::string text : {"ft lb", "ft-lb", "lb-ft", "ft\xc2\xb7lbf"})
     CHECK(factor(text, "N m") == Approx(1.3558179).epsilon(1e-6));
-  CHECK(factor("oz-in", "N m") == Approx(7.0615518e-3).epsilon(1e-6));
+  for (const std::string text : {"oz-in", "ounce-inch"})
+    CHECK(factor(text, "N m") == Approx(7.0615518e-3).epsilon(1e-6));
+  for (const std::string text : {"in-lbs", "lbs in", "inch-pounds"})
+    CHECK(factor(text, "N m") == Approx(0.1129848).epsilon(1e-6));
+  for (const std::string text : {"ft-lbs", "foot-pounds"})
+    CHECK(factor(text, "N m") == Approx(1.3558179).epsilon(1e-6));
+  for (const std::string text : {"N\xc3\x97m", "NM", "N.M", "Newtonmeter", "Newton-Meter", "newton metres"})
+    CHECK(factor(text, "N m") == Approx(1.0));
+  CHECK(factor("dNm", "N m") == Approx(0.1));
+  CHECK(factor("daNm", "N m") == Approx(10.0));
+  CHECK(factor("mN\xc3\x97m", "N m") == Approx(1e-3));
+  for (const std::string text : {"g cm",
+                                 "g\xc2\xb7"
+                                 "cm",
+                                 "gcm", "g-cm"})
+    CHECK(factor(text, "N m") == Approx(9.80665e-5));
   // Superscripts: mJ m^-2, g s^-2, cm^2.
   for (const std::string text :
        {"mJ\xc2\xb7m\xe2\x81\xbb\xc2\xb2", "mJ m\xe2\x81\xbb\xc2\xb2", "g s\xe2\x81\xbb\xc2\xb2"})
@@ -40,10 +55,18 @@ TEST_CASE("units as they are spelled on instruments mean what they can only mean
     CHECK(factor(text, "rpm") == Approx(std::numbers::pi / 30.0));
   for (const std::string text : {"Hz", "1/s", "s-1", "rps", "U/s"})
     CHECK(factor(text, "rpm") == Approx(2.0 * std::numbers::pi));
+  for (const std::string text : {"tr/min", "tours/min", "revs/min", "U/Min."})
+    CHECK(factor(text, "rpm") == Approx(std::numbers::pi / 30.0));
+  CHECK(factor("kHz", "rpm") == Approx(2000.0 * std::numbers::pi));
+  CHECK(factor("mHz", "rpm") == Approx(0.002 * std::numbers::pi));
+  CHECK(factor("deg/s", "rpm") == Approx(std::numbers::pi / 180.0));
   CHECK(factor("rad/s", "rpm") == Approx(1.0));
   CHECK(factor("ms", "s") == Approx(1e-3));
   CHECK(factor("sec", "s") == Approx(1.0));
-  for (const std::string text : {"N", "kg", "furlong pints", "", "%"}) CHECK_FALSE(data::unit_meant(text, "N m"));
+  for (const std::string text : {"min", "mins", "min.", "Minutes"}) CHECK(factor(text, "s") == Approx(60.0));
+  for (const std::string text : {"h", "hrs", "hr"}) CHECK(factor(text, "s") == Approx(3600.0));
+  for (const std::string text : {"N", "kg", "furlong pints", "", "%", "gm", "nm", "mnm", "MHz"})
+    CHECK_FALSE(data::unit_meant(text, "N m"));
   CHECK_FALSE(data::unit_meant("Hz", "s"));
   CHECK_FALSE(data::unit_meant("1/min", "N m"));
 }
@@ -60,9 +83,26 @@ TEST_CASE("a heading is a name and a unit in brackets, in parentheses, after a s
   CHECK(split("Torque, mNm") == "Torque|mNm");
   CHECK(split("speed / 1/min") == "speed|1/min");
   CHECK(split("n in rpm") == "n in rpm|");
+  CHECK(split("Torque {Nm}") == "Torque|Nm");
+  CHECK(split("n / (1/min)") == "n|1/min");
+  CHECK(split("Time (hh:mm:ss)") == "Time|hh:mm:ss");
   CHECK(split("torque [banana]") == "torque|banana");  // refused where the unit is needed
   CHECK(split("torque (mean)") == "torque (mean)|");
   CHECK(split("run (2)") == "run (2)|");
   CHECK(split("torque") == "torque|");
   CHECK(split("") == "|");
+}
+
+TEST_CASE("a unit at the end of a heading is one where it measures what is looked for") {
+  const auto split = [](const std::string& text, const std::string& dimension) {
+    const auto heading = data::heading_with_unit(text, dimension);
+    return heading ? heading->name + "|" + heading->unit : std::string();
+  };
+  CHECK(split("Torque_Nm", "N m") == "Torque|Nm");
+  CHECK(split("Torque in Nm", "N m") == "Torque|Nm");
+  CHECK(split("n in 1/min", "rpm") == "n|1/min");
+  CHECK(split("Time s", "s") == "Time|s");
+  CHECK(split("Time <s>", "s") == "Time|s");
+  CHECK(split("torque_se", "N m").empty());
+  CHECK(split("Torque_Nm", "s").empty());
 }

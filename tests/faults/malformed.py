@@ -175,7 +175,7 @@ OBSERVATIONS = [
     code("no header", write("bench.csv", "100,8.1,0.2\n200,8.3,0.2\n"), DATA, "bench.csv"),
     code("a column too few in a row", write("bench.csv", "speed,torque,torque_se\n100,8.1,0.2\n200,8.3\n"), DATA, "bench.csv:3"),
     code("a column too many in a row", write("bench.csv", "speed,torque,torque_se\n100,8.1,0.2\n200,8.3,0.2,7\n"), DATA, "bench.csv:3"),
-    code("a column twice", write("bench.csv", "speed,torque,torque,torque_se\n100,8.1,8.1,0.2\n"), DATA, "torque"),
+    code("a column twice", write("bench.csv", "speed,torque,torque,torque_se\n100,8.1,8.2,0.2\n"), DATA, "torque"),
     code("the control's column is missing", write("bench.csv", "torque,torque_se\n8.1,0.2\n"), DATA, "speed"),
     code("the output's column is missing", write("bench.csv", "speed,torqe,torque_se\n100,8.1,0.2\n"), DATA, "torque"),
     code("the error's column is missing", write("bench.csv", "speed,torque\n100,8.1\n"), DATA, "torque_se"),
@@ -214,7 +214,7 @@ RUNS = [
     code("an infinite parameter in a run", column("runs.csv", "friction", ["inf"]), WARNED, "runs.csv:5", "inf", "left out"),
     code("all runs the same", column("runs.csv", "torque", ["8"] * 80), WARNED, "runs.csv:5", "does not respond"),
     code("all runs failed", column("runs.csv", "torque", ["nan"] * 80), MISSING, "runs.csv:5", "nan"),
-    code("a header twice", write("runs.csv", "friction,friction,cohesion,speed,torque,torque_se\n0.3,0.3,1,100,8,0.1\n"), DATA, "friction"),
+    code("a header twice", write("runs.csv", "friction,friction,cohesion,speed,torque,torque_se\n0.3,0.4,1,100,8,0.1\n"), DATA, "friction"),
     code("a unit in the header that contradicts the study", write("runs.csv", "friction,cohesion [kg],speed,torque,torque_se\n0.3,1,100,8,0.1\n"), DATA, "kg"),
     code("a table of runs that is a log", write("runs.csv", GOOD_LOG), DATA, "runs.csv"),
 ]
