@@ -76,7 +76,7 @@ TEST_CASE("observations keep their units where a spreadsheet saves them again, a
   write(folder, "saved.csv", saved);
   const data::Csv csv = data::read_csv((folder.path / "saved.csv").string());
   CHECK(csv.unit(csv.column("speed"), data::parse_unit("rpm")).factor == Approx(1.0));
-  CHECK(csv.unit(csv.column("torque_se"), data::parse_unit("mN m")).factor == Approx(1.0));
+  CHECK(csv.unit(csv.column("torque"), data::parse_unit("mN m")).factor == Approx(1.0));
 }
 
 TEST_CASE("an idle torque given as one value is an error common to all rows, and the file says how to state it") {
