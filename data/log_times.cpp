@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "data/time_series.hpp"
+
 namespace data {
 namespace {
 
@@ -65,8 +67,7 @@ std::string spread_stamps(std::vector<double>& times) {
   // A longer one is a gap in the log.
   std::vector<double> widths;
   for (std::size_t k = 1; k < starts.size(); ++k) widths.push_back(times[starts[k]] - times[starts[k - 1]]);
-  std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2), widths.end());
-  const double usual = widths[widths.size() / 2];
+  const double usual = median_of(std::move(widths));
   for (std::size_t k = 0; k < starts.size(); ++k) {
     const std::size_t end = k + 1 < starts.size() ? starts[k + 1] : times.size();
     const double width = k + 1 < starts.size() ? std::min(usual, times[end] - times[starts[k]]) : step;
