@@ -37,6 +37,7 @@ enum class FindingKind {
   copied_observations,        ///< the same readings more than once
   standard_errors,            ///< of readings, too small or too large to be meant
   prior_not_stated,           ///< of a parameter whose range spans decades
+  errors_apart,               ///< common errors of several sets that may be one meter's
 };
 template <>
 inline constexpr std::array texts_of<FindingKind> = {"copied rows",
@@ -56,7 +57,8 @@ inline constexpr std::array texts_of<FindingKind> = {"copied rows",
                                                      "no response",
                                                      "copied observations",
                                                      "standard errors",
-                                                     "prior not stated"};
+                                                     "prior not stated",
+                                                     "errors apart"};
 
 struct Finding {
   FindingKind kind = FindingKind::unit;

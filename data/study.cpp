@@ -136,6 +136,26 @@ ObservationFiles read_observation_sets(const Section& root, Study& study) {
   return found;
 }
 
+/// One meter has one error: sets that name the same one must agree on it.
+void check_meters(const Section& root, const Study& study) {
+  std::size_t index = 0;
+  for (const Section& section : root.array("observe")) {
+    const ObservationSet& set = study.observations[index++];
+    if (set.meter.empty()) continue;
+    for (const ObservationSet& other : study.observations) {
+      if (&other == &set) break;
+      if (other.meter != set.meter) continue;
+      for (const CommonError& error : set.common_errors)
+        for (const CommonError& first : other.common_errors)
+          if (error.output == first.output && !(error.spread == first.spread))
+            section.problem("common_error",
+                            fmt::format("of {} is not that of '{}', though both are of the meter '{}'",
+                                        study.outputs[error.output].name, other.name, set.meter),
+                            "state the same one in both, or name two meters");
+    }
+  }
+}
+
 /// The middle of a noise's prior: what stands for an error that is unknown wherever one number is shown.
 double middle_of(const Prior& prior) {
   if (prior.kind == PriorKind::normal || prior.kind == PriorKind::truncated_normal ||
@@ -227,6 +247,7 @@ Study read_study(const StudyFile& file) {
   read_training(root, study);
   read_rig_scale(root, study);
   ObservationFiles files = read_observation_sets(root, study);
+  check_meters(root, study);
   read_cases(root, study);
   read_predictions(root, study);
   replace_missing_errors(study, files);

@@ -59,6 +59,7 @@ struct Spread {
   double absolute = 0.0;  ///< SI
   double relative = 0.0;  ///< share of the value
   bool some() const { return absolute > 0.0 || relative > 0.0; }
+  bool operator==(const Spread&) const = default;
 };
 
 /// How well a control is known. Where all points of a set have one value of it (a fill), its error is common to them;
@@ -134,6 +135,7 @@ struct ObservationSet {
   std::vector<std::size_t> outputs;  ///< indices into Study::outputs, of the columns that the file has
   std::vector<Observation> points;   ///< without copies
   std::vector<ObservationCopy> copies = {};
+  std::string meter = {};  ///< sets that name the same one have its common errors together; empty: each its own
   std::vector<CommonError> common_errors;
   std::vector<SettingError> setting_errors;
   bool of_machine = false;          ///< measured on the whole machine, of which the runs simulate a slice

@@ -331,6 +331,10 @@ const std::vector<StudyKey>& study_keys() {
        "error that all points share: a share of the value, or a value with its unit; or a table by output", "\"2 %\""},
       {"observe.common_error.NAME", "quantity", "", "above 0 to 1", "", "the common error of that output",
        "\"0.5 mN m\""},
+      {"observe.meter", "text", "", "", "",
+       "name of the meter; the common error of measurements that name the same one is one error, sampled with the "
+       "parameters; else each measurement has its own",
+       "\"torque-cell-1\""},
       {"observe.uncertainty", "table", "", "", "",
        "how well the settings of this measurement are known, by control, instead of the control's own",
        "{ rpm = \"1 %\" }"},
@@ -414,7 +418,7 @@ const std::vector<StudyKey>& study_keys() {
       {"plan.candidates.error", "quantity", "", "above 0 to 1", "that of the case's observations",
        "standard error of one reading: a share of the value, or a value with its unit", "\"3 %\""},
       {"plan.candidates.common_error", "quantity", "", "above 0 to 1", "",
-       "error of a meter of its own, which all its readings share", "\"1 %\""},
+       "error of a meter that has not measured yet, which all readings of the entry share", "\"1 %\""},
       {"plan.candidates.cost", "number", "", "above 0", "1", "cost of one measurement", "2.5"},
   };
   return keys;

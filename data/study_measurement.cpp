@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "data/edit_distance.hpp"
+#include "data/file_name.hpp"
 #include "data/study_parts.hpp"
 
 namespace data {
@@ -216,6 +217,17 @@ void read_measurement(const Section& root, const Section& section, const Study& 
     const std::size_t output = set.outputs.empty() ? 0 : set.outputs.front();
     set.common_errors.push_back(
         {output, read_spread(section, "common_error", study.outputs[output].unit, BareNumber::share)});
+  }
+
+  if (section.has("meter")) {
+    set.meter = section.text("meter");
+    if (!is_file_name(set.meter))
+      section.problem("meter", fmt::format("'{}' cannot be part of an unknown's name", set.meter),
+                      "use at most 100 letters, digits, '-', '_' and '.', beginning with a letter");
+    if (set.common_errors.empty())
+      section.problem("meter",
+                      fmt::format("'{}' has no error that '{}' could share with other sets", set.meter, set.name),
+                      "state common_error, as the meter's certificate has it, or leave meter out");
   }
 
   const Section uncertainties = section.child("uncertainty");

@@ -145,6 +145,20 @@ TEST_CASE("errors common to a set and of its controls are a share or a value wit
   CHECK(set("", "uncertainty = 3\n").setting_errors.at(0).spread.absolute == Approx(3.0 * std::numbers::pi / 30.0));
 }
 
+TEST_CASE("sets that name one meter state one common error") {
+  const auto two = [](const std::string& first, const std::string& second) {
+    const std::string again = observe + second;
+    return head + observe + first + std::string(again).replace(again.find("bench"), 5, "other") + powder;
+  };
+  const std::string error = "common_error = \"2 %\"\n", meter = "meter = \"cell\"\n";
+  CHECK(study_with(two(error + meter, error + meter)).observations.at(1).meter == "cell");
+  CHECK(study_with(two(error, error)).observations.at(1).meter.empty());
+  says(problem(two(error + meter, "common_error = \"3 %\"\n" + meter)),
+       "common_error: of torque is not that of 'bench', though both are of the meter 'cell'");
+  says(problem(two(meter, error)), "observe.bench.meter: 'cell' has no error that 'bench' could share");
+  says(problem(two(error + "meter = \"a b\"\n", error)), "'a b' cannot be part of an unknown's name");
+}
+
 TEST_CASE("a control that the file has no column of is set for the whole set") {
   const data::Study study =
       study_with(head + observe + "settings = { speed = \"60 rpm\" }\n" + powder, "torque,torque_se\n8,1\n9,1\n");

@@ -34,6 +34,18 @@ TEST_CASE("the integrated autocorrelation time of an AR(1) series is (1 + phi) /
   }
 }
 
+TEST_CASE(
+    "a series each of whose samples is held for long has the error that it had, in time that grows with its length") {
+  const std::vector<double> x = autoregressive(0.9, 3000, 2);
+  std::vector<double> held;
+  for (const double value : x) held.insert(held.end(), 200, value);
+  const data::SeriesOptions all{.start_up_fraction_max = 0.0};
+  const data::SeriesMean found = data::mean_with_error(held, all), before = data::mean_with_error(x, all);
+  CHECK(found.standard_error == Approx(before.standard_error).epsilon(0.02));
+  CHECK(found.integrated_time == Approx(200 * before.integrated_time).epsilon(0.04));
+  CHECK(found.reliable);
+}
+
 TEST_CASE("95 % intervals of correlated means cover the truth about 95 % of the time") {
   for (const double phi : {0.0, 0.8}) {
     int covered = 0, truncated = 0;

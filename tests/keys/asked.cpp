@@ -83,6 +83,7 @@ file = "bench.csv"
 rig = "machine"
 settings = { NAME8 = 200 }
 common_error = { NAME7 = "2 %" }
+meter = "cell"
 uncertainty = { NAME6 = { sd = "1 rpm", as = "covariance" } }
 [[observe]]
 name = "bench2"

@@ -259,6 +259,26 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
   }
 }
 
+/// Common errors of several sets, each taken as the set's own: too narrow a posterior where one meter read them all.
+void check_meters(const data::Study& study, std::vector<Finding>& findings) {
+  for (std::size_t output = 0; output < study.outputs.size(); ++output) {
+    std::vector<std::string> sets, places;
+    for (const data::ObservationSet& set : study.observations) {
+      const bool common = std::any_of(set.common_errors.begin(), set.common_errors.end(),
+                                      [&](const data::CommonError& error) { return error.output == output; });
+      if (!common || !set.meter.empty()) continue;
+      sets.push_back("'" + set.name + "'");
+      places.push_back(set.place);
+    }
+    if (sets.size() < 2) continue;
+    Finding finding = data::about_rows(data::FindingKind::errors_apart, Severity::note, places);
+    finding.what = fmt::format("the common errors of {} in {} are taken as independent", study.outputs[output].name,
+                               fmt::join(sets, ", "));
+    finding.remedy = "if one meter read them all, name it in each: meter = \"torque-cell\"";
+    findings.push_back(std::move(finding));
+  }
+}
+
 }  // namespace
 
 std::string place_of(const data::ObservationSet& set, const data::Observation& point) {
@@ -275,6 +295,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
     check_control_unit(study, table, set, findings);
     check_errors(study, set, thresholds, findings);
   }
+  check_meters(study, findings);
   return findings;
 }
 

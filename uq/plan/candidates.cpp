@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "data/error.hpp"
 #include "data/time_series.hpp"
@@ -299,15 +300,46 @@ class Entry {
   std::vector<data::Problem>& problems_;
 };
 
+bool has_unknown_setting(const data::ObservationSet& set) {
+  return std::any_of(set.setting_errors.begin(), set.setting_errors.end(),
+                     [](const data::SettingError& error) { return error.unknown; });
+}
+
+/// The case's own sets, those of several outputs as one of each output: the model is the same, and a reading of one
+/// output can be added. A set whose setting is an unknown stays whole, since the unknown bears its name.
+std::vector<std::size_t> sets_of_one_output(Study& study, std::size_t case_index) {
+  std::vector<std::size_t> sets = own_sets(study, case_index);
+  for (std::size_t i = 0, own = sets.size(); i < own; ++i) {
+    const data::ObservationSet whole = study.observations[sets[i]];
+    if (has_unknown_setting(whole)) continue;
+    for (std::size_t column = 0; column < whole.outputs.size(); ++column) {
+      data::ObservationSet one = whole;
+      one.outputs = {whole.outputs[column]};
+      for (data::Observation& point : one.points) {
+        point.values = {point.values[column]};
+        point.standard_errors = {point.standard_errors[column]};
+      }
+      if (column == 0) {
+        study.observations[sets[i]] = std::move(one);
+        continue;
+      }
+      one.name += " " + study.outputs[whole.outputs[column]].name;
+      study.cases[case_index].observe.push_back(one.name);
+      sets.push_back(study.observations.size());
+      study.observations.push_back(std::move(one));
+    }
+  }
+  return sets;
+}
+
 /// A set of the case that reads this output alone with the candidate's meter, so that its errors are shared.
 std::optional<std::size_t> host_of(const Study& study, const std::vector<std::size_t>& sets, const Candidate& candidate,
                                    std::size_t output) {
   if (candidate.common_error) return {};
   for (const std::size_t index : sets) {
     const data::ObservationSet& set = study.observations[index];
-    const bool unknown_setting = std::any_of(set.setting_errors.begin(), set.setting_errors.end(),
-                                             [](const data::SettingError& error) { return error.unknown; });
-    if (set.material == candidate.material && set.outputs == std::vector{output} && !unknown_setting) return index;
+    if (set.material == candidate.material && set.outputs == std::vector{output} && !has_unknown_setting(set))
+      return index;
   }
   return {};
 }
@@ -330,7 +362,8 @@ std::vector<Candidate> candidates_of(const Study& study, const std::vector<Emula
   std::vector<data::Problem> problems;
   std::vector<Candidate> found;
   for (const data::PlanEntry& entry : plan.candidates) {
-    const std::vector<Candidate> more = Entry(study, emulators, case_index, entry, options, problems).all();
+    std::vector<Candidate> more = Entry(study, emulators, case_index, entry, options, problems).all();
+    for (Candidate& one : more) one.meter = static_cast<std::size_t>(&entry - plan.candidates.data());
     found.insert(found.end(), more.begin(), more.end());
   }
   if (!problems.empty()) throw data::InputError(data::ExitStatus::bad_study, problems);
@@ -341,28 +374,36 @@ ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, 
                     const CaseModel& sampled, const std::vector<Candidate>& candidates, const Eigen::VectorXd& u) {
   Study wider = study;
   for (data::ObservationSet& set : wider.observations) condense(set);
-  const std::vector<std::size_t> sets = own_sets(study, case_index);
+  const std::vector<std::size_t> sets = sets_of_one_output(wider, case_index);
   struct Home {
     std::size_t candidate = 0, column = 0;
   };
   std::map<std::pair<std::size_t, std::size_t>, Home> home;  // of a planned point, by set and point
+  std::map<std::tuple<std::size_t, std::string, std::size_t>, std::size_t>
+      of_new_meter;  // sets by meter and what it reads
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     for (std::size_t column = 0; column < candidate.outputs.size(); ++column) {
       const std::size_t output = candidate.outputs[column];
       std::size_t index = 0;
+      const std::tuple reads{candidate.meter, candidate.material, output};
       if (const auto host = host_of(wider, sets, candidate, output)) {
         index = *host;
+      } else if (const auto same = of_new_meter.find(reads); candidate.common_error && same != of_new_meter.end()) {
+        index = same->second;
       } else {
         data::ObservationSet set{
             .name = fmt::format("planned {}.{}", i, column), .material = candidate.material, .outputs = {output}};
         for (const std::size_t own : sets)
           if (study.observations[own].material == candidate.material) {
             set.of_machine = study.observations[own].of_machine && output == 0;
-            if (!candidate.common_error) set.common_errors = study.observations[own].common_errors;
+            if (candidate.common_error) continue;
+            set.meter = study.observations[own].meter;
+            set.common_errors = study.observations[own].common_errors;
           }
         if (candidate.common_error) set.common_errors = {{output, *candidate.common_error}};
         index = wider.observations.size();
+        if (candidate.common_error) of_new_meter[reads] = index;
         wider.cases[case_index].observe.push_back(set.name);
         wider.observations.push_back(std::move(set));
       }

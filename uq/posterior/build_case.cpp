@@ -12,6 +12,7 @@
 #include "uq/posterior/control_reach.hpp"
 #include "uq/posterior/distinct.hpp"
 #include "uq/posterior/linked_cases.hpp"
+#include "uq/posterior/set_unknowns.hpp"
 
 namespace uq {
 namespace {
@@ -32,6 +33,10 @@ Acts acts_of(data::NuisanceKind kind) {
 /// file, at whatever controls the study gives them.
 bool holds_the_same(const data::ObservationSet& a, const data::ObservationSet& b) {
   if (a.assumed || b.assumed) return false;
+  if (std::none_of(a.outputs.begin(), a.outputs.end(), [&](std::size_t output) {
+        return std::find(b.outputs.begin(), b.outputs.end(), output) != b.outputs.end();
+      }))
+    return false;
   const bool one_file = !a.file.empty() && a.file == b.file;
   std::size_t common = 0;
   for (const data::Observation& point : b.points)
@@ -127,35 +132,13 @@ class Builder {
     }
     for (const auto& set_name : item.observe) {
       const data::ObservationSet& set = study_.observations[study_.observation_index(set_name).value()];
-      if (set.of_machine && study_.scale && study_.scale->unknown)
-        add_nuisance(model, {nullptr, "scale"}, "scale", *study_.scale->unknown);
-      for (const auto& error : set.setting_errors)
-        if (error.unknown && !set.points.empty()) {
-          const data::Nuisance setting = setting_unknown(set, error);
-          add_nuisance(model, {nullptr, setting.parameter.name}, setting.parameter.name, setting);
-        }
+      for (const data::Nuisance& unknown : set_unknowns(study_, set))
+        add_nuisance(model, home_of(unknown), unknown.parameter.name, unknown);
     }
   }
 
-  /// The true value of a control that is one for the whole set, about its stated value.
-  data::Nuisance setting_unknown(const data::ObservationSet& set, const data::SettingError& error) const {
-    const data::Control& control = study_.controls[error.control];
-    const double stated = set.points.front().controls[error.control];
-    data::Parameter parameter{.name = set.name + "_" + control.name,
-                              .target = control.target,
-                              .unit = control.unit,
-                              .low = control.low,
-                              .high = control.high,
-                              .scale = control.scale,
-                              .place = error.place};
-    parameter.prior = {.kind = data::PriorKind::normal,
-                       .low = control.low,
-                       .high = control.high,
-                       .mean = stated,
-                       .sd = std::hypot(error.spread.absolute, error.spread.relative * stated),
-                       .place = error.place};
-    return {data::NuisanceKind::setting, {}, parameter};
-  }
+  /// Of an unknown that a measurement has.
+  static Home home_of(const data::Nuisance& unknown) { return {nullptr, unknown.parameter.name}; }
 
   const Emulator* find_emulator(const std::string& material, std::size_t output) const {
     for (const auto& emulator : emulators_)
@@ -226,7 +209,7 @@ class Builder {
         fill_control(*group, emulator, set, before, k);
         for (const auto& error : set.setting_errors)
           if (error.unknown && error.control == input.index)
-            group->slot.col(k).tail(rows).setConstant(slot_of({nullptr, setting_unknown(set, error).parameter.name}));
+            group->slot.col(k).tail(rows).setConstant(slot_of(home_of(setting_unknown(study_, set, error))));
         continue;
       }
       const Value value = value_of(item, set, input.index);
@@ -241,12 +224,12 @@ class Builder {
       group->variance[before + i] = point.standard_errors[column] * point.standard_errors[column];
       group->origin.push_back({.set = set_index, .point = static_cast<std::size_t>(i), .output = set.outputs[column]});
     }
-    MeterUnknowns unknowns;
+    std::vector<Acting> unknowns;
     for (const auto& nuisance : item.nuisances)
-      unknowns.nuisances.push_back(slot_of(links_.home(item, nuisance.parameter.name)));
-    if (set.of_machine && study_.scale && study_.scale->unknown) unknowns.scale = slot_of({nullptr, "scale"});
+      unknowns.push_back({nuisance, slot_of(links_.home(item, nuisance.parameter.name))});
+    for (const auto& nuisance : set_unknowns(study_, set)) unknowns.push_back({nuisance, slot_of(home_of(nuisance))});
     const std::vector<Problem> unknowable =
-        add_measurement(*group, study_, item, {set, set.outputs[column], before}, unknowns);
+        add_measurement(*group, study_, {set, set.outputs[column], before}, unknowns);
     problems_.insert(problems_.end(), unknowable.begin(), unknowable.end());
   }
 

@@ -54,51 +54,46 @@ void add_discrepancy(RowGroup& group, const data::Study& study, const SetRows& r
 }
 
 bool is_plain(const ReadSet& read) {
-  return read.factor == 1.0 && read.factors.empty() && read.offset < 0 && read.noise < 0 &&
+  return read.factor == 1.0 && read.factors.empty() && read.offsets.empty() && read.noise < 0 &&
          read.common_absolute == 0.0 && read.common_relative == 0.0 && read.settings.empty();
 }
 
 }  // namespace
 
-std::vector<data::Problem> add_measurement(RowGroup& group, const data::Study& study, const data::CalibrationCase& item,
-                                           const SetRows& rows, const MeterUnknowns& unknowns) {
+std::vector<data::Problem> add_measurement(RowGroup& group, const data::Study& study, const SetRows& rows,
+                                           const std::vector<Acting>& unknowns) {
   const data::ObservationSet& set = rows.set;
-  ReadSet read{.first = rows.first, .count = group.base.rows() - rows.first, .factors = {}, .settings = {}};
-  if (unknowns.scale >= 0) {
-    read.factors.push_back(unknowns.scale);
-  } else if (set.of_machine && study.scale) {
-    read.factor = study.scale->value;
-  }
+  ReadSet read{
+      .first = rows.first, .count = group.base.rows() - rows.first, .factors = {}, .offsets = {}, .settings = {}};
+  if (set.of_machine && study.scale && !study.scale->unknown) read.factor = study.scale->value;
   DiscrepancyUnknowns discrepancy;
-  for (std::size_t k = 0; k < item.nuisances.size(); ++k) {
-    const data::Nuisance& nuisance = item.nuisances[k];
+  for (const auto& [nuisance, slot] : unknowns) {
     if (nuisance.output.value_or(rows.output) != rows.output) continue;
-    const int s = unknowns.nuisances[k];
     switch (nuisance.kind) {
       case data::NuisanceKind::offset:
-        read.offset = s;
+        read.offsets.push_back(slot);
         break;
       case data::NuisanceKind::gain:
-        read.factors.push_back(s);
+      case data::NuisanceKind::scale:
+        read.factors.push_back(slot);
         break;
       case data::NuisanceKind::noise_scale:
       case data::NuisanceKind::noise_sd:
-        read.noise = s;
+        read.noise = slot;
         read.noise_is_sd = nuisance.kind == data::NuisanceKind::noise_sd;
         break;
       case data::NuisanceKind::discrepancy_sd:
-        discrepancy.sd = s;
+        discrepancy.sd = slot;
         break;
       case data::NuisanceKind::discrepancy_length:
-        discrepancy.length = s;
+        discrepancy.length = slot;
         break;
-      case data::NuisanceKind::scale:
       case data::NuisanceKind::setting:
-        break;  // of the rig or the set, not of the case
+        break;  // moves the row itself
     }
   }
   for (const auto& error : set.common_errors)
-    if (error.output == rows.output) {
+    if (error.output == rows.output && set.meter.empty()) {
       read.common_absolute = error.spread.absolute;
       read.common_relative = error.spread.relative;
     }

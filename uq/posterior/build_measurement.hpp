@@ -15,14 +15,14 @@ struct SetRows {
   Eigen::Index first = 0;
 };
 
-/// The model's unknowns that act on them.
-struct MeterUnknowns {
-  std::vector<int> nuisances;  ///< of the case, in its order
-  int scale = -1;              ///< of the rig; -1: none
+/// One of the model's unknowns that act on them, of the case or of the set.
+struct Acting {
+  data::Nuisance nuisance;
+  int slot = -1;
 };
 
 /// Adds to group.measurement; says what the study asks and the runs cannot tell.
-std::vector<data::Problem> add_measurement(RowGroup& group, const data::Study& study, const data::CalibrationCase& item,
-                                           const SetRows& rows, const MeterUnknowns& unknowns);
+std::vector<data::Problem> add_measurement(RowGroup& group, const data::Study& study, const SetRows& rows,
+                                           const std::vector<Acting>& unknowns);
 
 }  // namespace uq

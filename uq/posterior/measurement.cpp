@@ -12,6 +12,12 @@ double factor_of(const ReadSet& set, const std::vector<Slot>& slots, const Eigen
   return factor;
 }
 
+double offset_of(const ReadSet& set, const std::vector<Slot>& slots, const Eigen::VectorXd& u) {
+  double offset = 0.0;
+  for (const int s : set.offsets) offset += slots[s].value(u[s]);
+  return offset;
+}
+
 Eigen::VectorXd factors_of(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& u,
                            Eigen::Index rows) {
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(rows);
@@ -124,8 +130,7 @@ Meter meter_at(const Measurement& measurement, const std::vector<Slot>& slots, c
                Eigen::Index row) {
   for (const ReadSet& set : measurement.sets) {
     if (row < set.first || row >= set.first + set.count) continue;
-    const double offset = set.offset < 0 ? 0.0 : slots[set.offset].value(u[set.offset]);
-    return {.factor = factor_of(set, slots, u), .offset = offset};
+    return {.factor = factor_of(set, slots, u), .offset = offset_of(set, slots, u)};
   }
   return {};
 }
@@ -168,7 +173,7 @@ GroupLaw law_of(const Measurement& measurement, const std::vector<Slot>& slots, 
         std::pow(value(part.sd) * part.magnitude, 2) *
         discrepancy_correlation(part.controls, part.controls, value(part.length));
   for (const ReadSet& set : measurement.sets)  // last: a relative error is of the meter's reading without its offset
-    if (set.offset >= 0) law.mean.segment(set.first, set.count).array() += value(set.offset);
+    law.mean.segment(set.first, set.count).array() += offset_of(set, slots, u);
   return law;
 }
 
@@ -198,7 +203,7 @@ LawGradient law_gradient(const Measurement& measurement, const std::vector<Slot>
     for (const ReadSet& set : measurement.sets) {
       if (contains(set.factors, s))
         factors.segment(set.first, set.count) = state.factors.segment(set.first, set.count) * (slope / value);
-      if (set.offset == s) offset.segment(set.first, set.count).setConstant(slope);
+      if (contains(set.offsets, s)) offset.segment(set.first, set.count).setConstant(slope);
       if (set.noise != s) continue;
       if (set.noise_is_sd) {
         noise.segment(set.first, set.count).setConstant(2.0 * value * slope);

@@ -1,10 +1,11 @@
 #pragma once
 // What stands between an emulator's prediction and the numbers that a meter shows. With m, C the emulator's mean and
 // covariance at the rows of a group, and f_i the product of the rig's scale and the meter's gain at row i:
-//   mean_i  = f_i m_i + o_i
+//   mean_i  = f_i m_i + o_i                                                o_i the sum of its offsets
 //   cov_ij  = f_i f_j C_ij + common_ij + setting_ij + discrepancy_ij       a repeated measurement shares it
 //   noise_i = k^2 s_i^2, or s^2                                            each number's own
-//   common       c^2 + r^2 f_i m_i f_j m_j within an observation set: an error of its meter, absolute c, relative r
+//   common       c^2 + r^2 f_i m_i f_j m_j within an observation set: an error of its meter, absolute c, relative r;
+//                that of a meter which several sets name is an unknown gain and offset (uq/posterior/set_unknowns.hpp)
 //   setting      t_i t_j, t_i = f_i (m(x_i + e_i) - m(x_i - e_i)) / 2: a control known to a standard error e enters
 //                to first order, by the slope over +- one e. Within a set it is common to all rows where the control
 //                has one value (a fill), and each row's own (i = j only) where it is set anew (a speed)
@@ -31,8 +32,8 @@ struct SettingShift {
 struct ReadSet {
   Eigen::Index first = 0, count = 0;
   double factor = 1.0;           ///< what is fixed of the scale
-  std::vector<int> factors;      ///< unknowns that multiply: scale, gain
-  int offset = -1;               ///< unknown; -1: none
+  std::vector<int> factors;      ///< unknowns that multiply: scale, gains
+  std::vector<int> offsets;      ///< unknowns that add
   int noise = -1;                ///< unknown; -1: the stated standard errors
   bool noise_is_sd = false;      ///< the unknown replaces the standard errors, else multiplies them
   double common_absolute = 0.0;  ///< SI

@@ -95,6 +95,36 @@ TEST_CASE("a reading made again teaches less where the surrogate's error is what
   CHECK(std::abs(about.information - truth) <= about.information_error + 0.005);
 }
 
+TEST_CASE("a reading of the same meter shares its common error, whatever else the meter's file holds", "[plan]") {
+  // One unknown a with prior sd s, readings with a common offset of sd c and noise e of their own, all normal.
+  const double c = 0.3, e = 0.1, s = 0.1, slope = 5.0 + 0.3 * 0.5;
+  const auto left = [&](double variance) { return 1.0 / (1.0 / (s * s) + slope * slope / variance); };
+  const double truth = 0.5 * std::log(left(c * c + e * e) / left(c * c + e * e / 2.0));
+  const formula::Pair pair{formula::torque, [](double, double, double) { return 1.0; }};
+  for (const bool named_meter : {false, true})
+    for (const bool two_outputs : {false, true}) {
+      data::Study study = formula::study({0.5}, {formula::torque(0.5, 0.5, 0.5)}, e);
+      study.cases[0].free = {"a"};
+      study.cases[0].fixed = {{"b", 0.5}};
+      for (data::Parameter& one : study.parameters)
+        one.prior = {.kind = data::PriorKind::normal, .low = 0.0, .high = 1.0, .mean = 0.5, .sd = s};
+      data::ObservationSet& bench = study.observations[0];
+      bench.common_errors = {{0, {.absolute = c}}};
+      if (named_meter) bench.meter = "cell";
+      if (two_outputs) {
+        bench.outputs = {0, 1};
+        bench.points[0].values.push_back(1.0);
+        bench.points[0].standard_errors.push_back(0.1);
+      }
+      const PlanReport plan = plan_of(study, formula::emulators(0.0, pair), {}, {.about = "a", .draws = 1000});
+      const auto& about = named(plan, "torque at 0.5").parameters[0];
+      INFO("named " << named_meter << ", two outputs " << two_outputs);
+      CAPTURE(about.information, about.information_error, truth);
+      CHECK(std::abs(about.information - truth) <= about.information_error + 0.005);
+      CHECK(about.information < 0.1);
+    }
+}
+
 TEST_CASE("the readings needed for a word have a range, and are no fewer than the width asks for", "[plan]") {
   // One unknown a, uniform on 0 to 1, one reading of error e. "identified" asks for a tenth of the prior's variance, so
   // for 1 + n readings with e / (slope sqrt(1 + n)) at most sqrt(1/120).

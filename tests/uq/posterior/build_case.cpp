@@ -84,6 +84,31 @@ void check_moments(const uq::SampledCase& sampled, const std::string& label, con
 
 }  // namespace
 
+TEST_CASE("what several sets of one meter have in common does not average out, within a case or over linked ones",
+          "[uq]") {
+  const TemporaryFolder folder;
+  folder.write("first.csv", readings);
+  folder.write("second.csv",
+               "speed,fill,torque,torque_se\n5,100,0.46,0.04\n6,100,0.53,0.04\n7,100,0.54,0.04\n8,100,0.47,0.04\n");
+  constexpr double common = 0.1;
+  const auto sets = [](const std::string& meter) {
+    const std::string lines = "common_error = \"0.1 N m\"\n" + meter;
+    return observe("first", lines) + observe("second", lines);
+  };
+  const std::string both = calibrate("powder", "first\", \"second");
+  const std::string linked = calibrate("powder", "second", "priors = { friction = { posterior = \"before\" } }\n") +
+                             calibrate("before", "first");
+  const double of_readings = mean_sd / std::sqrt(2.0);
+  for (const std::string& cases : {both, linked}) {
+    const uq::SampledCase apart = sample(read(folder, head + sets("") + cases));
+    check_moments(apart, "friction", {0.5, std::hypot(of_readings, common / std::sqrt(2.0))});
+    const uq::SampledCase shared = sample(read(folder, head + sets("meter = \"cell\"\n") + cases));
+    CHECK(labels(*shared.model) == std::vector<std::string>{"friction", "cell_torque_offset"});
+    check_moments(shared, "friction", {0.5, std::hypot(of_readings, common)});
+    check_moments(shared, "cell_torque_offset", {0.0, common});
+  }
+}
+
 TEST_CASE("a machine's torque is the slice's times the rig's scale, fixed or with a prior", "[uq]") {
   const TemporaryFolder folder;
   folder.write("bench.csv",

@@ -105,7 +105,7 @@ TEST_CASE("the gradient through gain, offset, noise, common errors, settings and
   uq::ReadSet first = all_rows(3), second = all_rows(2);
   second.first = 3;
   first.factors = {2, 3};
-  first.offset = 4;
+  first.offsets = {4};
   first.noise = 5;
   first.common_absolute = 0.02;
   first.common_relative = 0.03;
@@ -150,7 +150,7 @@ TEST_CASE("an unknown offset with a normal prior widens the posterior as the clo
   uq::CaseModel model = line(line_data, 0.05);
   model.slots.push_back(nuisance("offset", uq::Acts::on_mean, 0.2, 0.3));
   uq::ReadSet set = all_rows(5);
-  set.offset = 2;
+  set.offsets = {2};
   model.groups[0].measurement.sets = {set};
   const Eigen::MatrixXd noise = 0.0025 * Eigen::MatrixXd::Identity(5, 5) + 0.09 * Eigen::MatrixXd::Ones(5, 5);
   check_moments(model, exact_line(line_data.array() - 0.2, noise));
