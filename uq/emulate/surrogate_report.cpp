@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "data/time_series.hpp"
+#include "surrogate/gaps.hpp"
 #include "uq/emulate/outlying_runs.hpp"
 #include "uq/emulate/scale_hint.hpp"
 #include "uq/emulate/sensitivity.hpp"
@@ -107,6 +109,30 @@ std::string point_text(const data::Study& study, const TrainingRows& rows, const
   return text;
 }
 
+/// Inputs of which few values were run, where the doubt of what lies between them is more than a detail.
+void note_gaps(SurrogateReport& report, const data::Study& study, const FittedSurrogate& fitted) {
+  constexpr double notable = 0.1;  // of the standard deviation of the runs' output
+  const auto& data = fitted.process->data();
+  for (std::size_t k = 0; k < data.active.size(); ++k) {
+    double widest = 0.0;
+    for (const surrogate::InputGap& gap : data.gaps) {
+      if (gap.input != static_cast<int>(k)) continue;
+      const double middle = 0.5 * (std::max(gap.low, 0.0) + std::min(gap.high, 1.0));
+      widest = std::max(widest, gap.sd * std::sqrt(surrogate::gap_covariance(gap, middle, middle)));
+    }
+    if (widest < notable) continue;
+    const auto input = static_cast<std::size_t>(data.active[k]);
+    std::set<long> values;
+    for (const double value : data.points.col(static_cast<Eigen::Index>(k))) values.insert(std::lround(1e6 * value));
+    report.notes.push_back(fmt::format(
+        "{} values of {} were run, and what lies between them is doubted by up to {:.0f} % of the runs' scatter. Runs "
+        "at "
+        "other values would show it. Where the response is known to be smooth, [surrogate] between_runs = \"trusted\" "
+        "takes the doubt away",
+        values.size(), input_of(study, fitted.rows.inputs[input]).name, 100.0 * widest));
+  }
+}
+
 SurrogateWord word_of(surrogate::SurrogateVerdict verdict) {
   switch (verdict) {
     case surrogate::SurrogateVerdict::good:
@@ -199,6 +225,7 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   if (rows.inputs.size() > static_cast<std::size_t>(sensitivity_inputs_max))
     report.notes.push_back(fmt::format("no Sobol indices: they are for {} inputs at most, and this surrogate has {}",
                                        sensitivity_inputs_max, rows.inputs.size()));
+  note_gaps(report, study, fitted);
   if (fitted.two_level)
     add_levels(report, fitted, output);
   else
