@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
-#include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "uq/posterior/build_measurement.hpp"
-#include "uq/posterior/control_reach.hpp"
+#include "uq/posterior/case_checks.hpp"
 #include "uq/posterior/distinct.hpp"
 #include "uq/posterior/linked_cases.hpp"
 #include "uq/posterior/set_unknowns.hpp"
@@ -27,24 +27,6 @@ Acts acts_of(data::NuisanceKind kind) {
   const bool mean = kind == NuisanceKind::offset || kind == NuisanceKind::gain || kind == NuisanceKind::scale ||
                     kind == NuisanceKind::setting;
   return mean ? Acts::on_mean : Acts::on_spread;
-}
-
-/// Whether half of the shorter set's readings stand in the other to the last digit: at the same controls, or, in one
-/// file, at whatever controls the study gives them.
-bool holds_the_same(const data::ObservationSet& a, const data::ObservationSet& b) {
-  if (a.assumed || b.assumed) return false;
-  if (std::none_of(a.outputs.begin(), a.outputs.end(), [&](std::size_t output) {
-        return std::find(b.outputs.begin(), b.outputs.end(), output) != b.outputs.end();
-      }))
-    return false;
-  const bool one_file = !a.file.empty() && a.file == b.file;
-  std::size_t common = 0;
-  for (const data::Observation& point : b.points)
-    common += std::any_of(a.points.begin(), a.points.end(), [&](const data::Observation& other) {
-      return (one_file || other.controls == point.controls) && other.values == point.values &&
-             other.standard_errors == point.standard_errors;
-    });
-  return common > 0 && 2 * common >= std::min(a.points.size(), b.points.size());
 }
 
 class Builder {
@@ -70,8 +52,7 @@ class Builder {
         part.magnitude = std::sqrt(group.observed.segment(part.first, part.count).array().square().mean());
     }
     pool_rows(model);
-    check_settings(model);
-    stop_on_problems();
+    refuse_too_many_settings(study_, model);
     return model;
   }
 
@@ -79,6 +60,7 @@ class Builder {
   void problem(const std::string& place, std::string what, std::string remedy) {
     problems_.push_back({place, std::move(what), std::move(remedy)});
   }
+  void add_problems(std::vector<Problem> more) { std::move(more.begin(), more.end(), std::back_inserter(problems_)); }
   void stop_on_problems() const {
     if (!problems_.empty()) throw data::InputError(ExitStatus::bad_study, problems_);
   }
@@ -158,7 +140,7 @@ class Builder {
         continue;
       }
       for (const std::size_t other : used_sets_)
-        if (other != set_index && holds_the_same(study_.observations[other], set))
+        if (other != set_index && hold_the_same(study_.observations[other], set))
           problem(item.place,
                   fmt::format("the data of '{}' would count twice: '{}' holds the same measurements", set_name,
                               study_.observations[other].name),
@@ -206,9 +188,12 @@ class Builder {
     for (Eigen::Index k = 0; k < inputs; ++k) {
       const EmulatorInput& input = emulator.inputs[k];
       if (input.kind == InputKind::control) {
-        fill_control(*group, emulator, set, before, k);
+        for (Eigen::Index i = 0; i < rows; ++i)
+          group->base(before + i, k) = study_.controls[input.index].axis().to_unit(
+              set.points[static_cast<std::size_t>(i)].controls[input.index]);
+        group->slot.col(k).tail(rows).setConstant(-1);
         for (const auto& error : set.setting_errors)
-          if (error.unknown && error.control == input.index)
+          if (rows > 0 && error.unknown && error.control == input.index)
             group->slot.col(k).tail(rows).setConstant(slot_of(home_of(setting_unknown(study_, set, error))));
         continue;
       }
@@ -216,8 +201,7 @@ class Builder {
       group->base.col(k).tail(rows).setConstant(value.scaled);
       group->slot.col(k).tail(rows).setConstant(value.slot);
     }
-    for (const auto& [parameter, constant] : emulator.constants) check_constant(item, set, parameter, constant);
-    for (const auto& [control, range] : emulator.control_range) check_constant_control(emulator, set, control, range);
+    add_problems(against_the_runs(study_, item, set, emulator));
     for (Eigen::Index i = 0; i < rows; ++i) {
       const data::Observation& point = set.points[i];
       group->observed[before + i] = point.values[column];
@@ -228,29 +212,7 @@ class Builder {
     for (const auto& nuisance : item.nuisances)
       unknowns.push_back({nuisance, slot_of(links_.home(item, nuisance.parameter.name))});
     for (const auto& nuisance : set_unknowns(study_, set)) unknowns.push_back({nuisance, slot_of(home_of(nuisance))});
-    const std::vector<Problem> unknowable =
-        add_measurement(*group, study_, {set, set.outputs[column], before}, unknowns);
-    problems_.insert(problems_.end(), unknowable.begin(), unknowable.end());
-  }
-
-  void fill_control(RowGroup& group, const Emulator& emulator, const data::ObservationSet& set, Eigen::Index before,
-                    Eigen::Index k) {
-    const std::size_t index = emulator.inputs[k].index;
-    const data::Control& control = study_.controls[index];
-    const auto range = emulator.control_range.find(index);
-    const auto [low, high] =
-        range == emulator.control_range.end() ? std::pair{control.low, control.high} : range->second;
-    for (std::size_t i = 0; i < set.points.size(); ++i) {
-      const double value = set.points[i].controls[index];
-      if (!within_reach(control, value, {low, high}))
-        problem(fmt::format("{}:{}", set.file, set.points[i].line),
-                fmt::format("{} is {:g} {}, but the runs of this material reach from {:g} to {:g} {}", control.name,
-                            control.unit.from_si(value), control.unit.symbol, control.unit.from_si(low),
-                            control.unit.from_si(high), control.unit.symbol),
-                "leave the point out, or make runs there (of ours: demcal train STUDY --until posterior)");
-      group.base(before + static_cast<Eigen::Index>(i), k) = control.axis().to_unit(value);
-      group.slot(before + static_cast<Eigen::Index>(i), k) = -1;
-    }
+    add_problems(add_measurement(*group, study_, {set, set.outputs[column], before}, unknowns));
   }
 
   struct Value {
@@ -284,85 +246,6 @@ class Builder {
                           parameter.unit.from_si(parameter.low), parameter.unit.from_si(parameter.high)),
               "fix it inside the range, or train in a wider one");
     return {.slot = -1, .scaled = scaled};
-  }
-
-  /// A parameter that the material's runs hold at one value cannot be fixed at another, by the case or the material,
-  /// nor be free where another material's runs vary it.
-  void check_constant(const CalibrationCase& item, const data::ObservationSet& set, std::size_t parameter_index,
-                      double constant) {
-    const data::Parameter& parameter = study_.parameters[parameter_index];
-    const auto value = [&](double si) {
-      return fmt::format("{:g} {}", parameter.unit.from_si(si), parameter.unit.symbol);
-    };
-    const data::Material& material = study_.material(set.material);
-    const auto in_material = material.fixed.find(parameter.name);
-    const auto fixed = item.fixed.find(parameter.name);
-    const bool by_case = fixed != item.fixed.end(), by_material = in_material != material.fixed.end();
-    if (!by_case && !by_material) {
-      if (study_.materials.size() > 1 &&
-          std::find(item.free.begin(), item.free.end(), parameter.name) != item.free.end())
-        problem(
-            item.place,
-            fmt::format("case '{}' frees {}, but every run of material '{}' has {}: its data would not count for it",
-                        item.name, parameter.name, set.material, value(constant)),
-            fmt::format("vary it in training, or write materials.{}.fixed.{} = ...", set.material, parameter.name));
-      return;
-    }
-    const double wanted = by_case ? fixed->second : in_material->second;
-    if (std::abs(wanted - constant) <= 1e-6 * (parameter.high - parameter.low)) return;
-    if (by_case)
-      problem(item.place,
-              fmt::format("case '{}' fixes {} at {}, but every run of material '{}' has {}", item.name, parameter.name,
-                          value(wanted), set.material, value(constant)),
-              "fix it at that value, or vary it in training");
-    else
-      problem(material.place,
-              fmt::format("material '{}' fixes {} at {}, but every run of it has {}", set.material, parameter.name,
-                          value(wanted), value(constant)),
-              "fix it at that value, or make the runs again");
-  }
-
-  /// A control that the material's runs hold at one value must be measured there: the runs know no other.
-  void check_constant_control(const Emulator& emulator, const data::ObservationSet& set, std::size_t index,
-                              const std::pair<double, double>& range) {
-    const bool varied = std::any_of(emulator.inputs.begin(), emulator.inputs.end(), [&](const EmulatorInput& input) {
-      return input.kind == InputKind::control && input.index == index;
-    });
-    if (varied) return;
-    const data::Control& control = study_.controls[index];
-    constexpr double share = 0.02;  // of the value or the range: a speed is never set exactly
-    const double slack = share * std::max(control.high - control.low, std::abs(range.first));
-    std::vector<int> lines;
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const data::Observation& point : set.points) {
-      if (std::abs(point.controls[index] - range.first) <= slack) continue;
-      lines.push_back(point.line);
-      low = std::min(low, point.controls[index]);
-      high = std::max(high, point.controls[index]);
-    }
-    if (lines.empty()) return;
-    problem(fmt::format("{}:{}", data::shown_path(set.file), lines.front()),
-            fmt::format(
-                "{} of {} points are measured at {} from {:g} to {:g} {}, but every run of this material has {:g} "
-                "{}: the runs say nothing of another {}",
-                lines.size(), set.points.size(), control.name, control.unit.from_si(low), control.unit.from_si(high),
-                control.unit.symbol, control.unit.from_si(range.first), control.unit.symbol, control.name),
-            "leave the points out, or add runs at other values");
-  }
-
-  /// Each evaluation costs the cube of the number of settings.
-  void check_settings(const CaseModel& model) {
-    for (const RowGroup& group : distinct_rows(model).groups) {
-      if (group.base.rows() <= settings_max) continue;
-      const data::ObservationSet& set = study_.observations[group.origin.front().set];
-      throw data::InputError(
-          ExitStatus::bad_data,
-          {set.file,
-           fmt::format("case '{}' has measurements of {} at {} different settings; above {} a calibration takes hours",
-                       wanted_.name, study_.outputs[group.emulator.output].name, group.base.rows(), settings_max),
-           "average them to a row per setting with its standard error (demcal observe), or round the settings: rows at "
-           "exactly the same settings count as one"});
-    }
   }
 
   void check_slots_used(const CaseModel& model) {

@@ -8,7 +8,7 @@
 namespace uq {
 namespace {
 
-constexpr double reach = 6.0;         // standard deviations of a meter's error on either side
+constexpr double reach = 6.0;  // standard deviations of a meter's error on either side
 constexpr double least_gain = 1e-3;
 
 data::Nuisance meter_unknown(data::NuisanceKind kind, const data::ObservationSet& set, std::size_t output,
