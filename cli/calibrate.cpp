@@ -12,6 +12,7 @@
 #include "cli/calibration.hpp"
 #include "cli/train_posterior.hpp"
 #include "data/interrupt.hpp"
+#include "data/number_text.hpp"
 #include "uq/calibrate/posterior_nc.hpp"
 
 namespace cli {
@@ -122,13 +123,14 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
     for (std::size_t i = 0; i < listed.size(); ++i)
       if (!made.listed[i]) missing.push_back(listed[i].run);
     if (!missing.empty() && !rig) {
-      answer(common,
-             fmt::format("{} points to run with your code: {}. Add their rows to {}, and give this command again",
-                         missing.size(), verify_runs_path(workspace), workspace.study.training.table));
+      answer(common, fmt::format("{} to run with your code: {}. Add what they give to {}, and give this command again",
+                                 data::counted(missing.size(), "point"), verify_runs_path(workspace),
+                                 workspace.study.training.table));
       return report_on(common, workspace, unseen, result);
     }
     if (!missing.empty()) {
-      say(common, fmt::format("verification, round {}: {} runs at points of the posterior", round, missing.size()));
+      say(common, fmt::format("verification, round {}: {} at points of the posterior", round,
+                              data::counted(missing.size(), "run")));
       BatchResult batch;
       {
         data::Progress progress("verification runs", missing.size(),

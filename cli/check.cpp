@@ -39,11 +39,6 @@ std::vector<std::string> refused_later(const Workspace& workspace, const Trainin
   return found;
 }
 
-/// "1 case", "2 cases".
-std::string counted(std::size_t count, const std::string& what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
 }  // namespace
 
 Action add_check(CLI::App& program) {
@@ -84,11 +79,11 @@ Action add_check(CLI::App& program) {
       answer(*common, material.empty() ? "simulation, amid its ranges:" : material + ", amid its ranges:");
       for (const std::string& line : dem::describe(c, told.prepared.derived())) answer(*common, "  " + line);
       for (const std::string& line : dem::describe(told.forecast)) answer(*common, "  " + line);
-      answer(*common,
-             fmt::format("  a run: at most {:.3g} steps, {} of processor time, {:.2g} MB; {} runs are missing: {} "
-                         "(at {:.2g} million particle-steps/s, measured on this machine just now)",
-                         cost.steps, duration_text(cost.seconds), 1e-6 * cost.bytes, runs,
-                         duration_text(static_cast<double>(runs) * cost.seconds), 1e-6 * cost.effort.rate));
+      answer(*common, fmt::format("  a run: at most {:.3g} steps, {} of processor time, {:.2g} MB; {} missing: {} "
+                                  "(at {:.2g} million particle-steps/s, measured on this machine just now)",
+                                  cost.steps, duration_text(cost.seconds), 1e-6 * cost.bytes,
+                                  data::counted(static_cast<std::size_t>(runs), "run"),
+                                  duration_text(static_cast<double>(runs) * cost.seconds), 1e-6 * cost.effort.rate));
       const std::string of = material.empty() ? "" : material + ": ";
       for (const auto& list : {told.forecast.warnings, cost.warnings, problems_at_ends(workspace, middle)})
         for (const std::string& warning : list) warnings.push_back(of + warning);
@@ -100,8 +95,8 @@ Action add_check(CLI::App& program) {
       if (material == workspace.cases.begin()->first) warnings.insert(warnings.end(), broken.begin(), broken.end());
     }
     if (!workspace.cases.empty())
-      answer(*common, fmt::format("the campaign: {} runs are missing, at most {} of processor time", missing.size(),
-                                  duration_text(campaign_seconds)));
+      answer(*common, fmt::format("the campaign: {} missing, at most {} of processor time",
+                                  data::counted(missing.size(), "run"), duration_text(campaign_seconds)));
     if (study.cases.empty())
       warnings.push_back(
           "there is no [[calibrate]] case yet: the study can train and plan (demcal plan --prior), not calibrate");
@@ -112,11 +107,12 @@ Action add_check(CLI::App& program) {
     for (const std::string& warning : warnings) say(*common, "warning: " + warning);
     data::refuse(rows.findings);
     answer(*common,
-           fmt::format("{}: {}, {}, {}, {}, {}, {}: {}", study.name, counted(study.parameters.size(), "parameter"),
-                       counted(study.controls.size(), "control"), counted(study.materials.size(), "material"),
-                       counted(study.observations.size(), "observation set"), counted(study.cases.size(), "case"),
-                       counted(data::used_rows(rows.table), "training run"),
-                       warnings.empty() ? "no problems" : counted(warnings.size(), "warning")));
+           fmt::format(
+               "{}: {}, {}, {}, {}, {}, {}: {}", study.name, data::counted(study.parameters.size(), "parameter"),
+               data::counted(study.controls.size(), "control"), data::counted(study.materials.size(), "material"),
+               data::counted(study.observations.size(), "observation set"), data::counted(study.cases.size(), "case"),
+               data::counted(data::used_rows(rows.table), "training run"),
+               warnings.empty() ? "no problems" : data::counted(warnings.size(), "warning")));
     nlohmann::json findings = nlohmann::json::array();
     for (const data::Finding& finding : rows.findings)
       findings.push_back({{"kind", to_text(finding.kind)},

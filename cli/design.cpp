@@ -29,8 +29,8 @@ Action add_design(CLI::App& program) {
     const Campaign campaign = plan_campaign(workspace, rows.all, options->runs);
     write_design(workspace, campaign.points);
     const std::string path = (std::filesystem::path(workspace.out) / "design.csv").string();
-    answer(common,
-           fmt::format("{} points to simulate, {} rows exist: {}", campaign.points.size(), rows.all.rows.size(), path));
+    answer(common, fmt::format("{} to simulate, {} exist: {}", data::counted(campaign.points.size(), "point"),
+                               data::counted(rows.all.rows.size(), "row"), path));
     print_json(common, {{"points", campaign.points.size()}, {"rows", rows.all.rows.size()}, {"design", path}});
     return data::ExitStatus::done;
   };

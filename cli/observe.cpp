@@ -13,6 +13,7 @@
 #include "data/file_name.hpp"
 #include "data/hash.hpp"
 #include "data/log_faults.hpp"
+#include "data/number_text.hpp"
 #include "data/origin.hpp"
 #include "data/torque_log.hpp"
 #include "data/unit_text.hpp"
@@ -352,9 +353,8 @@ data::ExitStatus observe(ObserveOptions options) {
     notes.push_back(std::move(note));
   for (const std::string& note : notes) say(options.common, "note: " + note);
   for (const std::string& warning : warnings) say(options.common, "warning: " + warning);
-  answer(options.common,
-         fmt::format("{} observation{}: {} (picture: {})", plateaus.size(), plateaus.size() == 1 ? "" : "s",
-                     out.string(), observe_pictures(out).front().string()));
+  answer(options.common, fmt::format("{}: {} (picture: {})", data::counted(plateaus.size(), "observation"),
+                                     out.string(), observe_pictures(out).front().string()));
   json["warnings"] = warnings;
   notes.insert(notes.begin(), log.notes.begin(), log.notes.end());
   json["notes"] = notes;

@@ -12,6 +12,7 @@
 #include "cli/train_posterior.hpp"
 #include "cli/train_slurm.hpp"
 #include "data/interrupt.hpp"
+#include "data/number_text.hpp"
 #include "data/progress.hpp"
 
 namespace cli {
@@ -87,9 +88,10 @@ Action add_train(CLI::App& program) {
                                                         : plan_campaign(workspace, rows.all, options->runs);
     write_design(workspace, campaign.points);
     if (campaign.points.empty())
-      answer(common, fmt::format("nothing is missing: the table has {} runs. For more of them: --runs N", before));
+      answer(common,
+             fmt::format("nothing is missing: the table has {}. For more: --runs N", data::counted(before, "run")));
     else
-      say(common, fmt::format("{} runs to make{}; the table has {}", campaign.points.size(),
+      say(common, fmt::format("{} to make{}; the table has {}", data::counted(campaign.points.size(), "run"),
                               campaign.continues ? ", left by an unfinished campaign" : "", before));
     if (const std::string warning = too_short(workspace, campaign.points); !warning.empty())
       say(common, "warning: " + warning);

@@ -11,6 +11,7 @@
 #include "cli/command.hpp"
 #include "cli/train_slurm.hpp"
 #include "data/interrupt.hpp"
+#include "data/number_text.hpp"
 #include "data/progress.hpp"
 
 namespace cli {
@@ -89,8 +90,8 @@ data::ExitStatus list_points(const Common& common, const Workspace& workspace, c
   if (enough) {
     answer(common, fmt::format("no runs are needed: that is no more than {:.0f} %", 100.0 * options.share));
   } else {
-    answer(common, fmt::format("{} points to run with your code: {}. Add their rows to {}, and give this command again",
-                               chosen.runs.size(), path, workspace.study.training.table));
+    answer(common, fmt::format("{} to run with your code: {}. Add what they give to {}, and give this command again",
+                               data::counted(chosen.runs.size(), "point"), path, workspace.study.training.table));
   }
   return data::ExitStatus::done;
 }
@@ -138,7 +139,10 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
     if (before->left && most) most = *before->left - finished;
     if (before->left && most && *most <= 0) pending.clear();
     say(common, fmt::format("an unfinished campaign goes on{}",
-                            before->left && most ? fmt::format(": {} runs are left to it", std::max(0, *most)) : ""));
+                            before->left && most
+                                ? fmt::format(": {} left to it",
+                                              data::counted(static_cast<std::size_t>(std::max(0, *most)), "run"))
+                                : ""));
   }
   std::size_t made = 0;
   std::size_t unsteady = 0;
@@ -153,7 +157,8 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
     if (pending.empty()) {
       assessment = assess(workspace, rows);
       trail.rows_and_share.emplace_back(rows.table.rows.size(), assessment.share());
-      say(common, fmt::format("{} runs: {}", rows.table.rows.size(), share_text(workspace.study, assessment)));
+      say(common,
+          fmt::format("{}: {}", data::counted(rows.table.rows.size(), "run"), share_text(workspace.study, assessment)));
       if (assessment.settled(options.share)) {
         ending = fmt::format("enough: no more than {:.0f} % is the surrogate's", 100.0 * options.share);
         break;
@@ -234,7 +239,7 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
   print_json(common, json);
   if (left_there) return *tell_left(common, *left_there, options.slurm->detach);
   if (interrupt.interrupted()) {
-    say(common, fmt::format("interrupted after {} runs; the same command goes on", made));
+    say(common, fmt::format("interrupted after {}; the same command goes on", data::counted(made, "run")));
     return data::ExitStatus::interrupted;
   }
   std::error_code ignored;

@@ -60,6 +60,10 @@ void fortran_exponent(std::string& text) {
 
 }  // namespace
 
+std::string counted(std::size_t count, std::string_view what) {
+  return std::to_string(count).append(" ").append(what).append(count == 1 ? "" : "s");
+}
+
 std::string_view trimmed(std::string_view text) {
   for (;;) {
     const std::size_t before = text.size();

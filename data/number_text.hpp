@@ -29,6 +29,9 @@ enum class Evidence {
 };
 Evidence decimal_evidence(std::string_view text);
 
+/// "1 run", "2 runs".
+std::string counted(std::size_t count, std::string_view what);
+
 /// Without blanks, hard ones too, at both ends.
 std::string_view trimmed(std::string_view text);
 

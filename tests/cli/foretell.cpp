@@ -61,7 +61,7 @@ TEST_CASE("check says how many spheres, their fill, gaps, Bond number, time step
   const auto outcome = folder.demcal({"check", quick, "--json"});
   INFO(outcome.err);
   for (const char* word : {"480 spheres", "fill: ", "gap between blade and trough: 2.4 mm, 2.7 of the largest sphere",
-                           "Bond number", "time step", "MB", "18 runs are missing", "measured on this machine"})
+                           "Bond number", "time step", "MB", "18 runs missing", "measured on this machine"})
     CHECK_THAT(outcome.err, Contains(word));
   const nlohmann::json one = nlohmann::json::parse(outcome.out)["materials"][0];
   CHECK(one["spheres"] == 480);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "data/number_text.hpp"
 #include "data/time_series.hpp"
 #include "surrogate/gaps.hpp"
 #include "uq/emulate/outlying_runs.hpp"
@@ -213,8 +214,8 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   report.notes = found.notes;
   const auto& active = fitted.process->data();
   if (active.points.rows() < active.z.size())
-    report.notes.push_back(fmt::format("{} runs at {} points: replicates are pooled with their own errors",
-                                       active.z.size(), active.points.rows()));
+    report.notes.push_back(fmt::format("{} runs at {}: replicates are pooled with their own errors", active.z.size(),
+                                       data::counted(static_cast<std::size_t>(active.points.rows()), "point")));
   for (const SobolIndex& index :
        sobol_indices(emulator_of(fitted).predict, static_cast<int>(rows.inputs.size()), {.seed = options.fit.seed})) {
     report.first_order.push_back(index.first);
