@@ -2,12 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <filesystem>
 
 #include "campaign/design.hpp"
-#include "campaign/posterior_runs.hpp"
+#include "campaign/posterior_campaign.hpp"
 #include "cli/command.hpp"
 #include "cli/train_slurm.hpp"
 #include "data/interrupt.hpp"
@@ -16,21 +15,6 @@
 
 namespace cli {
 namespace {
-
-/// The worst case's share after each batch of this start.
-struct Trail {
-  std::vector<std::pair<std::size_t, double>> rows_and_share;
-};
-
-/// Runs that the share's fall so far, taken as exponential in the number of runs, asks for; 0 when it did not fall.
-int runs_to_go(const Trail& trail, double target) {
-  if (trail.rows_and_share.size() < 2) return 0;
-  const auto& [first_rows, first] = trail.rows_and_share.front();
-  const auto& [last_rows, last] = trail.rows_and_share.back();
-  if (!(last < first) || last_rows <= first_rows || last <= 0.0) return 0;
-  const double rate = std::log(first / last) / static_cast<double>(last_rows - first_rows);
-  return std::max(1, static_cast<int>(std::ceil(std::log(last / target) / rate)));
-}
 
 std::string share_text(const data::Study& study, const Assessment& assessment) {
   const uq::SurrogateShare& worst = assessment.shares[assessment.worst];
@@ -43,22 +27,49 @@ std::string share_text(const data::Study& study, const Assessment& assessment) {
 }
 
 /// "about 40 more runs, 12 min on 2 jobs", as far as it can be told.
-std::string cost_text(const Trail& trail, const data::RunTable& table, const PosteriorTraining& options) {
-  const int more = runs_to_go(trail, options.share);
-  const double each = median_run_time(table);
+std::string cost_text(const PosteriorCampaign& campaign, int jobs) {
+  const int more = campaign.runs_to_go();
+  const double each = median_run_time(campaign.rows().table);
   const std::string time =
       each > 0.0 ? fmt::format(", a run takes {} of CPU time", data::duration_text(each)) : std::string();
   if (more == 0) return "how many more runs it takes cannot be told yet" + time;
-  std::string text = fmt::format("about {} more runs at the pace so far", more);
-  if (each > 0.0) text += fmt::format(", {} on {} jobs", data::duration_text(each * more / options.jobs), options.jobs);
+  std::string text =
+      fmt::format("about {} more at the pace so far", data::counted(static_cast<std::size_t>(more), "run"));
+  if (each > 0.0)
+    text += fmt::format(", {} on {}", data::duration_text(each * more / jobs),
+                        data::counted(static_cast<std::size_t>(jobs), "job"));
   return text;
 }
 
-/// Runs of the study's own design, all materials.
-int design_size(const data::Study& study) {
-  int runs = 0;
-  for (const data::Material& material : study.materials) runs += material.runs.value_or(study.training.runs);
-  return runs;
+std::string ending_text(CampaignEnding ending, double share) {
+  switch (ending) {
+    case CampaignEnding::enough:
+      return fmt::format("enough: no more than {:.0f} % is the surrogate's", 100.0 * share);
+    case CampaignEnding::runs_made:
+      return "the runs asked for are made";
+    case CampaignEnding::design_made:
+      return "as many runs as the study's design has are made (--runs N for more)";
+    case CampaignEnding::time_up:
+      return "the time is up";
+    case CampaignEnding::nothing_to_learn:
+      return "no run is expected to tell more";
+    case CampaignEnding::too_many_failed:
+      break;
+  }
+  return "too many runs failed";
+}
+
+/// Makes the batch here, or by Slurm.
+SlurmResult make_batch(const Common& common, const Workspace& workspace, PosteriorCampaign& campaign,
+                       const PosteriorTraining& options, const data::InterruptGuard& interrupt) {
+  data::Progress progress("training runs", campaign.batch().size(),
+                          {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
+  const BatchOptions how{
+      .jobs = options.jobs, .kept = campaign.rows().kept, .stop = interrupt.token(), .progress = &progress};
+  if (options.slurm) return run_on_slurm(workspace, campaign.batch(), campaign.hand_over_rows(), how, *options.slurm);
+  SlurmResult made;
+  static_cast<BatchResult&>(made) = run_batch(workspace, campaign.batch(), campaign.hand_over_rows(), how);
+  return made;
 }
 
 nlohmann::json shares_json(const data::Study& study, const Assessment& assessment) {
@@ -96,6 +107,40 @@ data::ExitStatus list_points(const Common& common, const Workspace& workspace, c
   return data::ExitStatus::done;
 }
 
+/// What the campaign came to, in words and as JSON.
+data::ExitStatus tell(const Common& common, const Workspace& workspace, const PosteriorCampaign& campaign,
+                      const PosteriorTraining& options, const std::optional<SlurmResult>& left_there,
+                      bool interrupted) {
+  const CampaignTotals& totals = campaign.totals();
+  const std::size_t rows = campaign.rows().table.rows.size();
+  for (const std::string& warning : totals.warnings) say(common, "warning: " + warning);
+  for (const std::string& failure : totals.failures) say(common, "failed: " + failure);
+  const std::size_t unsteady = workspace.unsteady == Unsteady::use ? 0 : totals.unsteady;  // else they were asked for
+  if (unsteady > 0)
+    say(common, fmt::format("warning: {} of the new runs are not of the steady flow and train nothing", unsteady));
+  nlohmann::json json = {{"finished", totals.finished},
+                         {"failed", totals.failures},
+                         {"warnings", totals.warnings},
+                         {"unsteady", unsteady},
+                         {"rows", rows},
+                         {"share_wanted", options.share}};
+  if (campaign.assessed()) json["cases"] = shares_json(workspace.study, campaign.assessment());
+  if (left_there) json["slurm"] = slurm_json(*left_there);
+  print_json(common, json);
+  if (left_there) return *tell_left(common, *left_there, options.slurm->detach);
+  if (interrupted) {
+    say(common, fmt::format("interrupted after {}; the same command goes on", data::counted(totals.finished, "run")));
+    return data::ExitStatus::interrupted;
+  }
+  campaign.finish();
+  answer(common, fmt::format("{}, {} in all; {}", data::counted(totals.finished, "new run"), rows,
+                             ending_text(*campaign.ending(), options.share)));
+  if (campaign.assessed() && !campaign.assessment().settled(options.share))
+    answer(common, fmt::format("{}; to go on: {}", share_text(workspace.study, campaign.assessment()),
+                               cost_text(campaign, options.jobs)));
+  return totals.failures.empty() && unsteady == 0 ? data::ExitStatus::done : data::ExitStatus::warning;
+}
+
 }  // namespace
 
 double parse_duration(const std::string& text, const std::string& place) {
@@ -126,130 +171,32 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
   const auto held = hold_out(workspace, Writes::training, "train");
   TrainingRows rows = training_rows(workspace);
   for (const std::string& note : rows.notes) say(common, "note: " + note);
-
-  // What an interrupted batch left, then what a surrogate needs at the least, then the posterior's runs.
-  std::vector<PlannedRun> pending;
-  std::optional<int> most;  // new runs
-  if (options.runs > 0) most = options.runs;
-  // Without a limit of the user's it ends where a new design would.
-  if (!most && !options.seconds) most = design_size(workspace.study);
-  if (const std::optional<PosteriorRuns> before = read_posterior_runs(workspace)) {
-    pending = without_rows(workspace, before->runs, rows.all);
-    const auto finished = static_cast<int>(before->runs.size() - pending.size());
-    if (before->left && most) most = *before->left - finished;
-    if (before->left && most && *most <= 0) pending.clear();
+  PosteriorCampaign campaign(
+      workspace, {.share = options.share, .batch = options.jobs, .runs = options.runs, .seconds = options.seconds},
+      std::move(rows));
+  if (campaign.continued()) {
+    const std::optional<int> left = campaign.runs_left();
     say(common, fmt::format("an unfinished campaign goes on{}",
-                            before->left && most
-                                ? fmt::format(": {} left to it",
-                                              data::counted(static_cast<std::size_t>(std::max(0, *most)), "run"))
-                                : ""));
-  }
-  std::size_t made = 0;
-  std::size_t unsteady = 0;
-  int failed = 0;
-  Trail trail;
-  Assessment assessment;
-  std::vector<std::string> failures, warnings;
-  std::string ending;
-  std::optional<SlurmResult> left_there;
-  for (;;) {
-    if (pending.empty()) pending = starting_runs(workspace, rows.all);
-    if (pending.empty()) {
-      assessment = assess(workspace, rows);
-      trail.rows_and_share.emplace_back(rows.table.rows.size(), assessment.share());
-      say(common,
-          fmt::format("{}: {}", data::counted(rows.table.rows.size(), "run"), share_text(workspace.study, assessment)));
-      if (assessment.settled(options.share)) {
-        ending = fmt::format("enough: no more than {:.0f} % is the surrogate's", 100.0 * options.share);
-        break;
-      }
-    }
-    int count = options.jobs;
-    const std::optional<int> left = most ? std::optional(*most - static_cast<int>(made)) : std::nullopt;
-    if (left) count = std::min(count, *left);
-    if (count <= 0) {
-      ending = options.runs > 0 ? "the runs asked for are made"
-                                : "as many runs as the study's design has are made (--runs N for more)";
-      break;
-    }
-    if (options.seconds && elapsed() + median_run_time(rows.table) > *options.seconds) {
-      ending = "the time is up";
-      break;
-    }
-    if (interrupt.interrupted()) break;
-    if (pending.empty()) {
-      const ChosenRuns chosen = choose_runs(workspace, rows, assessment, count, failed);
-      pending = chosen.runs;
-      if (pending.empty()) {
-        ending = "no run is expected to tell more";
-        break;
-      }
-      for (const PlannedRun& run : pending)
-        say(common, fmt::format("  next: {} {}", run.point.material, describe(workspace.study, run.point)));
-    }
-    if (left && static_cast<int>(pending.size()) > *left) pending.resize(static_cast<std::size_t>(*left));
-    write_posterior_runs(workspace, {.runs = pending, .left = left});
-    SlurmResult batch;
-    {
-      data::Progress progress("training runs", pending.size(),
-                              {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
-      const BatchOptions how{.jobs = options.jobs, .kept = rows.kept, .stop = interrupt.token(), .progress = &progress};
-      if (options.slurm)
-        batch = run_on_slurm(workspace, pending, std::move(rows.all), how, *options.slurm);
-      else
-        static_cast<BatchResult&>(batch) = run_batch(workspace, pending, std::move(rows.all), how);
-    }
-    rows = training_rows(workspace);  // what run_batch kept, without the runs that are not of the steady flow
-    made += batch.finished;
-    unsteady += batch.unsteady;
-    failed += static_cast<int>(batch.failures.size());
-    failures.insert(failures.end(), batch.failures.begin(), batch.failures.end());
-    warnings.insert(warnings.end(), batch.warnings.begin(), batch.warnings.end());
-    std::vector<PlannedRun> unfinished;
-    for (std::size_t i = 0; i < pending.size(); ++i)
-      if (!batch.ended[i]) unfinished.push_back(pending[i]);
-    pending = std::move(unfinished);
-    write_posterior_runs(
-        workspace, {.runs = pending, .left = most ? std::optional(*most - static_cast<int>(made)) : std::nullopt});
-    if (batch.error) std::rethrow_exception(batch.error);
-    if (batch.with_slurm + batch.cancelled + batch.refused > 0) {
-      left_there = std::move(batch);
-      break;
-    }
-    if (interrupt.interrupted()) break;
-    if (batch.finished == 0 && failed > 20) {
-      ending = "too many runs failed";
-      break;
-    }
+                            left ? fmt::format(": {} left to it",
+                                               data::counted(static_cast<std::size_t>(std::max(0, *left)), "run"))
+                                 : ""));
   }
 
-  for (const std::string& warning : warnings) say(common, "warning: " + warning);
-  for (const std::string& failure : failures) say(common, "failed: " + failure);
-  if (workspace.unsteady == Unsteady::use) unsteady = 0;  // they were asked for
-  if (unsteady > 0)
-    say(common, fmt::format("warning: {} of the new runs are not of the steady flow and train nothing", unsteady));
-  nlohmann::json json = {{"finished", made},
-                         {"failed", failures},
-                         {"warnings", warnings},
-                         {"unsteady", unsteady},
-                         {"rows", rows.table.rows.size()},
-                         {"share_wanted", options.share}};
-  if (!assessment.shares.empty()) json["cases"] = shares_json(workspace.study, assessment);
-  if (left_there) json["slurm"] = slurm_json(*left_there);
-  print_json(common, json);
-  if (left_there) return *tell_left(common, *left_there, options.slurm->detach);
-  if (interrupt.interrupted()) {
-    say(common, fmt::format("interrupted after {}; the same command goes on", data::counted(made, "run")));
-    return data::ExitStatus::interrupted;
+  std::optional<SlurmResult> left_there;
+  while (!campaign.ending() && !left_there && !interrupt.interrupted()) {
+    if (campaign.look())
+      say(common, fmt::format("{}: {}", data::counted(campaign.rows().table.rows.size(), "run"),
+                              share_text(workspace.study, campaign.assessment())));
+    if (!campaign.choose(elapsed())) break;
+    if (campaign.chosen())
+      for (const PlannedRun& run : campaign.batch())
+        say(common, fmt::format("  next: {} {}", run.point.material, describe(workspace.study, run.point)));
+    SlurmResult made = make_batch(common, workspace, campaign, options, interrupt);
+    campaign.take(made);
+    if (made.error) std::rethrow_exception(made.error);
+    if (made.with_slurm + made.cancelled + made.refused > 0) left_there = std::move(made);
   }
-  std::error_code ignored;
-  std::filesystem::remove(posterior_runs_path(workspace), ignored);
-  answer(common, fmt::format("{} new runs, {} in all; {}", made, rows.table.rows.size(), ending));
-  const bool open = !assessment.shares.empty() && !assessment.settled(options.share);
-  if (open)
-    answer(common, fmt::format("{}; to go on: {}", share_text(workspace.study, assessment),
-                               cost_text(trail, rows.table, options)));
-  return failures.empty() && unsteady == 0 ? data::ExitStatus::done : data::ExitStatus::warning;
+  return tell(common, workspace, campaign, options, left_there, interrupt.interrupted());
 }
 
 }  // namespace cli
