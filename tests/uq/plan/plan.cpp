@@ -281,3 +281,95 @@ TEST_CASE("widths and words that a plan forecasts come true", "[plan][slow]") {
   CHECK(mean_chance == Approx(rate).margin(0.12));
   CHECK(brier < base + 0.02);
 }
+
+namespace {
+
+/// Dakota's regression test of its Bayesian experimental design (test/dakota_bayes_expdesign, its second set of settings): a quadratic A x^2 + B x + C
+/// stands in for a heated rod, of which two temperatures are known; where to take the third?
+constexpr double rod_x[] = {10.581408334, 68.993623252}, rod_y[] = {94.604886616, 25.878269041};
+
+data::Study heated_rod(double sd) {
+  data::Study made;
+  made.name = "rod";
+  made.file = "study.toml";
+  for (const auto& [name, low, high] : {std::tuple{"A", 0.0, 0.06}, {"B", -8.0, 0.0}, {"C", 0.0, 260.0}}) {
+    data::Parameter parameter{.name = name, .target = name, .low = low, .high = high};
+    parameter.prior.low = low;
+    parameter.prior.high = high;
+    made.parameters.push_back(parameter);
+  }
+  made.controls.push_back({.name = "x", .target = "x", .low = 10.0, .high = 70.0});
+  data::Output temperature;
+  temperature.name = "temperature";
+  made.outputs.push_back(temperature);
+  made.materials.emplace_back();
+  data::ObservationSet rod{.name = "rod", .file = "rod.csv", .outputs = {0}};
+  for (int i = 0; i < 2; ++i)
+    rod.points.push_back({.controls = {rod_x[i]}, .values = {rod_y[i]}, .standard_errors = {sd}, .line = i + 2});
+  made.observations.push_back(rod);
+  data::CalibrationCase one;
+  one.name = "coefficients";
+  one.observe = {"rod"};
+  one.free = {"A", "B", "C"};
+  made.cases.push_back(one);
+  return made;
+}
+
+std::vector<uq::Emulator> quadratic() {
+  uq::Emulator one{.material = "",
+                   .output = 0,
+                   .inputs = {{uq::InputKind::parameter, 0},
+                              {uq::InputKind::parameter, 1},
+                              {uq::InputKind::parameter, 2},
+                              {uq::InputKind::control, 0}},
+                   .constants = {},
+                   .control_range = {{0, {10.0, 70.0}}},
+                   .predict = {}};
+  one.predict = [](const Eigen::MatrixXd& u) -> surrogate::Prediction {
+    const Eigen::ArrayXd x = 10.0 + 60.0 * u.col(3).array();
+    return {.mean = 0.06 * u.col(0).array() * x * x + (8.0 * u.col(1).array() - 8.0) * x + 260.0 * u.col(2).array(),
+            .covariance = Eigen::MatrixXd::Zero(u.rows(), u.rows())};
+  };
+  return {one};
+}
+
+/// Information of a reading at x, with errors of `sd`: given A, the two temperatures fix B and C but for their errors, so
+/// that A is uniform and the reading the sum of a uniform and a normal number. By quadrature of its entropy.
+double rod_information(double x, double sd) {
+  const double w = (x - rod_x[0]) / (rod_x[1] - rod_x[0]);
+  const double width = 0.06 * std::abs((x - rod_x[0]) * (x - rod_x[1]));
+  const double spread = sd * std::sqrt(1.0 + w * w + (1.0 - w) * (1.0 - w));
+  const auto below = [&](double y) { return 0.5 * std::erfc(-y / (spread * std::sqrt(2.0))); };
+  const double low = -8.0 * spread, high = width + 8.0 * spread;
+  const int cells = 20000;
+  double entropy = 0.0;
+  for (int i = 0; i < cells; ++i) {
+    const double y = low + (high - low) * (i + 0.5) / cells;
+    const double p = (below(y) - below(y - width)) / width;
+    if (p > 0.0) entropy -= p * std::log(p) * (high - low) / cells;
+  }
+  return entropy - 0.5 * std::log(2.0 * M_PI * std::exp(1.0) * sd * sd);
+}
+
+}  // namespace
+
+TEST_CASE("of Dakota's heated rod the reading in the middle teaches most, by as much as quadrature says", "[plan]") {
+  const double sd = 1.0;
+  const std::vector<double> places = {20.0, 40.0, 60.0};
+  const data::PlanSection section{.about = {},
+                                  .cost_unit = {},
+                                  .candidates = {{.name = "third",
+                                                  .material = {},
+                                                  .outputs = {0},
+                                                  .settings = {places},
+                                                  .error = data::Spread{.absolute = sd},
+                                                  .common_error = {},
+                                                  .place = {}}}};
+  const PlanReport plan = plan_of(heated_rod(sd), quadratic(), section, {.about = "A"});
+  CHECK(plan.candidates.front().settings.front().at("x") == Approx(40.0));
+  for (const PlanCandidate& one : plan.candidates) {
+    const double x = one.settings.front().at("x"), truth = rod_information(x, sd);
+    CAPTURE(x, truth, one.information, one.information_error);
+    CHECK(std::abs(one.information - truth) <= one.information_error + 0.01);
+  }
+}
