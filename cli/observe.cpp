@@ -166,11 +166,6 @@ std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vect
         "{} samples without all three values are left out: where the sensor was beyond its range then, means are too "
         "small",
         log.missing));
-  if (log.uneven_share > 0.05)
-    warnings.push_back(
-        fmt::format("{:.0f} % of the samples are not evenly spaced in time: the errors, which take them "
-                    "to be, are approximate",
-                    100.0 * log.uneven_share));
   for (const data::Plateau& plateau : plateaus)
     if (!plateau.torque.reliable)
       warnings.push_back(fmt::format(

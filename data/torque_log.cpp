@@ -99,6 +99,38 @@ void set_speed(const TorqueLog& log, Plateau& plateau, double tolerance) {
   if (members > 1.0) plateau.speed_sd = std::sqrt(std::max(0.0, squares - sum * sum / members) / (members - 1.0));
 }
 
+/// The torque of samples at even steps of time, of the log's interval: the mean over each step, where a sample stands
+/// until the next one. That is what a log of changes means, and of a log read at uneven times it gives no sample more
+/// weight than its time.
+std::vector<double> at_even_steps(const TorqueLog& log, std::size_t first, std::size_t count) {
+  constexpr double most = 1e6;
+  const double start = log.time[first], end = log.time[first + count - 1] + log.interval;
+  const auto steps = static_cast<std::size_t>(std::clamp((end - start) / log.interval, 1.0, most));
+  const double step = (end - start) / static_cast<double>(steps);
+  std::vector<double> means(steps, 0.0);
+  for (std::size_t i = first; i < first + count; ++i) {
+    const double from = log.time[i] - start, to = (i + 1 < first + count ? log.time[i + 1] : end) - start;
+    for (auto k = static_cast<std::size_t>(from / step); k < steps && static_cast<double>(k) * step < to; ++k)
+      means[k] += log.torque[i] / step *
+                  std::max(0.0, std::min(to, static_cast<double>(k + 1) * step) -
+                                    std::max(from, static_cast<double>(k) * step));
+  }
+  return means;
+}
+
+/// Mean and error of the torque of samples, and how many of the first ones are start-up.
+SeriesMean mean_of_samples(const TorqueLog& log, std::size_t first, std::size_t count, bool spikes_count) {
+  if (!log.uneven() || count < 2) return mean_of_hold({log.torque.data() + first, count}, spikes_count);
+  const std::vector<double> even = at_even_steps(log, first, count);
+  SeriesMean found = mean_of_hold(even, spikes_count);
+  const double last = log.time[first + count - 1] + log.interval - log.time[first];
+  const double until = log.time[first] + last * static_cast<double>(found.dropped) / static_cast<double>(even.size());
+  const auto begin = log.time.begin() + static_cast<std::ptrdiff_t>(first);
+  found.dropped =
+      static_cast<std::size_t>(std::lower_bound(begin, begin + static_cast<std::ptrdiff_t>(count) - 1, until) - begin);
+  return found;
+}
+
 /// Mean and error of a stretch of constant `speed`.
 Plateau reduce(const TorqueLog& log, std::size_t first, std::size_t count, double speed,
                const PlateauOptions& options) {
@@ -106,7 +138,7 @@ Plateau reduce(const TorqueLog& log, std::size_t first, std::size_t count, doubl
   while (plateau.used_from < first + count && log.time[plateau.used_from] - log.time[first] < options.dead_time)
     ++plateau.used_from;
   const std::size_t left = first + count - plateau.used_from;
-  plateau.torque = mean_of_hold({log.torque.data() + plateau.used_from, left}, options.spikes_count);
+  plateau.torque = mean_of_samples(log, plateau.used_from, left, options.spikes_count);
   plateau.used_from += plateau.torque.dropped;
   set_speed(log, plateau, options.tolerance);
   return plateau;

@@ -53,6 +53,9 @@ struct TorqueLog {
   std::vector<std::string> warnings;  ///< what is doubtful in its fields, in words: a meter beyond its range
   double interval = 0.0;              ///< s, median between samples
   double uneven_share = 0.0;          ///< share of the intervals that differ from the median by more than a fifth
+
+  /// Whether means are over time, each sample until the next one, and not over samples.
+  bool uneven() const { return uneven_share > 0.05 && interval > 0.0; }
 };
 
 /// Reads a log. Times are numbers with a unit, times of day or dates with times; those that start again at midnight go

@@ -127,6 +127,10 @@ void check_spacing(TorqueLog& log) {
   for (std::size_t i = 1; i < log.time.size(); ++i)
     uneven += std::abs(log.time[i] - log.time[i - 1] - log.interval) > 0.2 * log.interval;
   log.uneven_share = static_cast<double>(uneven) / static_cast<double>(log.time.size() - 1);
+  if (log.uneven())
+    log.notes.push_back(
+        fmt::format("{:.0f} % of the samples are not evenly spaced in time: each counts until the next one",
+                    100.0 * log.uneven_share));
 }
 
 /// The stamps of all rows, s; NaN where there is none.

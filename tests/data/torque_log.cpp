@@ -274,3 +274,60 @@ TEST_CASE("a tachometer that reads nothing for some milliseconds ends no hold") 
       20000, 0.001, [](int) { return 3.0; }, [](int i) { return i % 2000 < 8 ? 0.0 : 100.0; });
   CHECK(data::find_plateaus(log).size() == 1);
 }
+
+namespace {
+
+/// The hold of a log with samples at these times, all at 120 rpm.
+data::Plateau hold_of(const std::vector<double>& times, const std::vector<double>& torques) {
+  std::string text = "time [s],torque [N m],rpm\n";
+  for (std::size_t i = 0; i < times.size(); ++i) text += fmt::format("{:.4f},{:.6f},120\n", times[i], torques[i]);
+  const TemporaryFolder folder;
+  const std::vector<data::Plateau> found =
+      data::find_plateaus(data::read_torque_log(folder.write("log.csv", text)), {.shortest = 5.0});
+  REQUIRE(found.size() == 1);
+  return found.front();
+}
+
+}  // namespace
+
+TEST_CASE("a log of changes gives means over time: a sample counts until the next one") {
+  // 3 N m, with half a second of 4 N m every ten seconds that has as many samples as the rest.
+  std::vector<double> times, torques;
+  data::RandomStream random(3, data::Purpose::test);
+  for (int period = 0; period < 60; ++period) {
+    for (int i = 0; i < 10; ++i) {
+      times.push_back(10.0 * period + 0.95 * i);
+      torques.push_back(3.0 + 0.01 * random.normal());
+    }
+    for (int i = 0; i < 10; ++i) {
+      times.push_back(10.0 * period + 9.5 + 0.05 * i);
+      torques.push_back(4.0 + 0.01 * random.normal());
+    }
+  }
+  const data::Plateau hold = hold_of(times, torques);
+  CHECK(hold.torque.mean == Approx(3.05).epsilon(0.005));
+  CHECK(hold.used_from == hold.first);
+}
+
+TEST_CASE("means of samples at uneven times lie within their errors of the truth as often as they should") {
+  // Noise of sd 0.2 and correlation time 2 s, read every 0.02 to 0.4 s for two minutes.
+  constexpr int logs = 60;
+  double squares = 0.0;
+  for (std::uint64_t seed = 0; seed < logs; ++seed) {
+    data::RandomStream random(seed, data::Purpose::test, 21);
+    std::vector<double> times, torques;
+    double noise = 0.2 * random.normal();
+    for (double t = 0.0; t < 120.0;) {
+      times.push_back(t);
+      torques.push_back(3.0 + noise);
+      const double step = 0.02 * std::pow(20.0, random.uniform());
+      const double memory = std::exp(-step / 2.0);
+      noise = memory * noise + 0.2 * std::sqrt(1.0 - memory * memory) * random.normal();
+      t += step;
+    }
+    const data::SeriesMean mean = hold_of(times, torques).torque;
+    squares += std::pow((mean.mean - 3.0) / mean.standard_error, 2) / logs;
+  }
+  CHECK(std::sqrt(squares) > 0.7);
+  CHECK(std::sqrt(squares) < 1.3);
+}
