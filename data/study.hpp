@@ -126,6 +126,7 @@ struct ObservationCopy {
 struct CommonError {
   std::size_t output = 0;  ///< index into Study::outputs
   Spread spread;
+  bool apart = false;  ///< from its meter's: integrated out by itself, where nothing else is read by the meter
 };
 
 struct ObservationSet {

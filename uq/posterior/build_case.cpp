@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include "data/error.hpp"
@@ -42,6 +43,7 @@ class Builder {
       for (const auto& name : item->free) add_slot(model, *item, name);
       add_nuisances(model, *item);
     }
+    add_set_unknowns(model);
     stop_on_problems();
     for (const auto* item : links_.cases()) add_rows(model, *item);
     check_slots_used(model);
@@ -112,11 +114,17 @@ class Builder {
       }
       add_nuisance(model, links_.home(item, name), label_of(item, name), links_.first_nuisance(item, name));
     }
-    for (const auto& set_name : item.observe) {
-      const data::ObservationSet& set = study_.observations[study_.observation_index(set_name).value()];
-      for (const data::Nuisance& unknown : set_unknowns(study_, set))
-        add_nuisance(model, home_of(unknown), unknown.parameter.name, unknown);
-    }
+  }
+
+  /// Unknowns of the measurements of all cases, by name: in the same order whichever case reads a meter first.
+  void add_set_unknowns(CaseModel& model) {
+    std::map<std::string, data::Nuisance> found;
+    for (const auto* item : links_.cases())
+      for (const auto& set_name : item->observe)
+        for (const data::Nuisance& unknown :
+             set_unknowns(study_, study_.observations[study_.observation_index(set_name).value()]))
+          found.emplace(unknown.parameter.name, unknown);
+    for (const auto& [name, unknown] : found) add_nuisance(model, home_of(unknown), name, unknown);
   }
 
   /// Of an unknown that a measurement has.

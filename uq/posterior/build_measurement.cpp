@@ -93,7 +93,7 @@ std::vector<data::Problem> add_measurement(RowGroup& group, const data::Study& s
     }
   }
   for (const auto& error : set.common_errors)
-    if (error.output == rows.output && set.meter.empty()) {
+    if (error.output == rows.output && (set.meter.empty() || error.apart)) {
       read.common_absolute = error.spread.absolute;
       read.common_relative = error.spread.relative;
     }

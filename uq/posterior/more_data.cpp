@@ -1,14 +1,52 @@
 #include "uq/posterior/more_data.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "uq/posterior/posterior.hpp"
+#include "uq/posterior/set_unknowns.hpp"
 
 namespace uq {
 namespace {
 
 constexpr std::size_t rows_most = 120;  // of a set's points, in the model of what they leave open
+
+/// The study with what the sampled case does not know as an error of the new sets: a meter that it has not read, the
+/// machine's scale.
+data::Study without_new_unknowns(data::Study study, std::size_t case_index, const CaseModel& sampled) {
+  const auto is_known = [&](const std::string& name) {
+    return std::any_of(sampled.slots.begin(), sampled.slots.end(),
+                       [&](const Slot& slot) { return slot.label == name; });
+  };
+  std::optional<data::CommonError> scale;
+  if (study.scale && study.scale->unknown && !is_known(study.scale->unknown->parameter.name)) {
+    const data::Parameter& parameter = study.scale->unknown->parameter;
+    const ScaledPrior prior(parameter, parameter.prior);
+    scale = {.output = 0, .spread = {.relative = prior.value_sd() / prior.value_mean()}, .apart = true};
+    study.scale = {.value = prior.value_mean(), .unknown = {}};
+  }
+  for (const std::string& name : study.cases[case_index].observe) {
+    data::ObservationSet& set = study.observations[study.observation_index(name).value()];
+    for (data::CommonError& error : set.common_errors) {
+      data::ObservationSet alone = set;
+      alone.common_errors = {error};
+      for (const data::Nuisance& unknown : set_unknowns(study, alone))
+        if ((unknown.kind == data::NuisanceKind::gain || unknown.kind == data::NuisanceKind::offset) &&
+            !is_known(unknown.parameter.name))
+          error.apart = true;
+    }
+    if (!scale || !set.of_machine) continue;
+    const auto stated = std::find_if(set.common_errors.begin(), set.common_errors.end(),
+                                     [](const data::CommonError& error) { return error.output == 0; });
+    if (stated == set.common_errors.end())
+      set.common_errors.push_back(*scale);
+    else
+      stated->spread.relative = std::hypot(stated->spread.relative, scale->spread.relative);
+  }
+  return study;
+}
 
 }  // namespace
 
@@ -41,7 +79,7 @@ void condense(data::ObservationSet& set) {
 
 CaseModel with_more_data(const data::Study& wider, const std::vector<Emulator>& emulators, std::size_t case_index,
                          const CaseModel& sampled) {
-  CaseModel model = build_case(wider, emulators, case_index);
+  CaseModel model = build_case(without_new_unknowns(wider, case_index, sampled), emulators, case_index);
   model.slots = sampled.slots;
   model.distinct.reset();
   for (RowGroup& group : model.groups)

@@ -30,6 +30,7 @@ data::Nuisance meter_unknown(data::NuisanceKind kind, const data::ObservationSet
 void add_meter(const data::Study& study, const data::ObservationSet& set, std::vector<data::Nuisance>& found) {
   if (set.meter.empty()) return;
   for (const data::CommonError& error : set.common_errors) {
+    if (error.apart) continue;
     const data::Output& output = study.outputs[error.output];
     const auto name = [&](const char* what) { return fmt::format("{}_{}_{}", set.meter, output.name, what); };
     if (error.spread.relative > 0.0)

@@ -126,3 +126,36 @@ TEST_CASE("readings of another law are rejected, and the farthest is named") {
   CHECK(found.sentence.find("does not predict") != std::string::npos);
   CHECK(found.sentence.find("torque at speed 1,") != std::string::npos);
 }
+
+TEST_CASE(
+    "an error that the case's own data do not have widens the prediction: of another meter, of the machine's scale") {
+  data::RandomStream random(6, data::Purpose::test, 2);
+  const data::Study plain = made(0.4, 0.55, 0.0, random);
+  const auto width_of = [](const PredictedPoint& one) { return (one.point.q95 - one.point.q05) / (2.0 * 1.645); };
+  constexpr double error = 0.05, scale = 20.0;
+
+  data::Study metered = plain;
+  metered.observations[1].common_errors = {{0, {.relative = error}}};
+  metered.observations[1].meter = "new-cell";
+
+  data::Study machine = plain;
+  data::Parameter unknown{.name = "scale", .target = "scale", .low = 14.0, .high = 26.0};
+  unknown.prior = {.kind = data::PriorKind::normal, .low = 14.0, .high = 26.0, .mean = scale, .sd = error * scale};
+  machine.scale = {.value = scale, .unknown = data::Nuisance{data::NuisanceKind::scale, 0, unknown}};
+  machine.observations[1].of_machine = true;
+  for (data::Observation& point : machine.observations[1].points) {
+    point.values[0] *= scale;
+    point.standard_errors[0] *= scale;
+  }
+
+  const PredictionReport before = predicted(plain, 0.0);
+  for (const auto& [study, factor] : {std::pair{metered, 1.0}, {machine, scale}}) {
+    const PredictionReport after = predicted(study, 0.0);
+    for (std::size_t j = 0; j < unused.size(); ++j) {
+      const double mean = before.points[j].point.mean;
+      CHECK(after.points[j].point.mean == Approx(factor * mean).epsilon(1e-3));
+      CHECK(width_of(after.points[j]) ==
+            Approx(factor * std::hypot(width_of(before.points[j]), error * mean)).epsilon(0.02));
+    }
+  }
+}
