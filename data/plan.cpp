@@ -55,6 +55,17 @@ PlanEntry read_entry(const Section& section, const Study& study) {
   const Unit& unit = study.outputs.empty() ? Unit{} : study.outputs[entry.outputs.front()].unit;
   if (section.has("error")) entry.error = read_spread(section, "error", unit, BareNumber::share);
   if (section.has("common_error")) entry.common_error = read_spread(section, "common_error", unit, BareNumber::share);
+  if (section.has("meter")) {
+    entry.meter = section.text("meter");
+    std::vector<std::string> meters;
+    for (const ObservationSet& set : study.observations)
+      if (!set.meter.empty()) meters.push_back(set.meter);
+    index_of(section, "meter", entry.meter, meters, "meter");
+    if (entry.common_error)
+      section.problem("common_error",
+                      fmt::format("is stated, but that of '{}' stands with its measurements", entry.meter),
+                      "leave one of the two out");
+  }
   for (const auto& [key, spread] : {std::pair{"error", entry.error}, {"common_error", entry.common_error}})
     if (spread && spread->absolute > 0.0 && entry.outputs.size() > 1)
       section.problem(key, "has a unit, but the candidate reads several outputs",

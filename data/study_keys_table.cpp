@@ -419,6 +419,8 @@ const std::vector<StudyKey>& study_keys() {
        "standard error of one reading: a share of the value, or a value with its unit", "\"3 %\""},
       {"plan.candidates.common_error", "quantity", "", "above 0 to 1", "",
        "error of a meter that has not measured yet, which all readings of the entry share", "\"1 %\""},
+      {"plan.candidates.meter", "text", "", "", "the one that has read the output",
+       "meter of the observations that would read it, and whose common error it shares", "\"torque-cell-1\""},
       {"plan.candidates.cost", "number", "", "above 0", "1", "cost of one measurement", "2.5"},
   };
   return keys;

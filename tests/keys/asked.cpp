@@ -134,6 +134,7 @@ cost = 2
 [[plan.candidates]]
 name = "two"
 settings = { NAME6 = [100, 200] }
+meter = "cell"
 [contact]
 normal = "linear"
 tangential = "linear"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <tuple>
 
@@ -338,7 +339,8 @@ std::optional<std::size_t> host_of(const Study& study, const std::vector<std::si
   if (candidate.common_error) return {};
   for (const std::size_t index : sets) {
     const data::ObservationSet& set = study.observations[index];
-    if (set.material == candidate.material && set.outputs == std::vector{output} && !has_unknown_setting(set))
+    if (set.material == candidate.material && set.outputs == std::vector{output} && !has_unknown_setting(set) &&
+        (candidate.meter.empty() || candidate.meter == set.meter))
       return index;
   }
   return {};
@@ -363,7 +365,8 @@ std::vector<Candidate> candidates_of(const Study& study, const std::vector<Emula
   std::vector<Candidate> found;
   for (const data::PlanEntry& entry : plan.candidates) {
     std::vector<Candidate> more = Entry(study, emulators, case_index, entry, options, problems).all();
-    for (Candidate& one : more) one.meter = static_cast<std::size_t>(&entry - plan.candidates.data());
+    for (Candidate& one : more)
+      one.meter = entry.common_error ? fmt::format("planned {}", &entry - plan.candidates.data()) : entry.meter;
     found.insert(found.end(), more.begin(), more.end());
   }
   if (!problems.empty()) throw data::InputError(data::ExitStatus::bad_study, problems);
@@ -379,7 +382,7 @@ ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, 
     std::size_t candidate = 0, column = 0;
   };
   std::map<std::pair<std::size_t, std::size_t>, Home> home;  // of a planned point, by set and point
-  std::map<std::tuple<std::size_t, std::string, std::size_t>, std::size_t>
+  std::map<std::tuple<std::string, std::string, std::size_t>, std::size_t>
       of_new_meter;  // sets by meter and what it reads
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
@@ -389,7 +392,7 @@ ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, 
       const std::tuple reads{candidate.meter, candidate.material, output};
       if (const auto host = host_of(wider, sets, candidate, output)) {
         index = *host;
-      } else if (const auto same = of_new_meter.find(reads); candidate.common_error && same != of_new_meter.end()) {
+      } else if (const auto same = of_new_meter.find(reads); !candidate.meter.empty() && same != of_new_meter.end()) {
         index = same->second;
       } else {
         data::ObservationSet set{
@@ -397,13 +400,21 @@ ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, 
         for (const std::size_t own : sets)
           if (study.observations[own].material == candidate.material) {
             set.of_machine = study.observations[own].of_machine && output == 0;
-            if (candidate.common_error) continue;
+            if (candidate.common_error || !candidate.meter.empty()) continue;
             set.meter = study.observations[own].meter;
             set.common_errors = study.observations[own].common_errors;
           }
-        if (candidate.common_error) set.common_errors = {{output, *candidate.common_error}};
+        if (candidate.common_error) {
+          set.common_errors = {{output, *candidate.common_error}};
+        } else if (!candidate.meter.empty()) {
+          set.meter = candidate.meter;
+          for (const data::ObservationSet& read : study.observations)
+            if (read.meter == candidate.meter && set.common_errors.empty())
+              std::copy_if(read.common_errors.begin(), read.common_errors.end(), std::back_inserter(set.common_errors),
+                           [&](const data::CommonError& error) { return error.output == output; });
+        }
         index = wider.observations.size();
-        if (candidate.common_error) of_new_meter[reads] = index;
+        if (!candidate.meter.empty()) of_new_meter[reads] = index;
         wider.cases[case_index].observe.push_back(set.name);
         wider.observations.push_back(std::move(set));
       }

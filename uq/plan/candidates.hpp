@@ -20,7 +20,7 @@ struct Candidate {
   std::vector<std::vector<double>> settings;  ///< points x controls, SI
   std::vector<data::Spread> error;            ///< of one reading, per output
   std::optional<data::Spread> common_error;   ///< of a meter that has not measured yet
-  std::size_t meter = 0;                      ///< its number: candidates of one number share its error
+  std::string meter;                          ///< candidates of one name share its error; may be one that has measured
   bool assumed_error = false;                 ///< nobody stated one
   bool model_only = false;                    ///< the output need not mean the same in the real powder
   int readings = 1;
