@@ -4,6 +4,11 @@
 #include <string>
 
 namespace uq {
+namespace {
+
+constexpr double rounding_most = 1e-3;  // a negative eigenvalue, as a share of the largest one
+
+}  // namespace
 
 Factor factor(Eigen::MatrixXd covariance, const char* what) {
   const Eigen::VectorXd diagonal = covariance.diagonal();
@@ -21,8 +26,16 @@ Eigen::MatrixXd semidefinite_root(const Eigen::MatrixXd& covariance, const char*
   const Eigen::LDLT<Eigen::MatrixXd> ldlt(covariance);
   const Eigen::VectorXd parts = ldlt.vectorD();
   const double scale = covariance.diagonal().cwiseAbs().maxCoeff();
-  if (!covariance.allFinite() || ldlt.info() != Eigen::Success || !(parts.minCoeff() >= -1e-8 * scale))
-    throw std::domain_error(std::string("the covariance of ") + what + " is not positive semidefinite");
+  const std::string defect = std::string("the covariance of ") + what + " is not positive semidefinite";
+  if (!covariance.allFinite()) throw std::domain_error(defect);
+  if (ldlt.info() != Eigen::Success || !(parts.minCoeff() >= -1e-8 * scale)) {
+    // What is left of a prior a million times as wide has its rounding.
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+    const Eigen::VectorXd& values = solver.eigenvalues();
+    if (solver.info() != Eigen::Success || !(values.minCoeff() >= -rounding_most * values.maxCoeff()))
+      throw std::domain_error(defect);
+    return solver.eigenvectors() * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  }
   const Eigen::MatrixXd lower = ldlt.matrixL();
   return ldlt.transpositionsP().transpose() * Eigen::MatrixXd(lower * parts.cwiseMax(0.0).cwiseSqrt().asDiagonal());
 }
