@@ -106,7 +106,8 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
   }
 }
 
-/// Observed controls beside those of the runs, where a factor between units would explain that they do not meet.
+/// Observed controls beside the study's range and the runs, where a factor between units would explain that they do not
+/// meet.
 void check_control_unit(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
                         std::vector<Finding>& findings) {
   for (std::size_t c = 0; c < study.controls.size(); ++c) {
@@ -120,7 +121,8 @@ void check_control_unit(const data::Study& study, const data::RunTable& table, c
     const double typical = data::median_of(runs.values);
     if (typical < control.low || typical > control.high) continue;  // then it is the runs' column that is odd
     const auto met = std::count_if(seen.values.begin(), seen.values.end(), [&](double value) {
-      return value >= runs.low - 0.2 * slack && value <= runs.high + 0.2 * slack;
+      return value >= std::min(runs.low, control.low) - 0.2 * slack &&
+             value <= std::max(runs.high, control.high) + 0.2 * slack;
     });
     if (2 * static_cast<std::size_t>(met) >= seen.values.size()) continue;
     const UnitFactor* known = nullptr;  // that takes all readings into the range

@@ -219,6 +219,15 @@ TEST_CASE("a column in another unit is suspected from its range, and refused whe
   }
 }
 
+TEST_CASE("a reading at the end of the control's range is in no other unit, though the runs stop a little before",
+          "[uq]") {
+  Files files;
+  std::erase_if(files.runs, [](const Row& row) { return row.speed > 285.0; });
+  files.bench = {files.bench.back()};
+  REQUIRE(files.bench[0].speed == 300.0);
+  for (const data::Finding& finding : look(files).findings) CHECK(finding.kind != data::FindingKind::unit);
+}
+
 TEST_CASE("observed magnitudes outside all runs are named, with the factor between units that they suggest", "[uq]") {
   Files files;
   files.each_reading([](Row& row) { row.torque *= 1e3, row.error *= 1e3; });
