@@ -216,6 +216,12 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
                                           "independent experiment, or reduce the measurement error.",
                                           together)});
   }
+  if (sorted.practical.empty() && surrogate < mostly)
+    if (const std::string together = partners(facts, sorted.surrogate); !together.empty())
+      remedies.push_back({sorted.of_measurement,
+                          fmt::format("Or measure a quantity that responds differently to {}, or fix one of them by an "
+                                      "independent experiment: that parts them whatever the surrogate hides.",
+                                      together)});
   if (!sorted.one_sided.empty())
     remedies.push_back(
         {sorted.of_range, fmt::format("Widen the range of {}, with training runs there, or measure where the response "

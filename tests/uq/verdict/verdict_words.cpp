@@ -134,6 +134,20 @@ TEST_CASE("the first remedy is that of the largest share: training runs where th
   CHECK_FALSE(has(words.remedy, "Reduce the measurement error"));
 }
 
+TEST_CASE("of traded parameters another quantity is advised, too, where the surrogate leaves open why", "[uq]") {
+  ParameterEvidence more;
+  more.undecided = true;
+  more.surrogate_share = 0.12;
+  const WordFacts facts{.contraction = 0.7, .contraction_within = 0.7};
+  const std::vector<ParameterReport> both = {judged("a", facts, more), judged("b", facts, more)};
+  CHECK(both[0].reason == uq::Reason::surrogate);
+  TradedPair pair;
+  pair.parameters = {"a", "b"};
+  const Words words = words_of({.parameters = both, .traded = {pair}, .parted_by = {}});
+  CHECK(words.remedy.rfind("Make more training runs", 0) == 0);
+  CHECK(has(words.remedy, "Or measure a quantity that responds differently to a and b, or fix one"));
+}
+
 TEST_CASE("a parameter without influence is told neither structural nor hidden by noise, and gets one remedy", "[uq]") {
   const ParameterReport known = judged("a", {.contraction = 0.95, .contraction_within = 0.95}, {});
   const ParameterReport silent = judged("b", {.influences = false, .open_low = true, .open_high = true}, {});
