@@ -6,7 +6,8 @@
 namespace uq {
 namespace {
 
-constexpr double rounding_most = 1e-3;  // a negative eigenvalue, as a share of the largest one
+// What is left of a prior a million times as wide has its rounding: of a variance, what may be added to all.
+constexpr double rounding_most = 1e-4;
 
 }  // namespace
 
@@ -29,12 +30,12 @@ Eigen::MatrixXd semidefinite_root(const Eigen::MatrixXd& covariance, const char*
   const std::string defect = std::string("the covariance of ") + what + " is not positive semidefinite";
   if (!covariance.allFinite()) throw std::domain_error(defect);
   if (ldlt.info() != Eigen::Success || !(parts.minCoeff() >= -1e-8 * scale)) {
-    // What is left of a prior a million times as wide has its rounding.
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-    const Eigen::VectorXd& values = solver.eigenvalues();
-    if (solver.info() != Eigen::Success || !(values.minCoeff() >= -rounding_most * values.maxCoeff()))
-      throw std::domain_error(defect);
-    return solver.eigenvectors() * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    for (double share = 1e-8; share < 1.1 * rounding_most; share *= 10.0) {
+      const Eigen::LLT<Eigen::MatrixXd> llt(covariance +
+                                            share * scale * Eigen::MatrixXd::Identity(parts.size(), parts.size()));
+      if (llt.info() == Eigen::Success) return llt.matrixL();
+    }
+    throw std::domain_error(defect);
   }
   const Eigen::MatrixXd lower = ldlt.matrixL();
   return ldlt.transpositionsP().transpose() * Eigen::MatrixXd(lower * parts.cwiseMax(0.0).cwiseSqrt().asDiagonal());

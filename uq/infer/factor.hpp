@@ -13,8 +13,9 @@ struct Factor {
 /// Throws std::domain_error that names `what`.
 Factor factor(Eigen::MatrixXd covariance, const char* what);
 
-/// A root R of a covariance that may be singular, or zero: R R' = covariance, by LDL'. One that is negative somewhere by
-/// rounding, up to a thousandth of its largest eigenvalue, is taken without that. Throws as above beyond.
+/// A root R of a covariance that may be singular, or zero: R R' = covariance, by LDL'. To one that is
+/// negative somewhere by rounding, as little of its largest variance is added as makes it positive, at most a ten
+/// thousandth. Throws as above beyond.
 Eigen::MatrixXd semidefinite_root(const Eigen::MatrixXd& covariance, const char* what);
 
 /// With a ridge that grows until there is a factor; the diagonal's roots where there is none. For covariances that only

@@ -6,7 +6,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 TEST_CASE(
-    "the root of a covariance is one of what it is without its rounding, and a covariance that is none is a defect") {
+    "the root of a covariance is one of what it is but for its rounding, and a covariance that is none is a defect") {
   // Rank two of sixty, with rounding of a millionth that makes eigenvalues negative.
   const VectorXd x = VectorXd::LinSpaced(60, -1.0, 1.0);
   const MatrixXd smooth = VectorXd::Ones(60) * VectorXd::Ones(60).transpose() + x * x.transpose();
