@@ -1,5 +1,5 @@
 // The run table as CSV, in the study's units:
-//   friction,cohesion,speed,torque,torque_se[,material,seed,settings,isa,origin,cpu_seconds,state,unreliable]
+//   friction,cohesion,speed,torque[,torque_se,material,seed,settings,isa,origin,cpu_seconds,state,unreliable]
 // SI numbers go through the unit and back without losing a bit: v = (si - offset) / factor is taken to long double,
 // written with as few digits as read back to the same `si`, and read in long double again. Our own files state their
 // number of rows in the head ("# rows: 80"), so that one that was cut off is found out.
@@ -58,7 +58,8 @@ void check_whole(const Csv& csv, const std::string& text) {
 constexpr const char* user_column = "its own column ";
 
 struct Columns {
-  std::vector<std::size_t> inputs, outputs, errors;
+  std::vector<std::size_t> inputs, outputs;
+  std::vector<std::optional<std::size_t>> errors;  ///< none: nobody stated them, and 0 stands for it
   std::optional<std::size_t> material, seed, settings, isa, origin, cpu_seconds, state, unreliable;
   std::vector<std::size_t> status;  ///< that say how a run ended
   std::vector<std::size_t> unread;  ///< that nobody asks for
@@ -78,7 +79,9 @@ Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) 
   for (const Column& column : table.controls) at.inputs.push_back(csv.column(column.name));
   for (const Column& column : table.outputs) {
     at.outputs.push_back(csv.column(column.name));
-    at.errors.push_back(csv.column(column.name + "_se"));
+    const std::string error = column.name + "_se";
+    const bool stated = csv.find("settings") || csv.find(error, Csv::Capitals::any);  // those of ours are
+    at.errors.push_back(stated ? std::optional(csv.column(error)) : std::nullopt);
   }
   at.material = study.materials.size() > 1 ? csv.column("material") : csv.find("material");
   at.seed = csv.find("seed");
@@ -92,7 +95,8 @@ Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) 
   }
   std::set<std::size_t> read(at.inputs.begin(), at.inputs.end());
   read.insert(at.outputs.begin(), at.outputs.end());
-  read.insert(at.errors.begin(), at.errors.end());
+  for (const auto& error : at.errors)
+    if (error) read.insert(*error);
   for (std::size_t i = 0; i < csv.columns.size(); ++i) {
     if (read.contains(i) || reserved_columns().contains(csv.columns[i]) || i == at.state || i == at.unreliable)
       continue;
@@ -120,6 +124,17 @@ std::string contents(const Csv& csv, std::size_t column) {
 /// Names the columns that do not enter, and what those of other codes' names do.
 void tell_columns(const Csv& csv, const Columns& at, TableRead& result) {
   const std::string place = fmt::format("{}:{}", csv.file, csv.header_line);
+  std::vector<std::string> without;
+  for (std::size_t i = 0; i < at.errors.size(); ++i)
+    if (!at.errors[i]) without.push_back(result.table.outputs[i].name + "_se");
+  if (!without.empty())
+    result.findings.push_back(
+        {.kind = FindingKind::zero_standard_error,
+         .place = place,
+         .severity = Severity::note,
+         .what = fmt::format("has no column {}: the runs' scatter is estimated", fmt::join(without, ", ")),
+         .remedy = "where the code states standard errors, give their column that name",
+         .places = {}});
   if (!at.unread.empty()) {
     std::vector<std::string> names;
     for (const std::size_t column : at.unread) names.push_back(contents(csv, column));
@@ -242,8 +257,8 @@ Missing not_finite(const Csv& csv, const CsvRow& row, const Columns& at) {
   for (std::size_t i = 0; i < at.outputs.size(); ++i) {
     if (!std::isfinite(csv.number(row, at.outputs[i]))) {
       missing.outputs.push_back(at.outputs[i]);
-    } else if (!std::isfinite(csv.number(row, at.errors[i]))) {
-      missing.outputs.push_back(at.errors[i]);
+    } else if (at.errors[i] && !std::isfinite(csv.number(row, *at.errors[i]))) {
+      missing.outputs.push_back(*at.errors[i]);
     }
   }
   return missing;
@@ -265,7 +280,8 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     for (const Column& column : *columns) input_units.push_back(csv.unit(at.inputs[input_units.size()], column.unit));
   for (std::size_t i = 0; i < table.outputs.size(); ++i) {
     output_units.push_back(csv.unit(at.outputs[i], table.outputs[i].unit));
-    error_units.push_back(csv.unit(at.errors[i], output_units.back()).differences());
+    error_units.push_back(
+        (at.errors[i] ? csv.unit(*at.errors[i], output_units.back()) : output_units.back()).differences());
   }
   tell_columns(csv, at, result);
   RowNotes notes(csv);
@@ -295,17 +311,19 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     for (std::size_t i = 0; i < at.inputs.size(); ++i)
       row.inputs.push_back(input_units[i].to_si(line.fields[at.inputs[i]]));
     for (std::size_t i = 0; i < at.outputs.size(); ++i) {
-      if (!std::isfinite(csv.number(line, at.outputs[i])) || !std::isfinite(csv.number(line, at.errors[i]))) {
+      if (!std::isfinite(csv.number(line, at.outputs[i])) ||
+          (at.errors[i] && !std::isfinite(csv.number(line, *at.errors[i])))) {
         row.outputs.push_back(std::numeric_limits<double>::quiet_NaN());
         row.standard_errors.push_back(std::numeric_limits<double>::quiet_NaN());
         continue;
       }
       row.outputs.push_back(output_units[i].to_si(line.fields[at.outputs[i]]));
-      row.standard_errors.push_back(error_units[i].to_si(line.fields[at.errors[i]]));
+      row.standard_errors.push_back(at.errors[i] ? error_units[i].to_si(line.fields[*at.errors[i]]) : 0.0);
       if (row.standard_errors.back() < 0.0) {
-        throw InputError(ExitStatus::bad_data,
-                         Problem{csv.place(line, at.errors[i]), fmt::format("{} is below 0", line.fields[at.errors[i]]),
-                                 "give the standard error of the run's mean, or 0 when it has none"});
+        throw InputError(
+            ExitStatus::bad_data,
+            Problem{csv.place(line, *at.errors[i]), fmt::format("{} is below 0", line.fields[*at.errors[i]]),
+                    "give the standard error of the run's mean, or 0 when it has none"});
       }
     }
     if (at.seed) row.seed = whole_number<std::uint64_t>(csv, line, *at.seed);

@@ -89,6 +89,19 @@ TEST_CASE("an empty table and one whose columns stand in another order are read"
   CHECK(row.origin == "t.csv:2");
 }
 
+TEST_CASE("a table of another code without standard errors is read with none, and that is noted") {
+  const TemporaryFolder folder;
+  const data::Study study = study_of(folder);
+  const auto path = folder.write("t.csv", "friction,cohesion,speed,warmth,torque\n0.4,4,60,20,8\n0.5,4,60,20,9\n");
+  const data::TableRead read = data::read_table(path, study);
+  REQUIRE(read.table.rows.size() == 2);
+  CHECK(read.table.rows[1].outputs[0] == Approx(0.009));
+  CHECK(read.table.rows[1].standard_errors[0] == 0.0);
+  REQUIRE(read.findings.size() == 1);
+  CHECK(read.findings[0].severity == data::Severity::note);
+  CHECK(read.findings[0].what == "has no column torque_se: the runs' scatter is estimated");
+}
+
 TEST_CASE("rows with NaN or an empty cell are left out and named") {
   const TemporaryFolder folder;
   const data::Study study = study_of(folder);

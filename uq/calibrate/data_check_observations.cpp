@@ -117,6 +117,7 @@ void check_control_unit(const data::Study& study, const data::RunTable& table, c
       if (row.left_out.empty() && row.material == set.material) runs.add(row.inputs[input_column(table, control.name)]);
     for (const data::Observation& point : set.points) seen.add(point.controls[c]);
     if (runs.values.empty() || seen.values.empty()) continue;
+    constexpr double least_factor = 1.5;  // units differ by more
     const double slack = 0.1 * (control.high - control.low);
     const double typical = data::median_of(runs.values);
     if (typical < control.low || typical > control.high) continue;  // then it is the runs' column that is odd
@@ -125,6 +126,8 @@ void check_control_unit(const data::Study& study, const data::RunTable& table, c
              value <= std::max(runs.high, control.high) + 0.2 * slack;
     });
     if (2 * static_cast<std::size_t>(met) >= seen.values.size()) continue;
+    const double middle = data::median_of(seen.values);
+    if (middle < least_factor * runs.high && least_factor * middle > runs.low) continue;
     const UnitFactor* known = nullptr;  // that takes all readings into the range
     for (const UnitFactor& candidate : unit_factors())
       for (const double factor : {candidate.factor, 1.0 / candidate.factor})

@@ -10,16 +10,18 @@
 namespace uq {
 namespace {
 
-/// Whether some case uses measurements of this material and output.
+/// Whether some case uses measurements of this material and output, or is to predict some.
 bool is_observed(const data::Study& study, const TrainingRows& rows) {
-  for (const auto& one : study.cases)
-    for (const auto& name : one.observe) {
-      const data::ObservationSet& set = study.observations[study.observation_index(name).value()];
-      if (set.material == rows.material &&
-          std::find(set.outputs.begin(), set.outputs.end(), rows.output) != set.outputs.end())
-        return true;
-    }
-  return false;
+  const auto measures = [&](const std::string& name) {
+    const data::ObservationSet& set = study.observations[study.observation_index(name).value()];
+    return set.material == rows.material &&
+           std::find(set.outputs.begin(), set.outputs.end(), rows.output) != set.outputs.end();
+  };
+  const auto some = [&](const auto& users) {
+    return std::any_of(users.begin(), users.end(),
+                       [&](const auto& one) { return std::any_of(one.observe.begin(), one.observe.end(), measures); });
+  };
+  return some(study.cases) || some(study.predictions);
 }
 
 FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const SurrogateOptions& options) {

@@ -45,7 +45,7 @@ struct SurrogateOptions {
   std::vector<std::string> log_outputs = {};     ///< outputs that are learnt as logarithms, whatever fit.scale
   surrogate::ValidationOptions validation = {};  ///< its seed is that of the fit
   int runs_most = 1000;                          ///< of a table with more, so many train, chosen at random
-  bool observed_only = false;                    ///< leave out the outputs that no case observes
+  bool observed_only = false;                    ///< leave out the outputs that no case observes or predicts
   std::optional<data::RunTable> low = {};        ///< runs of the cheaper level
   std::vector<FittedSurrogate> known = {};       ///< fitted before under the same options: not fitted again
 };

@@ -30,6 +30,7 @@ class Conditional {
       }
     }
     if (!std::isfinite(level_)) return false;
+    if (free_.empty()) return true;  // all is given
     const auto d = static_cast<Eigen::Index>(free_.size());
     axes_ = Eigen::MatrixXd::Zero(target_.dimension, d);
     for (Eigen::Index k = 0; k < d; ++k) axes_(free_[k], k) = 0.1;

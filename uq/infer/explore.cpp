@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "uq/infer/climb.hpp"
+#include "uq/infer/factor.hpp"
 #include "uq/infer/parallel.hpp"
 
 namespace uq {
@@ -144,6 +145,43 @@ bool same(const Peak& a, const Peak& b) {
   return near(a.covariance) || near(b.covariance);
 }
 
+/// Square of the distance in standard deviations that is near a maximum.
+double near_square(Eigen::Index dimension) { return static_cast<double>(dimension) + 4.0; }
+
+/// Log of the mass of p about a peak where `counts(x, standard deviations from the peak, log p)`.
+template <class Counts>
+double log_mass_where(const Target& target, const Peak& peak, std::int64_t& evaluations, const Counts& counts) {
+  constexpr Eigen::Index draws = 512;
+  constexpr double wider = 4.0 / 3.0;
+  const Eigen::Index d = peak.x.size();
+  const Eigen::LLT<Eigen::MatrixXd> factor(peak.covariance);
+  if (factor.info() != Eigen::Success) return peak.log_mass;
+  data::RandomStream random(1, data::Purpose::search_directions, 1);
+  Eigen::MatrixXd inside(draws, d), away(draws, d);
+  Eigen::VectorXd log_proposal(draws);
+  Eigen::Index count = 0;
+  const double constant = -0.5 * static_cast<double>(d) * std::log(2.0 * std::numbers::pi) -
+                          Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum() -
+                          static_cast<double>(d) * std::log(wider);
+  for (Eigen::Index i = 0; i < draws; ++i) {
+    Eigen::VectorXd z(d);
+    for (double& value : z) value = random.normal();
+    const Eigen::VectorXd step = factor.matrixL() * z, x = peak.x + wider * step;
+    if (!target.contains(x)) continue;
+    inside.row(count) = x.transpose();
+    away.row(count) = wider * z.transpose();
+    log_proposal[count++] = constant - 0.5 * z.squaredNorm();
+  }
+  if (count == 0) return nowhere;
+  const Eigen::VectorXd level = evaluate(target, inside.topRows(count));
+  evaluations += count;
+  double mass = 0.0;
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (level[i] > nowhere && counts(inside.row(i).transpose(), away.row(i).transpose(), level[i]))
+      mass += std::exp(level[i] - log_proposal[i] - peak.log_mass);
+  return mass > 0.0 ? peak.log_mass + std::log(mass / static_cast<double>(draws)) : nowhere;
+}
+
 }  // namespace
 
 int scouts_for(int dimension) {
@@ -202,34 +240,22 @@ Search search_unknown(const Target& target, const Scouts& scouts, const Knowledg
 }
 
 double log_unknown_mass(const Target& target, const Peak& peak, const Knowledge& knowledge, std::int64_t& evaluations) {
-  constexpr Eigen::Index draws = 512;
-  constexpr double wider = 4.0 / 3.0;
-  const Eigen::Index d = peak.x.size();
-  const Eigen::LLT<Eigen::MatrixXd> factor(peak.covariance);
-  if (factor.info() != Eigen::Success) return peak.log_mass;
-  data::RandomStream random(1, data::Purpose::search_directions, 1);
-  Eigen::MatrixXd inside(draws, d);
-  Eigen::VectorXd log_proposal(draws);
-  Eigen::Index count = 0;
-  const double constant = -0.5 * static_cast<double>(d) * std::log(2.0 * std::numbers::pi) -
-                          Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum() -
-                          static_cast<double>(d) * std::log(wider);
-  for (Eigen::Index i = 0; i < draws; ++i) {
-    Eigen::VectorXd z(d);
-    for (double& value : z) value = random.normal();
-    const Eigen::VectorXd step = factor.matrixL() * z, x = peak.x + wider * step;
-    if (!target.contains(x)) continue;
-    inside.row(count) = x.transpose();
-    log_proposal[count++] = constant - 0.5 * z.squaredNorm();
-  }
-  if (count == 0) return nowhere;
-  const Eigen::VectorXd level = evaluate(target, inside.topRows(count));
-  evaluations += count;
-  double mass = 0.0;
-  for (Eigen::Index i = 0; i < count; ++i)
-    if (level[i] > nowhere && !knowledge.knows(inside.row(i).transpose(), level[i]))
-      mass += std::exp(level[i] - log_proposal[i] - peak.log_mass);
-  return mass > 0.0 ? peak.log_mass + std::log(mass / static_cast<double>(draws)) : nowhere;
+  return log_mass_where(target, peak, evaluations, [&](const Eigen::VectorXd& x, const Eigen::VectorXd&, double level) {
+    return !knowledge.knows(x, level);
+  });
+}
+
+double log_mass_near(const Target& target, const Peak& peak, std::int64_t& evaluations) {
+  return log_mass_where(target, peak, evaluations, [&](const Eigen::VectorXd&, const Eigen::VectorXd& away, double) {
+    return away.squaredNorm() < near_square(away.size());
+  });
+}
+
+Eigen::Index draws_near(const Peak& mode, const Eigen::MatrixXd& draws) {
+  const Eigen::MatrixXd root = factor_for_proposal(mode.covariance);
+  const Eigen::MatrixXd away =
+      root.triangularView<Eigen::Lower>().solve((draws.rowwise() - mode.x.transpose()).transpose());
+  return (away.colwise().squaredNorm().array() < near_square(draws.cols())).count();
 }
 
 Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width) {

@@ -51,6 +51,11 @@ struct Peak {
 /// Laplace's approximation at x; `width` bounds its standard deviations.
 Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width);
 
+/// Number of draws within about two standard deviations of a maximum.
+Eigen::Index draws_near(const Peak& mode, const Eigen::MatrixXd& draws);
+/// Log of the mass of p there, by importance sampling as in log_unknown_mass.
+double log_mass_near(const Target& target, const Peak& peak, std::int64_t& evaluations);
+
 /// What is known: p(x) <= exp(log_level) q(x) for every mixture. In the far tails of q that holds of anything, so a way
 /// uphill goes on to where p is at least exp(log_bulk).
 struct Knowledge {
@@ -64,8 +69,8 @@ struct Knowledge {
   }
 };
 
-/// Log of the mass of p in places that the knowledge does not reach, by importance sampling from a peak's normal law,
-/// wider by a third; minus infinity where no draw finds such a place.
+/// Log of the mass of p in places about a peak that the knowledge does not reach, by importance sampling from the peak's
+/// normal law, wider by a third; minus infinity where no draw finds such a place.
 double log_unknown_mass(const Target& target, const Peak& peak, const Knowledge& knowledge, std::int64_t& evaluations);
 
 struct Search {

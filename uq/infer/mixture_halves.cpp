@@ -73,8 +73,8 @@ void adapt_halves(const Target& target, std::vector<Half>& halves, const Mixture
   });
 }
 
-std::string find_unknown(const Target& target, const Scouts& scouts, const Population& best, std::vector<Half>& halves,
-                         const MixtureSamplerOptions& options, Draws& result) {
+std::vector<LastMaximum> find_unknown(const Target& target, const Scouts& scouts, const Population& best,
+                                      std::vector<Half>& halves, const MixtureSamplerOptions& options, Draws& result) {
   Eigen::Index highest = 0;
   best.log_density.maxCoeff(&highest);
   Origins origins{.through = best.x.row(highest).transpose()};
@@ -103,17 +103,17 @@ std::string find_unknown(const Target& target, const Scouts& scouts, const Popul
       matter.push_back(mode);
       share += mass;
     }
-    if (matter.empty()) return "";
-    if (round == options.search_rounds) {
-      const double part = share / (1.0 + share);
-      if (part < options.missing_mass) return "";
-      return fmt::format("{} with about {:.2g} % of the mass {} outside the proposal",
-                         matter.size() == 1 ? "a maximum" : fmt::format("{} maxima", matter.size()), 100.0 * part,
-                         matter.size() == 1 ? "is" : "are");
-    }
+    if (matter.empty()) return {};
     result.found_modes += static_cast<int>(matter.size());
     for (Half& half : halves) add_modes(half.proposal, matter, std::clamp(share / (1.0 + share), 0.2, 0.7));
     adapt_halves(target, halves, options);
+    if (round == options.search_rounds) {
+      std::vector<LastMaximum> last;
+      for (const Peak& mode : matter)
+        last.push_back(
+            {mode, std::exp(std::min(log_mass_near(target, mode, result.evaluations) - log_evidence, 50.0))});
+      return last;
+    }
     const auto top = std::max_element(matter.begin(), matter.end(),
                                       [](const Peak& a, const Peak& b) { return a.log_mass < b.log_mass; });
     origins.through = top->x;

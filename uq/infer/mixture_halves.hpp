@@ -22,9 +22,15 @@ std::vector<Half> make_halves(const std::vector<Population>& populations, const 
 /// Begins the proposals, or goes on with them after modes were added.
 void adapt_halves(const Target& target, std::vector<Half>& halves, const MixtureSamplerOptions& options);
 
-/// Maxima that the proposals do not know join them, until none that matters is left; what is left then in words.
-/// `best`: the population with the highest density. Counts what was searched into `result`.
-std::string find_unknown(const Target& target, const Scouts& scouts, const Population& best, std::vector<Half>& halves,
-                         const MixtureSamplerOptions& options, Draws& result);
+/// A maximum that joined the proposals last, with no search after it, and the mass near it as a share of the whole.
+struct LastMaximum {
+  Peak peak;
+  double share = 0.0;
+};
+
+/// Maxima that the proposals do not know join them, until none that matters is left or the rounds are over; then those of
+/// the last round. `best`: the population with the highest density. Counts what was searched into `result`.
+std::vector<LastMaximum> find_unknown(const Target& target, const Scouts& scouts, const Population& best,
+                                      std::vector<Half>& halves, const MixtureSamplerOptions& options, Draws& result);
 
 }  // namespace uq

@@ -161,6 +161,27 @@ void learn_from_draws(const Draws& draws, std::vector<Half>& halves, const Mixtu
   }
 }
 
+/// What the draws miss of the maxima that were found last: how many fewer lie near each than its mass asks for,
+/// beyond two standard deviations of their number.
+/// In words; empty where it is little.
+std::string missed_of(const std::vector<LastMaximum>& last, const Draws& draws, const MixtureSamplerOptions& options) {
+  const Eigen::MatrixXd all = draws.pooled();
+  const auto count = static_cast<double>(all.rows());
+  double missed = 0.0;
+  int maxima = 0;
+  for (const LastMaximum& one : last) {
+    const auto near = static_cast<double>(draws_near(one.peak, all));
+    const double fewer = one.share / (1.0 + one.share) * count - near - 2.0 * std::sqrt(std::max(near, 1.0));
+    if (fewer <= 0.0) continue;
+    missed += fewer / count;
+    ++maxima;
+  }
+  if (missed < options.missing_mass) return "";
+  return fmt::format("{} hold{} about {:.2g} % of the mass, and the draws lack {}",
+                     maxima == 1 ? "a maximum" : fmt::format("{} maxima", maxima), maxima == 1 ? "s" : "",
+                     100.0 * missed, maxima == 1 ? "it" : "them");
+}
+
 Draws sample_as_given(const Target& target, const MixtureSamplerOptions& given) {
   MixtureSamplerOptions options = given;
   options.explore.threads = options.threads;
@@ -191,14 +212,15 @@ Draws sample_as_given(const Target& target, const MixtureSamplerOptions& given) 
   // The proposals of the two halves, and what both do not know.
   std::vector<Half> halves = make_halves(populations, options);
   adapt_halves(target, halves, options);
-  const std::string unknown = find_unknown(target, scouts, populations[best], halves, options, result);
+  const std::vector<LastMaximum> last = find_unknown(target, scouts, populations[best], halves, options, result);
   for (int learnt = 0;; ++learnt) {
     draw(target, populations, halves, walkers, options, result);
     const std::string doubt = evidence_doubt(halves, options);
     if (!result.converged || doubt.empty() || learnt == options.learn_again) {
-      if (result.converged && !(unknown.empty() && doubt.empty())) {
+      const std::string missed = result.converged ? missed_of(last, result, options) : std::string();
+      if (result.converged && !(missed.empty() && doubt.empty())) {
         result.converged = false;
-        result.reason = unknown.empty() ? doubt : unknown;
+        result.reason = missed.empty() ? doubt : missed;
       }
       break;
     }

@@ -6,20 +6,8 @@
 #include <cmath>
 
 #include "uq/infer/diagnostics.hpp"
-#include "uq/infer/factor.hpp"
 
 namespace uq {
-namespace {
-
-/// Draws within about two standard deviations of a maximum.
-Eigen::Index draws_near(const Peak& mode, const Eigen::MatrixXd& draws) {
-  const Eigen::MatrixXd root = factor_for_proposal(mode.covariance);
-  const Eigen::MatrixXd away =
-      root.triangularView<Eigen::Lower>().solve((draws.rowwise() - mode.x.transpose()).transpose());
-  return (away.colwise().squaredNorm().array() < static_cast<double>(draws.cols()) + 4.0).count();
-}
-
-}  // namespace
 
 std::string missed_maxima(const Target& target, Draws& draws, const SecondCheckOptions& options) {
   const Eigen::MatrixXd all = draws.pooled();

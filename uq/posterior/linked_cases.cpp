@@ -28,6 +28,24 @@ bool joins(const data::Prior& prior) { return prior.kind == data::PriorKind::pos
 
 LinkedCases::LinkedCases(const data::Study& study, const CalibrationCase& wanted) : study_(study), wanted_(wanted) {
   include(wanted, {});
+  if (problems_.empty()) check_cuts();
+}
+
+/// A cut unknown keeps the law that the other case gave it alone, so that nothing else may come from that case: the two
+/// would not belong together any more.
+void LinkedCases::check_cuts() {
+  const auto check = [&](const std::string& name, const data::Prior& prior) {
+    if (prior.kind != data::PriorKind::posterior || !prior.cut) return;
+    const CalibrationCase* other = find_case(study_, prior.posterior_of);
+    if (std::find(cases_.begin(), cases_.end(), other) == cases_.end()) return;
+    problems_.push_back(
+        {prior.place,
+         fmt::format("case '{}' cuts {} from '{}', with which it is also sampled jointly: what it takes "
+                     "from there would not belong together",
+                     wanted_.name, name, other->name),
+         fmt::format("cut all that comes from '{}', or nothing", other->name)});
+  };
+  for (const auto& [name, prior] : wanted_.priors) check(name, prior);
 }
 
 /// Adds a case and those whose posteriors it takes; `path` is the way from the wanted case.

@@ -33,6 +33,7 @@ class LinkedCases {
   const data::Nuisance& first_nuisance(const data::CalibrationCase& item, const std::string& name) const;
 
  private:
+  void check_cuts();
   void include(const data::CalibrationCase& item, std::vector<std::string> path);
   void follow(const std::string& name, const data::Prior& prior, const std::vector<std::string>& path);
 

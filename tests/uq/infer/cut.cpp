@@ -67,3 +67,20 @@ TEST_CASE("cut draws are the same bits for any number of threads", "[uq]") {
   CHECK(sample_cut(target, given, {.draws = 200, .threads = 1}).pooled() ==
         sample_cut(target, given, {.draws = 200, .threads = 3}).pooled());
 }
+
+TEST_CASE("where all unknowns are cut their draws are what was given", "[uq]") {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const Target target = make_target(Second{}, Eigen::VectorXd::Constant(3, -inf), Eigen::VectorXd::Constant(3, inf),
+                                    normal_reference(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones()));
+  GivenDraws given{.unknowns = {0, 1, 2}, .chains = std::vector<Eigen::MatrixXd>(4, Eigen::MatrixXd(2000, 3))};
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    data::RandomStream random(4, data::Purpose::test, c);
+    for (double& value : given.chains[c].reshaped()) value = random.normal();
+  }
+  const Draws draws = sample_cut(target, given, {.draws = 2000, .seed = 5});
+  INFO(draws.reason);
+  REQUIRE(draws.converged);
+  for (std::size_t c = 0; c < 4; ++c)
+    for (Eigen::Index i = 0; i < draws.chains[c].x.rows(); ++i)
+      CHECK((given.chains[c].rowwise() - draws.chains[c].x.row(i)).rowwise().squaredNorm().minCoeff() == 0.0);
+}

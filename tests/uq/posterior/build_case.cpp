@@ -228,6 +228,13 @@ TEST_CASE("linked cases keep a meter's offset each, or share it, and the posteri
                   {part * (second_mean - first_mean),
                    std::sqrt(part * mean_sd * mean_sd + part * part * friction_sd * friction_sd)});
   }
+  SECTION("one unknown cut and another joined from one case is refused: they would not belong together") {
+    const data::Study refused =
+        study(small, "offset = { posterior = \"one\" }\npriors = { friction = { posterior = \"one\", cut = true } }\n");
+    CHECK_THAT(failure_of(folder, [&] { uq::build_case(refused, formula(), 1); }),
+               Catch::Contains("78: ") && Catch::Contains("cuts friction from 'one', with which it is also sampled") &&
+                   Catch::Contains("cut all that comes from 'one', or nothing"));
+  }
   SECTION("a meter's offset cannot be cut, and the message says what can") {
     const data::Study refused = study(small, "offset = { posterior = \"one\", cut = true }\n" + taken);
     CHECK_THAT(failure_of(folder, [&] { uq::build_case(refused, formula(), 1); }),
