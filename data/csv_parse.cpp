@@ -1,0 +1,125 @@
+// From the bytes of a file to a table: text, dialect, records, the table among them, its columns, its rows.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "data/atomic_file.hpp"
+#include "data/csv.hpp"
+#include "data/csv_columns.hpp"
+#include "data/csv_marks.hpp"
+#include "data/csv_table.hpp"
+#include "data/error.hpp"
+#include "data/lvm.hpp"
+#include "data/number_text.hpp"
+#include "data/text_encoding.hpp"
+
+namespace data {
+namespace {
+
+/// Zeros at the end are what a logger left that lost power; the line before them may have lost its end.
+std::string without_zero_tail(std::string text, CsvTable& table) {
+  const std::size_t end = text.find_last_not_of('\0') + 1;
+  const std::size_t zeros = text.size() - end;
+  text.resize(end);
+  if (const auto inside = text.find('\0'); inside != std::string::npos)
+    refuse_data(fmt::format("{}:{}", table.csv.file,
+                            1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(inside), '\n')),
+                "holds zero bytes: it is no text, or was damaged", "save the table as CSV again");
+  if (zeros == 0) return text;
+  table.csv.took.push_back(fmt::format("{} zero bytes behind the end left out", zeros));
+  if (!text.empty() && text.back() != '\n' && text.back() != '\r') {
+    text.resize(text.find_last_of("\r\n") + 1);
+    table.csv.took.push_back("the line that breaks off there left out");
+  }
+  return text;
+}
+
+std::string wrong_count(const CsvTable& table, const CsvRecord& record) {
+  const bool numbers = std::all_of(record.fields.begin(), record.fields.end(), [](const std::string& field) {
+    return plain_number(field, DecimalMark::point).has_value();
+  });
+  if (record.fields.size() < table.csv.headings.size()) return "complete the line; the file may have been cut off here";
+  if (table.dialect.separator == ',' && numbers)
+    return "its commas may be decimal marks as well as separators, which cannot be told apart: part the columns by "
+           "semicolons";
+  return table.dialect.separator == ',' ? "a field with a comma in it needs quotes" : "check the line";
+}
+
+/// A row's fields, as many as there are columns; nothing of a line that repeats the heading or its units.
+std::optional<std::vector<std::string>> fields_of(const CsvTable& table, const CsvRecord& record,
+                                                  std::size_t& trailing) {
+  const std::size_t columns = table.csv.headings.size();
+  std::vector<std::string> fields = record.fields;
+  if (fields.size() > columns && without_trailing(fields) <= columns) {
+    fields.resize(columns);
+    ++trailing;
+  }
+  if (fields == table.csv.headings) return {};
+  if (fields.size() != columns)
+    refuse_data(table.line(record), fmt::format("has {} fields where the header has {}", fields.size(), columns),
+                wrong_count(table, record));
+  return fields;
+}
+
+void read_rows(CsvTable& table) {
+  const DecimalMark mark = find_mark(table);
+  if (mark == DecimalMark::comma) table.csv.took.push_back("decimal commas");
+  std::size_t trailing = 0, repeated = 0, converted = 0;
+  for (std::size_t k = 0; k < table.blocks.size(); ++k) {
+    const CsvBlock& block = table.blocks[k];
+    const auto changes =
+        k == 0 ? std::vector<std::optional<UnitChange>>(table.csv.headings.size()) : changes_to_first(table, k);
+    converted += std::any_of(changes.begin(), changes.end(), [](const auto& one) { return one.has_value(); });
+    for (std::size_t i = block.first; i < block.end; ++i) {
+      const CsvRecord& record = table.records[i];
+      if (record.comment) continue;
+      auto fields = fields_of(table, record, trailing);
+      if (!fields) {
+        ++repeated;
+        continue;
+      }
+      for (std::size_t c = 0; c < fields->size(); ++c) {
+        const auto plain = table.is_text(c) ? std::nullopt : plain_number((*fields)[c], mark);
+        if (plain) (*fields)[c] = changes[c] ? changes[c]->to.digits(changes[c]->from.to_si(*plain)) : *plain;
+      }
+      table.csv.rows.push_back({std::move(*fields), record.line});
+    }
+  }
+  if (trailing > 0) table.csv.took.push_back("separators behind the last column left out");
+  if (repeated > 0) table.csv.took.push_back(fmt::format("the heading again in {} lines left out", repeated));
+  if (converted > 0)
+    table.csv.took.push_back(
+        fmt::format("the rows of {} of them converted to the units of line {}", converted, table.csv.header_line));
+  if (table.blocks.back().footers > 0)
+    table.csv.took.push_back(fmt::format("{} lines of words below the table left out", table.blocks.back().footers));
+}
+
+}  // namespace
+
+Csv parse_csv(const std::string& bytes, const std::string& file) {
+  CsvTable table;
+  table.csv.file = file;
+  DecodedText decoded = decode_text(bytes, file);
+  if (!decoded.took.empty()) table.csv.took.push_back(decoded.took);
+  const std::string text = without_zero_tail(std::move(decoded.text), table);
+  if (is_lvm(text)) {
+    Csv read = read_lvm(text, file);
+    read.took.insert(read.took.begin(), table.csv.took.begin(), table.csv.took.end());
+    table.csv = std::move(read);
+    read_columns(table.csv);
+    return std::move(table.csv);
+  }
+  table.dialect = find_dialect(text);
+  if (const std::string name = separator_name(table.dialect.separator); !name.empty())
+    table.csv.took.push_back("separated by " + name);
+  table.records = read_records(text, table.dialect, file);
+  find_table(table);
+  table.csv.comments = comments_above(table, 0, table.blocks.front());
+  read_columns(table.csv);
+  read_rows(table);
+  return std::move(table.csv);
+}
+
+Csv read_csv(const std::string& path) { return parse_csv(read_file(path), shown_path(path)); }
+
+}  // namespace data
