@@ -1,0 +1,52 @@
+#pragma once
+// What a plan for one case stands on: draws of its posterior or prior, the candidates, and the law of every reading that
+// they could give.
+#include <Eigen/Dense>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data/plan.hpp"
+#include "data/study.hpp"
+#include "uq/plan/candidates.hpp"
+#include "uq/plan/forecast.hpp"
+#include "uq/plan/information.hpp"
+#include "uq/plan/outlook.hpp"
+#include "uq/plan/plan.hpp"
+
+namespace uq::plan {
+
+constexpr double least_information = 0.02;  // nats: a width narrower by two per cent
+
+struct PlanBasis {
+  PlanBasis(const data::Study& of_study, const std::vector<Emulator>& emulators, std::size_t case_index,
+            const SampledCase& sampled_case, const data::PlanSection& section, const PlanOptions& how);
+  PlanBasis(const PlanBasis&) = delete;  // the forecast refers to its neighbours
+  PlanBasis& operator=(const PlanBasis&) = delete;
+
+  std::string name_of(int parameter) const;
+  const data::Unit& unit_of(int parameter) const;
+  /// What the rows are expected to teach; before a measurement the mean over several scramblings of the prior's draws.
+  Information information_of(const std::vector<Eigen::Index>& rows) const;
+  /// Before the reading, in the study's unit.
+  double sd_now(int parameter) const;
+  void tell(double share) const;  ///< progress
+
+  const data::Study& study;
+  const SampledCase& sampled;
+  const PlanOptions& options;
+  Eigen::MatrixXd draws;                ///< of the posterior, in u
+  Eigen::VectorXd centre;               ///< in u: the best fit, or the prior's means
+  std::optional<Identification> found;  ///< none before a measurement
+  int about = 0;                        ///< the parameter asked for
+  std::vector<Candidate> candidates;
+  ExtendedCase extended;
+  std::vector<Outlook> outlooks;       ///< one, or one for each scrambling of the prior's draws
+  std::vector<Eigen::MatrixXd> noise;  ///< of each outlook's readings; none: the information draws its own
+  std::optional<Forecast> forecast;    ///< none before a measurement
+
+ private:
+  void look_out();
+};
+
+}  // namespace uq::plan

@@ -1,0 +1,97 @@
+#include "uq/plan/plan_batches.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "uq/infer/parallel.hpp"
+
+namespace uq::plan {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr int search_draws = 600;  // for the search of batches
+
+std::vector<Index> rows_of(const PlanBasis& basis, const std::vector<std::size_t>& members) {
+  std::vector<Index> rows;
+  for (const std::size_t i : members)
+    rows.insert(rows.end(), basis.extended.planned[i].begin(), basis.extended.planned[i].end());
+  return rows;
+}
+double cost_of(const PlanBasis& basis, const std::vector<std::size_t>& members) {
+  double sum = 0.0;
+  for (const std::size_t i : members) sum += basis.candidates[i].cost;
+  return sum;
+}
+bool affordable(const PlanBasis& basis, const std::vector<std::size_t>& members) {
+  return !basis.options.budget || cost_of(basis, members) <= *basis.options.budget * (1.0 + 1e-9);
+}
+
+/// Information about the parameter asked for, by some of the draws.
+double quick_information(const PlanBasis& basis, const std::vector<std::size_t>& members) {
+  Ensemble all = basis.outlooks.front().ensemble(rows_of(basis, members));
+  const Index n = std::min<Index>(search_draws, all.draws());
+  const MatrixXd column = all.values.col(basis.about).head(n);
+  const MatrixXd mean = all.mean.topRows(n);
+  all.values = column;
+  all.mean = mean;
+  all.covariance.resize(static_cast<std::size_t>(n));
+  return information(all, {.seed = basis.options.seed, .noise = {}}).about.front().information.value;
+}
+
+/// The member at `position` (or one more) that is best beside the others; none where no other is affordable.
+std::optional<std::size_t> best_at(const PlanBasis& basis, std::vector<std::size_t> members, std::size_t position) {
+  std::vector<double> value(basis.candidates.size(), -1.0);
+  for_each_index(static_cast<int>(basis.candidates.size()), basis.options.threads, [&](int i) {
+    std::vector<std::size_t> tried = members;
+    tried[position] = static_cast<std::size_t>(i);
+    if (!basis.candidates[tried[position]].model_only && affordable(basis, tried))
+      value[i] = quick_information(basis, tried);
+  });
+  const auto best = std::max_element(value.begin(), value.end());
+  if (*best < 0.0) return {};
+  return static_cast<std::size_t>(best - value.begin());
+}
+
+}  // namespace
+
+std::vector<PlanBatch> batches_of(const PlanBasis& basis) {
+  std::vector<PlanBatch> batches;
+  std::vector<std::size_t> greedy;
+  for (int size = 1; size <= basis.options.batch; ++size) {
+    greedy.push_back(0);
+    const std::optional<std::size_t> next = best_at(basis, greedy, greedy.size() - 1);
+    if (!next) return batches;
+    greedy.back() = *next;
+    if (size < 2) continue;
+    std::vector<std::size_t> members = greedy;
+    for (int sweep = 0; sweep < 2; ++sweep) {
+      bool changed = false;
+      for (std::size_t position = 0; position < members.size(); ++position) {
+        const std::optional<std::size_t> better = best_at(basis, members, position);
+        if (!better || *better == members[position]) continue;
+        members[position] = *better;
+        changed = true;
+      }
+      if (!changed) break;
+    }
+    const auto about = static_cast<std::size_t>(basis.about);
+    const Information picked = basis.information_of(rows_of(basis, greedy)),
+                      exchanged = basis.information_of(rows_of(basis, members));
+    if (exchanged.about[about].information.value < picked.about[about].information.value) members = greedy;
+    const Information& kept = members == greedy ? picked : exchanged;
+    PlanBatch batch{.candidates = {},
+                    .information = kept.about[about].information.value,
+                    .information_error = kept.about[about].information.error,
+                    .greedy = picked.about[about].information.value,
+                    .sd_after = kept.about[about].sd_after.value,
+                    .cost = cost_of(basis, members)};
+    std::sort(members.begin(), members.end());
+    for (const std::size_t i : members) batch.candidates.push_back(basis.candidates[i].name);
+    batches.push_back(std::move(batch));
+  }
+  return batches;
+}
+
+}  // namespace uq::plan

@@ -1,0 +1,101 @@
+#include "uq/plan/plan_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace uq::plan {
+namespace {
+
+/// With as many digits as it takes to tell the width now from that afterwards, three at most.
+std::string width(const PlannedParameter& parameter, double sd) {
+  const bool two = fmt::format("{:.2g}", parameter.sd_now) != fmt::format("{:.2g}", parameter.sd_after);
+  return fmt::format("{:.{}g}{}{}", sd, two ? 2 : 3, parameter.unit.empty() ? "" : " ", parameter.unit);
+}
+
+std::string chance_of_identified(const std::string& name, const PlannedParameter& gain) {
+  if (gain.words.empty()) return {};
+  double chance = 0.0;
+  for (const WordProbability& word : gain.words)
+    if (word.verdict == Verdict::identified) chance = word.probability;
+  if (chance < 0.01)
+    return fmt::format(" {} is not identified by that: {}.", name, gain.floor.empty() ? "it needs more" : gain.floor);
+  return fmt::format(" {} is then identified with a probability of {:.0f} %.", name, 100.0 * chance);
+}
+
+}  // namespace
+
+std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
+  const auto k = static_cast<std::size_t>(basis.about);
+  const PlanCandidate& best = report.candidates.front();
+  const PlannedParameter& gain = best.parameters[k];
+  const bool identified = basis.found && basis.found->parameters[k].verdict == Verdict::identified;
+  std::string text;
+  if (identified) text = fmt::format("{} is identified already (+- {}). ", report.about, width(gain, gain.sd_now));
+  if (best.teaches)
+    text += fmt::format("Measure {}{} next: it is expected to narrow {} from +- {} to +- {} ({:.2f} nats).", best.name,
+                        best.kind == CandidateKind::repeat ? " again" : "", report.about, width(gain, gain.sd_now),
+                        width(gain, gain.sd_after), gain.information);
+  else
+    text += fmt::format("No candidate teaches {} anything: the best, {}, gives {:.2f} nats.", report.about, best.name,
+                        gain.information);
+  if (best.teaches && !identified) text += chance_of_identified(report.about, gain);
+  const auto repeat = std::find_if(report.candidates.begin(), report.candidates.end(),
+                                   [](const PlanCandidate& one) { return one.kind == CandidateKind::repeat; });
+  if (best.teaches && repeat != report.candidates.end() && repeat != report.candidates.begin())
+    text += fmt::format(" The best of what is measured already, once more ({}), gives {:.2f} nats.", repeat->name,
+                        repeat->parameters[k].information);
+  const auto other = std::max_element(
+      report.candidates.begin(), report.candidates.end(),
+      [&](const auto& a, const auto& b) { return a.parameters[k].information < b.parameters[k].information; });
+  if (other->model_only && !best.model_only && other->parameters[k].information > 2.0 * gain.information)
+    text += fmt::format(
+        " {} would give {:.2f} nats, but only if it means the same in the real powder as with enlarged grains.",
+        other->name, other->parameters[k].information);
+  if (k < report.runs.parameters.size() &&
+      report.runs.parameters[k].information > std::max(gain.information, least_information))
+    text += fmt::format(
+        " Training runs come first: with an exact surrogate the data that are there give {} to +- {} ({:.2f} nats).",
+        report.about, width(gain, report.runs.parameters[k].sd_after), report.runs.parameters[k].information);
+  return text;
+}
+
+std::vector<std::string> notes_of(const PlanBasis& basis, const PlanReport& report) {
+  std::vector<std::string> notes;
+  const auto some = [&](auto member) {
+    return std::any_of(report.candidates.begin(), report.candidates.end(),
+                       [&](const PlanCandidate& one) { return one.*member; });
+  };
+  if (some(&PlanCandidate::assumed_error))
+    notes.push_back(
+        fmt::format("Nobody stated the error of an output that the case has not measured; {:g} % is assumed. "
+                    "[plan] states yours.",
+                    100.0 * basis.options.candidates.assumed_error));
+  if (some(&PlanCandidate::model_only))
+    notes.push_back(
+        "Outputs marked 'model only' come from enlarged grains: they need not mean the same in the real powder, "
+        "and are ranked last.");
+  for (const RowGroup& group : basis.sampled.model->groups)
+    if (!group.emulator.doubt.empty())
+      notes.push_back(
+          fmt::format("The surrogate cannot carry a verdict ({}): make training runs first.", group.emulator.doubt));
+  if (!basis.sampled.draws.converged && !basis.options.prior)
+    notes.push_back("The posterior has not converged: the ranking may change.");
+  return notes;
+}
+
+std::string error_text(const data::Study& study, const Candidate& candidate) {
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < candidate.outputs.size(); ++i) {
+    const data::Spread& error = candidate.error[i];
+    const data::Unit& unit = study.outputs[candidate.outputs[i]].unit;
+    std::string text;
+    if (error.relative > 0.0) text = fmt::format("{:.3g} %", 100.0 * error.relative);
+    if (error.absolute > 0.0)
+      text += fmt::format("{}{:.3g} {}", text.empty() ? "" : " and ", error.absolute / unit.factor, unit.symbol);
+    if (std::find(parts.begin(), parts.end(), text) == parts.end()) parts.push_back(text);
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+}  // namespace uq::plan

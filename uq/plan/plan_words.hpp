@@ -1,0 +1,21 @@
+#pragma once
+// A plan's answer as a sentence, and what has to be said beside it.
+#include <string>
+#include <vector>
+
+#include "data/study.hpp"
+#include "uq/findings/results.hpp"
+#include "uq/plan/plan_basis.hpp"
+
+namespace uq::plan {
+
+/// The answer: what to measure, what it gives, and what gives more. The candidates are ranked.
+std::string sentence_of(const PlanBasis& basis, const PlanReport& report);
+
+/// What the ranking rests on that the user should know.
+std::vector<std::string> notes_of(const PlanBasis& basis, const PlanReport& report);
+
+/// The error that a reading of the candidate is taken to have: "2 % and 0.1 mN m".
+std::string error_text(const data::Study& study, const Candidate& candidate);
+
+}  // namespace uq::plan
