@@ -3,7 +3,8 @@
 // without sampling.
 //
 // The keys are those of fields.hpp; between versions of format 1 they are only ever added. Doubles have as many digits
-// as give them back to the last bit. An open end, a NaN and an infinity are null; a null number comes back as NaN.
+// as give them back to the last bit. An open end and a NaN are null, and a null number comes back as NaN; an infinity is
+// the text "infinity" or "-infinity".
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
