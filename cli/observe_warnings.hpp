@@ -1,0 +1,20 @@
+#pragma once
+// What a user of observations should know of them.
+#include <string>
+#include <vector>
+
+#include "cli/observe_idle.hpp"
+#include "data/torque_log.hpp"
+
+namespace cli {
+
+/// Of sensor and logger, of signs, and of errors that are too small or approximate.
+std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
+                                     const Idle& idle);
+
+/// Where less than two thirds of the turning belong to a plateau: by how much, and the remedy. `ramps`: seconds in which
+/// the speed changed slowly.
+std::string left_over(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
+                      const data::PlateauOptions& options, double ramps);
+
+}  // namespace cli
