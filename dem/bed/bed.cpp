@@ -13,6 +13,7 @@
 #include <numbers>
 
 #include "dem/bed/derived.hpp"
+#include "dem/case/coefficients.hpp"
 #include "dem/case/grains.hpp"
 
 namespace dem {
@@ -55,18 +56,10 @@ bool is(const BodyLabel& body, const std::string& name) {
 /// What the case's pairs say together of a contact.
 PairContact own(const Case& c, const auto& concerns) {
   PairContact all;
-  const auto take = [](auto& field, const auto& given) {
-    if (given) field = given;
-  };
   for (const PairContact& p : c.pairs) {
     if (!concerns(p)) continue;
-    take(all.stiffness, p.stiffness);
-    take(all.restitution, p.restitution);
-    take(all.friction, p.friction);
-    take(all.rolling_friction, p.rolling_friction);
-    take(all.twisting_friction, p.twisting_friction);
-    take(all.hamaker, p.hamaker);
-    take(all.work_of_adhesion, p.work_of_adhesion);
+    for (const PairKey& key : pair_keys)
+      if (p.*key.field) all.*key.field = p.*key.field;
   }
   return all;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "data/texts.hpp"
 #include "dem/case/stl_rig.hpp"
 #include "dem/contact/laws.hpp"
 
@@ -169,3 +170,19 @@ struct Case {
 };
 
 }  // namespace dem
+
+// As the study's keys and the settings of a run spell them.
+template <>
+inline constexpr std::array data::texts_of<dem::EndPlates> = {"turning", "resting", "none"};
+template <>
+inline constexpr std::array data::texts_of<dem::LengthScale> = {"diameter", "radius"};
+template <>
+inline constexpr std::array data::texts_of<dem::WallAttraction> = {"as_grains", "derjaguin"};
+template <>
+inline constexpr std::array data::texts_of<dem::HamakerOf> = {"simulation", "original"};
+template <>
+inline constexpr std::array data::texts_of<dem::FrictionCap> = {"net", "repulsion", "thornton"};
+template <>
+inline constexpr std::array data::texts_of<dem::DashpotTension> = {"allowed", "clamped"};
+template <>
+inline constexpr std::array data::texts_of<dem::Cohesion> = {"van_der_waals", "dmt"};

@@ -19,6 +19,8 @@ namespace dem {
 /// Volume of spheres / volume of the bed that they settle to, for estimates. It lies between random loose packing,
 /// 0.555 (G. Onoda & E. Liniger, Phys. Rev. Lett. 64:2727 (1990)), and random close packing, 0.64.
 inline constexpr double packing_fraction = 0.6;
+/// The same of a bed so loose that no powder makes it: a tool that misses this bed, too, meets none.
+inline constexpr double loosest_bed = 0.5;
 
 /// The components of a bed; of one material it is that.
 std::vector<Component> components_of(const Case& c);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "data/texts.hpp"
 #include "dem/contact/force_pass.hpp"
 
 namespace dem {
@@ -51,3 +52,10 @@ struct BedCoefficients {
 std::shared_ptr<const ForcePass> make_force_pass(const BedCoefficients& bed);
 
 }  // namespace dem
+
+template <>
+inline constexpr std::array data::texts_of<dem::NormalLaw> = {"linear", "hertz", "jkr"};
+template <>
+inline constexpr std::array data::texts_of<dem::TangentialLaw> = {"linear", "mindlin"};
+template <>
+inline constexpr std::array data::texts_of<dem::ResistanceLaw> = {"none", "constant", "spring"};

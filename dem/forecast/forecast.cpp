@@ -4,26 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "dem/bed/derived.hpp"
 #include "dem/case/grains.hpp"
-#include "dem/forecast/room.hpp"
-#include "dem/forecast/sweep.hpp"
-#include "dem/rig/drum.hpp"
-#include "dem/rig/machine.hpp"
-#include "dem/rig/packing.hpp"
-#include "dem/rig/slice.hpp"
+#include "dem/forecast/forecast_meshes.hpp"
+#include "dem/forecast/forecast_words.hpp"
+#include "dem/rig/rig_kind.hpp"
+#include "dem/rig/rig_words.hpp"
 
 namespace dem {
-namespace {
-
-constexpr double loosest = 0.5;  // volume of spheres / volume of the bed, for what must not be missed
-
-std::string mm(double length) { return fmt::format("{:.3g}", 1e3 * length); }
-std::string mm(Vec3 at) { return fmt::format("({:.3g}, {:.3g}, {:.3g}) mm", 1e3 * at.x, 1e3 * at.y, 1e3 * at.z); }
-double rpm(double angular_velocity) { return angular_velocity * 30.0 / std::numbers::pi; }
 
 void say_gap(Forecast& f, const std::string& between, double width) {
   const double in_spheres = width / f.largest;
@@ -34,6 +23,18 @@ void say_gap(Forecast& f, const std::string& between, double width) {
                     "(three are safe; make the gap wider or the spheres smaller)",
                     between, mm(width), in_spheres, mm(f.largest)));
 }
+
+void say_immersion(Forecast& f, const std::string& tool, double lowest) {
+  constexpr double enough = 1.8;  // of the largest sphere
+  const double depth = *f.surface - lowest;
+  if (depth < 0.0 || depth >= enough * f.largest) return;
+  f.warnings.push_back(fmt::format(
+      "{} dips only {} mm into the bed, {:.2g} of the largest sphere: the bed settles below it, and the torque falls "
+      "for long (raise the fill until it dips {} mm)",
+      tool, mm(depth), depth / f.largest, mm(enough * f.largest)));
+}
+
+namespace {
 
 void say_density(const Case& c, Forecast& f) {
   for (const Component& k : components_of(c)) {
@@ -60,345 +61,16 @@ void say_impacts(const Case& c, const Derived& d, Forecast& f) {
   }
 }
 
-/// A tool that only skims the bed: measured on slices, the torque falls by a third and more while the bed settles under it,
-/// and may come to 0 (dem/STEADY.md).
-void say_immersion(Forecast& f, const std::string& tool, double lowest) {
-  constexpr double enough = 1.8;  // of the largest sphere
-  const double depth = *f.surface - lowest;
-  if (depth < 0.0 || depth >= enough * f.largest) return;
-  f.warnings.push_back(fmt::format(
-      "{} dips only {} mm into the bed, {:.2g} of the largest sphere: the bed settles below it, and the torque falls "
-      "for long (raise the fill until it dips {} mm)",
-      tool, mm(depth), depth / f.largest, mm(enough * f.largest)));
-}
-
-Forecast of_slice(const Case& c, Forecast f) {
-  const Rig& rig = c.rig;
-  const TroughFill fill = fill_of_slice(c);
-  f.fill = fill.share;
-  f.surface = fill.surface;
-  f.up = "above the axis";
-  f.full_at = "the blade's top";
-  f.bodies.push_back(
-      fmt::format("mixer: turns about x at {:.4g} rpm; its torque is the output", rpm(rig.angular_velocity)));
-  say_gap(f, "blade and trough", rig.trough_radius - rig.blade_radius);
-  say_gap(f, "two flights of the blade", rig.pitch - rig.blade_thickness);
-  say_immersion(f, "the blade", -rig.blade_radius);
-  if (fill.share > 1.0) {
-    f.warnings.push_back(
-        fmt::format("the powder will stand {} mm above the blade: {:.2g} times what fits below its top",
-                    mm(fill.surface - rig.blade_radius), fill.share));
-  }
-  Case loose = c;
-  if (loose.rig.fill_mass) *loose.rig.fill_mass *= packing_fraction / loosest;
-  loose.rig.fill *= packing_fraction / loosest;
-  if (fill_of_slice(loose).surface + f.largest < -rig.blade_radius) {
-    f.problems.push_back({"rig.fill",
-                          fmt::format("makes a bed up to {} mm above the axis, but the blade reaches down to {} mm: "
-                                      "it never touches the powder",
-                                      mm(fill.surface), mm(-rig.blade_radius)),
-                          "raise the fill"});
-  }
-  return f;
-}
-
-Forecast of_machine(const Case& c, Forecast f) {
-  const Rig& rig = c.rig;
-  const TroughFill fill = fill_of_machine(c);
-  f.fill = fill.share;
-  f.surface = fill.surface;
-  f.up = "above the axes";
-  f.full_at = "the blades' top";
-  for (const char* name : {"first_mixer", "second_mixer"})
-    f.bodies.push_back(fmt::format("{}: turns at {:.4g} rpm; the sum of both mixers' torques is the output", name,
-                                   rpm(rig.angular_velocity)));
-  say_gap(f, "blade and trough", rig.clearance());
-  say_gap(f, "two flights of the blade", rig.pitch - rig.blade_thickness);
-  say_immersion(f, "each blade", -rig.blade_radius);
-  if (fill.surface < rig.machine->sill)
-    f.warnings.push_back(fmt::format(
-        "the bed's surface will lie at {} mm, below the openings' sill at {} mm: the powder goes round only "
-        "where it heaps up",
-        mm(fill.surface), mm(rig.machine->sill)));
-  if (fill.surface > rig.machine->partition_height)
-    f.warnings.push_back(fmt::format(
-        "the powder will stand above the partition, at {} mm: it passes over it everywhere", mm(fill.surface)));
-  // An auger carries its powder by a pitch a turn at most.
-  if (const double round = 2.0 * rig.machine->length / rig.pitch; c.run.start_up_turns < round)
-    f.warnings.push_back(fmt::format(
-        "the powder goes round this machine once in {:.3g} turns at best, and run.start_up_turns is {:g}: where the "
-        "bed lies is not yet what it will be (raise it)",
-        round, c.run.start_up_turns));
-  return f;
-}
-
-Forecast of_drum(const Case& c, Forecast f) {
-  const Drum& drum = *c.rig.drum;
-  const DrumFill fill = fill_of_drum(c);
-  f.fill = fill.share;
-  f.surface = fill.surface;
-  f.up = "above the axis";
-  f.full_at = "the drum's top";
-  const bool both = drum.end_plates == EndPlates::turning;
-  f.bodies.push_back(fmt::format("shell: {} x {} mm, turns about -y at {:.4g} rpm; the output is its torque{}",
-                                 mm(2.0 * drum.radius), mm(drum.length), rpm(c.rig.angular_velocity),
-                                 both ? " and that of the end plates" : ""));
-  f.bodies.push_back(both                                    ? "plates: both end plates turn with the shell"
-                     : drum.end_plates == EndPlates::resting ? "plates: both end plates rest"
-                                                             : "no end plates: the drum repeats along its axis");
-  if (drum.end_plates != EndPlates::none) say_gap(f, "the end plates", drum.length);
-  if (const double froude = froude_number(c); froude > 1.0)
-    f.warnings.push_back(fmt::format(
-        "at {:.4g} rpm the Froude number is {:.3g}: from 1 on the powder goes round with the shell "
-        "(the drum flows below {:.4g} rpm)",
-        rpm(std::abs(c.rig.angular_velocity)), froude, rpm(std::abs(c.rig.angular_velocity)) / std::sqrt(froude)));
-  return f;
-}
-
-std::string motion_text(const RigMesh& m, const Motion& motion) {
-  std::string text;
-  if (motion.programme.size() == 1 && motion.programme[0].angular_velocity != 0.0)
-    text = fmt::format("turns at {:.4g} rpm", rpm(motion.programme[0].angular_velocity));
-  else if (motion.programme.size() > 1)
-    text = "turns by its programme";
-  if (!text.empty())
-    text += fmt::format(" about ({:.3g}, {:.3g}, {:.3g}) through {}", motion.axis.x, motion.axis.y, motion.axis.z,
-                        mm(motion.point));
-  for (const Oscillation& o : motion.oscillations)
-    text += fmt::format("{}oscillates at {:.4g} Hz", text.empty() ? "" : ", ", o.frequency);
-  if (text.empty()) text = m.speed_ratio != 0.0 ? "turns" : "rests";
-  return text;
-}
-
-struct Extent {
-  Vec3 low, high;
-};
-Extent extent_of(const TriangleMesh& mesh) {
-  Extent e{mesh.vertices.at(0), mesh.vertices.at(0)};
-  for (const Vec3 v : mesh.vertices) {
-    e.low = {std::min(e.low.x, v.x), std::min(e.low.y, v.y), std::min(e.low.z, v.z)};
-    e.high = {std::max(e.high.x, v.x), std::max(e.high.y, v.y), std::max(e.high.z, v.z)};
-  }
-  return e;
-}
-
-bool is_measured(const StlRig& rig, std::size_t mesh) {
-  return std::find(rig.measured.begin(), rig.measured.end(), mesh) != rig.measured.end();
-}
-
-void say_bodies(const Case& c, const BuiltRig& rig, Forecast& f) {
-  const StlRig& stl = *c.rig.stl;
-  bool anything = false;
-  for (std::size_t k = 0; k < stl.meshes.size(); ++k) {
-    const RigMesh& m = stl.meshes[k];
-    const Extent e = extent_of(m.mesh);
-    const Vec3 size = e.high - e.low;
-    f.bodies.push_back(fmt::format("{}: {} triangles, {} x {} x {} mm, {}{}", m.name, m.mesh.triangles.size(),
-                                   mm(size.x), mm(size.y), mm(size.z), motion_text(m, rig.bodies[k].motion),
-                                   !is_measured(stl, k)      ? ""
-                                   : stl.measured.size() > 1 ? "; its torque counts for the output"
-                                                             : "; its torque is the output"));
-    anything = anything || moves(rig.bodies[k].motion);
-  }
-  if (!anything)
-    f.warnings.push_back("nothing moves in this rig: give a mesh speed_ratio, rpm, programme or oscillation");
-}
-
-std::string axis_hint(const RigMesh& m) {
-  return length(m.motion.point) > 0.0
-             ? fmt::format("correct axis and point of rig.mesh.{}, or the mesh", m.name)
-             : fmt::format("its axis goes through the origin: give rig.mesh.{}.point, or correct the axis", m.name);
-}
-
-void check_sweeps(const Case& c, const BuiltRig& rig, Forecast& f) {
-  const std::vector<RigMesh>& meshes = c.rig.stl->meshes;
-  const Sweeps sweeps = follow_bodies(rig, c.run, f.largest);
-  for (const Excursion& e : sweeps.excursions) {
-    const Motion& motion = rig.bodies[e.body].motion;
-    if (!turns(motion) || e.least > 0.9 * e.most) continue;
-    f.problems.push_back({"rig.mesh." + meshes[e.body].name,
-                          fmt::format("leaves the box as it turns: {:.0f} % of its surface is inside at one time, "
-                                      "{:.0f} % at another",
-                                      100.0 * e.most, 100.0 * e.least),
-                          axis_hint(meshes[e.body]) + ", or make rig.box larger"});
-  }
-  for (const Cut& cut : sweeps.cuts) {
-    const bool first = moves(rig.bodies[cut.body].motion);
-    const RigMesh &one = meshes[first ? cut.body : cut.other], &other = meshes[first ? cut.other : cut.body];
-    const std::string what = fmt::format("cuts {} by {} mm at {} as it moves, {:.3g} s after the start", other.name,
-                                         mm(cut.depth), mm(cut.at), cut.time);
-    if (cut.joined)
-      f.warnings.push_back(one.name + " " + what + "; the two meet as they start (" + axis_hint(one) + ")");
-    else
-      f.problems.push_back({"rig.mesh." + one.name, what, axis_hint(one)});
-  }
-  for (const Gap& gap : sweeps.gaps) {
-    const bool is_cut = std::any_of(sweeps.cuts.begin(), sweeps.cuts.end(), [&](const Cut& cut) {
-      return std::minmax(cut.body, cut.other) == std::minmax(gap.body, gap.other);
-    });
-    const std::size_t one = std::min(gap.body, gap.other), other = std::max(gap.body, gap.other);
-    if (!is_cut) say_gap(f, meshes[one].name + " and " + meshes[other].name, gap.width);
-  }
-}
-
-/// Whether any of the points is in or beside a wet cell.
-bool reaches(const Room& room, const std::vector<std::uint8_t>& wet, const std::vector<Vec3>& points) {
-  std::vector<std::uint8_t> near = wet;
-  for (std::size_t k = 0; k < room.total(); ++k) {
-    if (!wet[k]) continue;
-    for (int side = 0; side < 6; ++side)
-      if (const std::size_t other = room.beyond(k, side); other != room.total()) near[other] = 1;
-  }
-  return std::any_of(points.begin(), points.end(), [&](Vec3 p) {
-    const std::size_t k = room.at(p);
-    return k != room.total() && near[k] != 0;
-  });
-}
-
-/// How often a ray from the point meets the mesh: an odd number inside a closed one.
-bool within(const TriangleMesh& mesh, Vec3 p) {
-  const Vec3 way = unit(Vec3{0.5377, 0.2661, 0.8000});
-  int count = 0;
-  for (const auto& t : mesh.triangles) {
-    const Vec3 a = mesh.vertices[t[0]] - p, b = mesh.vertices[t[1]] - p, c = mesh.vertices[t[2]] - p;
-    const double u = dot(way, cross(a, b)), v = dot(way, cross(b, c)), w = dot(way, cross(c, a));
-    if (!((u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0))) continue;
-    count += dot(a, cross(b, c)) / (u + v + w) > 0.0;
-  }
-  return count % 2 == 1;
-}
-
-/// Spheres inside a body that lies inside another are in its material, not in the vessel.
-void check_inside(const Case& c, const BuiltRig& rig, Forecast& f) {
-  const std::vector<RigMesh>& meshes = c.rig.stl->meshes;
-  const std::size_t every = rig.position.size() / 40 + 1;
-  for (std::size_t k = 0; k < meshes.size(); ++k) {
-    const Extent own = extent_of(meshes[k].mesh);
-    const bool in_another = std::any_of(meshes.begin(), meshes.end(), [&](const RigMesh& other) {
-      // Inside in two directions, and beside the other along at least half of itself in the third: a shaft through a
-      // wall.
-      const Extent e = extent_of(other.mesh);
-      int inside = 0;
-      bool beside = true;
-      for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
-        const double low = own.low.*axis, high = own.high.*axis, a = e.low.*axis, b = e.high.*axis;
-        inside += low > a && high < b;
-        beside = beside && std::min(high, b) - std::max(low, a) >= 0.5 * (high - low);
-      }
-      return inside >= 2 && beside;
-    });
-    if (!in_another) continue;
-    std::size_t count = 0, asked = 0;
-    for (std::size_t s = 0; s < rig.position.size(); s += every, ++asked)
-      count += within(meshes[k].mesh, rig.position[s]);
-    if (count * 10 > asked)
-      f.problems.push_back({"rig.region",
-                            fmt::format("makes spheres start inside the mesh {}, which lies inside another: {} of {} "
-                                        "looked at",
-                                        meshes[k].name, count, asked),
-                            "give a region in the vessel, outside its tools"});
-  }
-}
-
-/// What the region leaves out.
-void check_region(const Case& c, Forecast& f) {
-  const StlRig& rig = *c.rig.stl;
-  if (!rig.packing.empty()) return;
-  Vec3 low = rig.region.low, high = rig.region.high;
-  if (rig.region.shape == FillRegion::Shape::cylinder) {
-    low = {std::min(rig.region.from.x, rig.region.to.x), std::min(rig.region.from.y, rig.region.to.y),
-           std::min(rig.region.from.z, rig.region.to.z)};
-    high = {std::max(rig.region.from.x, rig.region.to.x), std::max(rig.region.from.y, rig.region.to.y),
-            std::max(rig.region.from.z, rig.region.to.z)};
-  }
-  const double slack = 1e-9 + 0.5 * f.largest;
-  if (low.x < rig.low.x - slack || low.y < rig.low.y - slack || low.z < rig.low.z - slack ||
-      high.x > rig.high.x + slack || high.y > rig.high.y + slack || high.z > rig.high.z + slack)
-    f.warnings.push_back("rig.region reaches beyond rig.box: only the part inside is filled");
-}
-
-std::string where_filled(const BuiltRig& rig) {
-  Vec3 low = rig.position.at(0), high = low;
-  for (const Vec3 p : rig.position) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  return fmt::format("{} to {}", mm(low), mm(high));
-}
-
-void check_powder(const Case& c, const BuiltRig& rig, Forecast& f) {
-  const std::string place = c.rig.stl->packing.empty() ? "rig.region" : "rig.packing";
-  const Room room = make_room(rig, summarise_bed(c).smallest);
-  const std::size_t every = rig.position.size() / 2000 + 1;
-  std::size_t lost = 0, asked = 0;
-  for (std::size_t k = 0; k < rig.position.size(); k += every, ++asked) lost += falls_out(room, rig.position[k]);
-  const Vec3 lowest = *std::min_element(rig.position.begin(), rig.position.end(),
-                                        [&](Vec3 a, Vec3 b) { return dot(rig.down, a) > dot(rig.down, b); });
-  const double solids = summarise_bed(c).volume;
-  const Poured bed = pour(room, room.at(lowest), solids / packing_fraction);
-  const std::string remedy = "give a rig.region inside the vessel, close the vessel, or correct rig.down";
-  if (lost > 0) {
-    f.problems.push_back(
-        {place,
-         fmt::format("makes {:.2g} % of the spheres, which start in {}, fall out of the box: no wall "
-                     "is under them",
-                     100.0 * static_cast<double>(lost) / static_cast<double>(asked), where_filled(rig)),
-         remedy});
-  } else if (bed.leaves && bed.held < 0.25 * solids / packing_fraction) {
-    f.problems.push_back({place,
-                          fmt::format("makes spheres start in {} that nothing holds: the powder runs out of the box at "
-                                      "{}",
-                                      where_filled(rig), mm(bed.leaves_at)),
-                          remedy});
-  } else if (bed.leaves) {
-    f.problems.push_back({c.rig.fill_mass ? "rig.fill_mass" : "rig.fill",
-                          fmt::format("is {:.3g} times what the vessel holds: {:.3g} cm3 of bed, of which {:.3g} cm3 "
-                                      "stay in and the rest runs out of the box at {}",
-                                      solids / packing_fraction / bed.held, 1e6 * solids / packing_fraction,
-                                      1e6 * bed.held, mm(bed.leaves_at)),
-                          fmt::format("lower the fill to {:.2g} g or less, or close the vessel",
-                                      1e3 * f.mass * bed.held * packing_fraction / solids)});
-  }
-  if (!f.problems.empty()) return;
-  f.fill = solids / packing_fraction / bed.held;
-  f.surface = bed.surface;
-  f.full_at = "where the vessel runs over";
-  const Vec3 up = -rig.down;
-  f.up = up.z > 0.999   ? "z"
-         : up.y > 0.999 ? "y"
-         : up.x > 0.999 ? "x"
-                        : fmt::format("along ({:.3g}, {:.3g}, {:.3g})", up.x, up.y, up.z);
-  const Poured loose = pour(room, room.at(lowest), solids / loosest);
-  const std::vector<RigMesh>& meshes = c.rig.stl->meshes;
-  for (std::size_t k = 0; k < meshes.size(); ++k) {
-    const bool measured = is_measured(*c.rig.stl, k);
-    if (!measured && !moves(rig.bodies[k].motion)) continue;
-    const std::vector<Vec3> points = swept_points(rig, k, c.run);
-    double lowest_point = std::numeric_limits<double>::infinity();
-    for (const Vec3 p : points) lowest_point = std::min(lowest_point, dot(up, p));
-    if (reaches(room, loose.wet, points)) {
-      if (measured) say_immersion(f, meshes[k].name, lowest_point);
-      continue;
-    }
-    const std::string what =
-        fmt::format("never touches the powder: it reaches down to {} mm, and the bed's surface will lie at {} mm ({})",
-                    mm(lowest_point), mm(bed.surface), f.up);
-    if (measured)
-      f.problems.push_back({"rig.mesh." + meshes[k].name, what + ", so its torque would be 0",
-                            "raise the fill, lower the mesh, fill the chamber that it is in, or measure another mesh "
-                            "(rig.torque_of)"});
-    else
-      f.warnings.push_back(meshes[k].name + " " + what);
-  }
-}
-
-Forecast of_meshes(const Case& c, std::uint64_t seed, Forecast f) {
-  const BuiltRig rig = build_rig(c, seed);
-  say_bodies(c, rig, f);
-  check_region(c, f);
-  check_sweeps(c, rig, f);
-  check_inside(c, rig, f);
-  if (f.problems.empty()) check_powder(c, rig, f);
+Forecast with_outlook(Forecast f, RigOutlook seen) {
+  f.fill = seen.fill;
+  f.surface = seen.surface;
+  f.up = std::move(seen.up);
+  f.full_at = std::move(seen.full_at);
+  f.bodies = std::move(seen.bodies);
+  for (const RigOutlook::Passage& one : seen.passages) say_gap(f, one.between, one.width);
+  for (const RigOutlook::Tool& one : seen.tools) say_immersion(f, one.name, one.lowest);
+  f.warnings.insert(f.warnings.end(), seen.warnings.begin(), seen.warnings.end());
+  f.problems.insert(f.problems.end(), seen.problems.begin(), seen.problems.end());
   return f;
 }
 
@@ -410,10 +82,8 @@ Forecast forecast(const PreparedCase& prepared, std::uint64_t seed) {
   Forecast f{.spheres = bed.spheres, .mass = bed.mass, .largest = bed.largest};
   say_density(c, f);
   say_impacts(c, prepared.derived(), f);
-  f = c.rig.stl       ? of_meshes(c, seed, std::move(f))
-      : c.rig.drum    ? of_drum(c, std::move(f))
-      : c.rig.machine ? of_machine(c, std::move(f))
-                      : of_slice(c, std::move(f));
+  const RigKind& kind = kind_of(c);
+  f = kind.outlook != nullptr ? with_outlook(std::move(f), kind.outlook(c)) : forecast_of_meshes(c, seed, std::move(f));
   std::sort(f.gaps.begin(), f.gaps.end(), [](const NamedGap& a, const NamedGap& b) { return a.width < b.width; });
   return f;
 }

@@ -42,24 +42,11 @@ void check_laws(const Case& c, Found& found) {
   if (k.normal == NormalLaw::jkr && k.cohesion == Cohesion::dmt)
     add("contact.cohesion", "is dmt beside normal = \"jkr\", which brings its own attraction",
         "leave cohesion away, or choose normal = \"hertz\"");
-  const double values[]{k.hamaker,
-                        k.wall_hamaker.value_or(0.0),
-                        k.work_of_adhesion,
-                        k.wall_work_of_adhesion.value_or(0.0),
-                        k.rolling_friction,
-                        k.wall_rolling_friction.value_or(0.0),
-                        k.twisting_friction,
-                        k.true_stiffness.value_or(0.0),
-                        k.true_young_modulus.value_or(0.0)};
-  const char* names[]{"hamaker",           "wall_hamaker",          "work_of_adhesion",  "wall_work_of_adhesion",
-                      "rolling_friction",  "wall_rolling_friction", "twisting_friction", "true_stiffness",
-                      "true_young_modulus"};
-  for (std::size_t i = 0; i < std::size(values); ++i) {
-    const std::string name = fmt::format("contact.{}", names[i]);
-    const std::string why = unused_because(c, name);
-    if (values[i] > 0.0 && !why.empty())
-      found.push_back(
-          {name, fmt::format("is {:g}, but {}", values[i], why), "remove it, or choose the law that reads it"});
+  for (const Coefficient& one : coefficients()) {
+    if (one.brings == Brings::no_force || !(one.given(k) > 0.0)) continue;
+    if (const std::string why = unread(k, one.key); !why.empty())
+      found.push_back({fmt::format("contact.{}", one.key), fmt::format("is {:g}, but {}", one.given(k), why),
+                       "remove it, or choose the law that reads it"});
   }
 }
 

@@ -8,9 +8,10 @@
 
 #include "dem/case/grains.hpp"
 #include "dem/reading/prepare.hpp"
-#include "dem/reading/read_stl_rig.hpp"
 #include "dem/reading/target.hpp"
+#include "dem/rig/choose.hpp"
 #include "dem/rig/rig.hpp"
+#include "dem/rig/rig_kind.hpp"
 
 namespace dem {
 namespace {
@@ -33,14 +34,6 @@ void read(const Section& s, std::string_view section, std::string_view key, Case
     set_target(c, t.name, value);
   else if (unread == Unread::is_a_problem)
     s.problem(key, why, "remove it, or choose what reads it");
-}
-
-template <class Choice>
-void choose(const Section& s, std::string_view key, const std::vector<std::string>& names, Choice& field) {
-  const std::string text = s.choice(key, names, names[static_cast<std::size_t>(field)]);
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    if (names[k] == text) field = static_cast<Choice>(k);
-  }
 }
 
 /// A bare number counts spheres, a quantity is a mass. The reader tells them apart by a unit that only a bare number
@@ -73,64 +66,21 @@ void read_fill(const Section& s, Case& c) {
   }
 }
 
-void one_fill(const Section& s) {
-  if (s.has("fill") && s.has("level"))
-    s.problem("level", "stands beside fill, which says how much powder there is, too", "keep one of them");
-}
-
 void read_rig(const Section& s, const std::string& folder, Case& c) {
-  const std::string kind = s.choice("kind", {"slice", "machine", "drum", "stl"}, "slice");
-  if (kind == "drum") {
-    choose(s, "end_plates", {"turning", "resting", "none"}, c.rig.drum.emplace().end_plates);
-    c.rig.level = 0.5;
-    for (const char* key : {"drum_radius", "drum_length", "rpm", "level"}) read(s, "rig", key, c);
-    one_fill(s);
-  } else if (kind == "stl") {
-    c.rig.stl = read_stl_rig(s, folder);
-    if (!c.rig.stl->packing.empty()) c.rig.fill = static_cast<double>(c.rig.stl->packing.size());
-    read(s, "rig", "rpm", c);
-  } else {
-    if (kind == "machine") {
-      c.rig.machine.emplace();
-      c.rig.fill_mass = 0.3;
-    }
-    for (const char* key : {"shaft_radius", "blade_radius", "blade_thickness", "pitch", "trough_radius", "rpm"})
-      read(s, "rig", key, c);
-    if (kind == "machine") {
-      for (const char* key : {"machine_length", "opening", "partition", "partition_height", "sill", "level"})
-        read(s, "rig", key, c);
-      one_fill(s);
-      return read_fill(s, c);
-    }
-    c.rig.pitches = static_cast<int>(s.integer("pitches", {.low = 1, .high = 1000}, c.rig.pitches));
-  }
+  const auto kinds = rig_kinds();
+  std::vector<std::string> names;
+  for (const RigKind* one : kinds) names.emplace_back(one->name);
+  const std::string name = s.choice("kind", names, names.front());
+  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const RigKind* one) { return one->name == name; });
+  const RigKind& kind = found == kinds.end() ? *kinds.front() : **found;
+  kind.read(s, folder, c);
+  for (const RigQuantity& one : kind.quantities) read(s, "rig", one.key, c);
+  read(s, "rig", "rpm", c);
+  if (kind.fill_by == FillBy::fill_or_level && s.has("fill") && s.has("level"))
+    s.problem("level", "stands beside fill, which says how much powder there is, too", "keep one of them");
   read_fill(s, c);
 }
 
-constexpr const char* coefficients[]{"stiffness",
-                                     "wall_stiffness",
-                                     "young_modulus",
-                                     "wall_young_modulus",
-                                     "poisson_ratio",
-                                     "restitution",
-                                     "wall_restitution",
-                                     "tangential_ratio",
-                                     "tangential_damping",
-                                     "friction",
-                                     "wall_friction",
-                                     "rolling_friction",
-                                     "wall_rolling_friction",
-                                     "twisting_friction",
-                                     "rolling_stiffness_ratio",
-                                     "rolling_damping",
-                                     "hamaker",
-                                     "wall_hamaker",
-                                     "minimum_separation",
-                                     "cut_off",
-                                     "work_of_adhesion",
-                                     "wall_work_of_adhesion",
-                                     "true_stiffness",
-                                     "true_young_modulus"};
 std::optional<double> read_coefficient(const Section& s, std::string_view key) {
   if (!s.has(key)) return {};
   const Target t = target("contact." + std::string(key));
@@ -152,15 +102,15 @@ void read_pair(const Section& s, Case& c) {
 
 /// The choices of laws come first: which coefficients are read depends on them.
 void read_laws(const Section& s, Contact& k) {
-  choose(s, "normal", {"linear", "hertz", "jkr"}, k.normal);
-  if (s.has("tangential")) choose(s, "tangential", {"linear", "mindlin"}, k.tangential.emplace(TangentialLaw::linear));
-  choose(s, "resistance", {"none", "constant", "spring"}, k.resistance);
-  choose(s, "cohesion", {"van_der_waals", "dmt"}, k.cohesion);
-  choose(s, "tension", {"allowed", "clamped"}, k.tension);
-  choose(s, "cap", {"net", "repulsion", "thornton"}, k.cap);
-  choose(s, "hamaker_of", {"simulation", "original"}, k.hamaker_of);
-  choose(s, "length_scale", {"diameter", "radius"}, k.length_scale);
-  choose(s, "wall_attraction", {"as_grains", "derjaguin"}, k.wall_attraction);
+  choose(s, "normal", k.normal);
+  if (s.has("tangential")) choose(s, "tangential", k.tangential.emplace(TangentialLaw::linear));
+  choose(s, "resistance", k.resistance);
+  choose(s, "cohesion", k.cohesion);
+  choose(s, "tension", k.tension);
+  choose(s, "cap", k.cap);
+  choose(s, "hamaker_of", k.hamaker_of);
+  choose(s, "length_scale", k.length_scale);
+  choose(s, "wall_attraction", k.wall_attraction);
   if (s.has("restitution_at"))
     k.restitution_at = s.quantity("restitution_at", "m/s", {.low = 0.0, .high = 1000.0, .open_low = true});
 }
@@ -174,8 +124,8 @@ bool chooses_laws(const Section& s) {
 void read_contact(const Section& common, const Section& own, Unread unread, Case& c) {
   read_laws(common, c.contact);
   read_laws(own, c.contact);
-  for (const char* key : coefficients) read(common, "contact", key, c, unread);
-  for (const char* key : coefficients) read(own, "contact", key, c);
+  for (const Coefficient& k : coefficients()) read(common, "contact", k.key, c, unread);
+  for (const Coefficient& k : coefficients()) read(own, "contact", k.key, c);
   for (const Section& pair : common.array("pair")) read_pair(pair, c);
   for (const Section& pair : own.array("pair")) read_pair(pair, c);
 }

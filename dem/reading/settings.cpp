@@ -29,9 +29,9 @@ struct Text {
   void number(std::string_view name, double value, std::string_view unit) {
     lines += fmt::format("{} = {:.17g}{}{}\n", name, value, unit == "1" ? "" : " ", unit == "1" ? "" : unit);
   }
-  template <class Choice>
-  void choice(std::string_view name, Choice value, std::initializer_list<const char*> names) {
-    lines += fmt::format("{} = {}\n", name, names.begin()[static_cast<std::size_t>(value)]);
+  template <data::HasTexts Choice>
+  void choice(std::string_view name, Choice value) {
+    lines += fmt::format("{} = {}\n", name, data::to_text(value));
   }
 };
 
@@ -55,15 +55,15 @@ std::string settings_text(const Case& c) {
   const Contact& k = c.contact;
   const RunControl& r = c.run;
   text.lines += rig_settings(c);
-  text.choice("contact.tension", k.tension, {"allowed", "clamped"});
-  text.choice("contact.cap", k.cap, {"net", "repulsion", "thornton"});
-  text.choice("contact.hamaker_of", k.hamaker_of, {"simulation", "original"});
-  text.choice("contact.length_scale", k.length_scale, {"diameter", "radius"});
-  text.choice("contact.wall_attraction", k.wall_attraction, {"as_grains", "derjaguin"});
-  text.choice("contact.normal", k.normal, {"linear", "hertz", "jkr"});
-  if (k.normal == NormalLaw::hertz) text.choice("contact.tangential", k.tangential_law(), {"linear", "mindlin"});
-  text.choice("contact.resistance", k.resistance, {"none", "constant", "spring"});
-  text.choice("contact.cohesion", k.cohesion, {"van_der_waals", "dmt"});
+  text.choice("contact.tension", k.tension);
+  text.choice("contact.cap", k.cap);
+  text.choice("contact.hamaker_of", k.hamaker_of);
+  text.choice("contact.length_scale", k.length_scale);
+  text.choice("contact.wall_attraction", k.wall_attraction);
+  text.choice("contact.normal", k.normal);
+  if (k.normal == NormalLaw::hertz) text.choice("contact.tangential", k.tangential_law());
+  text.choice("contact.resistance", k.resistance);
+  text.choice("contact.cohesion", k.cohesion);
   if (k.restitution_at) text.number("contact.restitution_at", *k.restitution_at, "m/s");
   text.number("run.gravity", r.gravity, "m/s2");
   text.number("run.steps_per_contact", r.steps_per_contact, "1");

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <functional>
+#include <span>
 #include <stdexcept>
 
-#include "dem/case/cross_section.hpp"
+#include "dem/case/coefficients.hpp"
 #include "dem/case/grains.hpp"
 #include "dem/rig/rig.hpp"
+#include "dem/rig/rig_kind.hpp"
 
 namespace dem {
 namespace {
@@ -20,100 +22,41 @@ struct Binding {
   std::function<std::string(const Case&)> unused;  ///< why the case has no use for it
 };
 
-std::string of_slice_only(const Case& c) {
-  return c.rig.stl || c.rig.drum ? "is a dimension of the slice, and this rig has none" : "";
-}
-std::string of_machine_only(const Case& c) { return c.rig.machine ? "" : "is of the rig kind = \"machine\" only"; }
-std::string of_level_only(const Case& c) {
-  return c.rig.drum || c.rig.machine ? "" : "is of the rigs kind = \"drum\" and \"machine\" only";
-}
-std::string of_drum_only(const Case& c) { return c.rig.drum ? "" : "is of the rig kind = \"drum\" only"; }
 std::string always(const Case&) { return ""; }
 
-/// Which laws read which coefficient.
-std::string unread(const Contact& k, std::string_view key) {
-  const auto is = [&](std::initializer_list<std::string_view> keys) {
-    return std::find(keys.begin(), keys.end(), key) != keys.end();
+Binding of_contact(const Coefficient& k) {
+  return {{fmt::format("contact.{}", k.key), k.unit, k.low, k.high, k.meaning},
+          [&k](const Case& c) { return k.value(c.contact); },
+          [&k](Case& c, double x) { k.set(c.contact, x); },
+          [&k](const Case& c) { return unread(c.contact, k.key); }};
+}
+
+/// Kinds of rig that have the quantity, for those that do not.
+std::string unused_of_rig(const Case& c, std::string_view key) {
+  const auto has = [&](const RigKind& kind) {
+    return std::any_of(kind.quantities.begin(), kind.quantities.end(),
+                       [&](const RigQuantity& q) { return q.key == key; });
   };
-  const bool hertzian = k.normal != NormalLaw::linear;
-  const bool mindlin = k.tangential_law() == TangentialLaw::mindlin;
-  if (is({"stiffness", "wall_stiffness"}) && hertzian && mindlin)
-    return "is read by normal = \"linear\" or tangential = \"linear\" only";
-  if (key == "true_stiffness" && hertzian) return "is read by normal = \"linear\" only";
-  if (key == "tangential_ratio" && mindlin) return "is read by tangential = \"linear\" only";
-  if (is({"young_modulus", "wall_young_modulus", "true_young_modulus", "poisson_ratio"}) && !hertzian)
-    return "is read by normal = \"hertz\" or \"jkr\" only";
-  if (is({"rolling_friction", "wall_rolling_friction", "twisting_friction"}) && k.resistance == ResistanceLaw::none)
-    return "is not read with resistance = \"none\"";
-  if (is({"rolling_stiffness_ratio", "rolling_damping"}) && k.resistance != ResistanceLaw::spring)
-    return "is read by resistance = \"spring\" only";
-  if (is({"hamaker", "wall_hamaker", "minimum_separation", "cut_off"})) {
-    if (k.normal == NormalLaw::jkr) return "is not read with normal = \"jkr\", which brings its own attraction";
-    if (k.cohesion == Cohesion::dmt) return "is read by cohesion = \"van_der_waals\" only";
-  }
-  if (is({"work_of_adhesion", "wall_work_of_adhesion"}) && k.normal != NormalLaw::jkr && k.cohesion != Cohesion::dmt)
-    return "is read by normal = \"jkr\" or cohesion = \"dmt\" only";
-  return "";
+  if (has(kind_of(c))) return "";
+  std::vector<std::string> names;
+  for (const RigKind* kind : rig_kinds())
+    if (has(*kind)) names.push_back(fmt::format("kind = \"{}\"", kind->name));
+  return fmt::format("is of the rig{} {} only", names.size() > 1 ? "s" : "", fmt::join(names, " and "));
 }
 
-std::string_view last_part(std::string_view name) { return name.substr(name.rfind('.') + 1); }
-
-Binding of_contact(Target t, double Contact::*field) {
-  const std::string key(last_part(t.name));
-  return {std::move(t), [=](const Case& c) { return c.contact.*field; },
-          [=](Case& c, double x) { c.contact.*field = x; }, [=](const Case& c) { return unread(c.contact, key); }};
-}
-/// A field that follows another while it is not set.
-Binding of_contact(Target t, std::optional<double> Contact::*field, double Contact::*otherwise) {
-  const std::string key(last_part(t.name));
-  return {std::move(t), [=](const Case& c) { return (c.contact.*field).value_or(c.contact.*otherwise); },
-          [=](Case& c, double x) { c.contact.*field = x; }, [=](const Case& c) { return unread(c.contact, key); }};
-}
-Binding of_slice(Target t, double Rig::*field) {
-  return {std::move(t), [=](const Case& c) { return c.rig.*field; }, [=](Case& c, double x) { c.rig.*field = x; },
-          of_slice_only};
-}
-
-Binding of_drum(Target t, double Drum::*field) {
-  return {std::move(t), [=](const Case& c) { return c.rig.drum.value_or(Drum{}).*field; },
-          [=](Case& c, double x) { c.rig.drum.value().*field = x; }, of_drum_only};
-}
-
-Binding of_machine(Target t, double Machine::*field) {
-  return {std::move(t), [=](const Case& c) { return c.rig.machine.value_or(Machine{}).*field; },
-          [=](Case& c, double x) { c.rig.machine.value().*field = x; }, of_machine_only};
-}
-
-/// The level that is set, or what the fill comes to, of a rig too full 1.
-double level_of(const Case& c) {
-  const double room = level_volume(c.rig);
-  if (c.rig.level || room <= 0.0) return c.rig.level.value_or(0.0);
-  return std::min(1.0, summarise_bed(c).volume / packing_fraction / room);
+Binding of_rig(const RigQuantity& q) {
+  return {{fmt::format("rig.{}", q.key), q.unit, q.low, q.high, q.meaning}, q.get, q.set, [&q](const Case& c) {
+            return unused_of_rig(c, q.key);
+          }};
 }
 
 std::string of_components(const Case& c, std::string_view key) {
   return c.components.empty() ? "" : fmt::format("is that of each component here: material.NAME.{}", key);
 }
 
-const std::vector<Binding>& bindings() {
-  using C = Contact;
-  static const std::vector<Binding> all{
-      of_contact({"contact.friction", "1", 0.0, 10.0, "Coulomb friction between grains"}, &C::friction),
-      of_contact({"contact.wall_friction", "1", 0.0, 10.0, "Coulomb friction at walls; follows friction when not set"},
-                 &C::wall_friction, &C::friction),
-      of_contact({"contact.hamaker", "J", 0.0, 1e-12, "Hamaker constant of eq. (1)"}, &C::hamaker),
-      of_contact({"contact.wall_hamaker", "J", 0.0, 1e-12, "Hamaker constant at walls; follows hamaker when not set"},
-                 &C::wall_hamaker, &C::hamaker),
-      of_contact({"contact.minimum_separation", "m", 1e-11, 1e-6, "minimum separation h_min of eq. (1)"},
-                 &C::minimum_separation),
-      of_contact({"contact.cut_off", "m", 0.0, 1e-4, "separation beyond which there is no attraction"}, &C::cut_off),
-      of_contact({"contact.restitution", "1", 0.01, 1.0, "restitution of a head-on collision without attraction"},
-                 &C::restitution),
-      of_contact({"contact.stiffness", "N/m", 1e-3, 1e9, "normal spring between grains"}, &C::stiffness),
-      of_contact({"contact.wall_stiffness", "N/m", 1e-3, 1e9, "normal spring at walls; follows stiffness when not set"},
-                 &C::wall_stiffness, &C::stiffness),
-      of_contact({"contact.tangential_ratio", "1", 0.0, 2.0, "tangential / normal stiffness"}, &C::tangential_ratio),
-      of_contact({"contact.tangential_damping", "1", 0.0, 2.0, "tangential / normal dashpot"}, &C::tangential_damping),
+/// Of the bed, whatever the rig.
+std::vector<Binding> of_bed() {
+  return {
       {{"material.density", "kg/m3", 1.0, 1e5, "density of a grain"},
        [](const Case& c) { return c.material.density; },
        [](Case& c, double x) { c.material.density = x; },
@@ -147,60 +90,43 @@ const std::vector<Binding>& bindings() {
          c.rig.level.reset();
        },
        always},
-      of_slice({"rig.shaft_radius", "m", 1e-6, 10.0, "radius of the shaft"}, &Rig::shaft_radius),
-      of_slice({"rig.blade_radius", "m", 1e-6, 10.0, "outer radius of the blade"}, &Rig::blade_radius),
-      of_slice({"rig.blade_thickness", "m", 1e-7, 10.0, "thickness of the blade along the axis"},
-               &Rig::blade_thickness),
-      of_slice({"rig.pitch", "m", 1e-6, 100.0, "pitch of the helix"}, &Rig::pitch),
-      of_slice({"rig.trough_radius", "m", 1e-6, 10.0, "radius of the trough"}, &Rig::trough_radius),
-      of_contact({"contact.wall_restitution", "1", 0.01, 1.0, "restitution at walls; follows restitution when not set"},
-                 &C::wall_restitution, &C::restitution),
-      of_contact({"contact.young_modulus", "Pa", 1e3, 1e13, "Young's modulus of a grain"}, &C::young_modulus),
-      of_contact({"contact.wall_young_modulus", "Pa", 1e3, 1e15, "Young's modulus of walls; follows young_modulus"},
-                 &C::wall_young_modulus, &C::young_modulus),
-      of_contact({"contact.poisson_ratio", "1", 0.0, 0.5, "Poisson's ratio of grains and walls"}, &C::poisson_ratio),
-      of_contact({"contact.rolling_friction", "1", 0.0, 10.0, "rolling torque / (reduced radius * load), at most"},
-                 &C::rolling_friction),
-      of_contact(
-          {"contact.wall_rolling_friction", "1", 0.0, 10.0, "rolling friction at walls; follows rolling_friction"},
-          &C::wall_rolling_friction, &C::rolling_friction),
-      of_contact({"contact.twisting_friction", "1", 0.0, 10.0, "torque about the normal / (reduced radius * load)"},
-                 &C::twisting_friction),
-      of_contact({"contact.rolling_stiffness_ratio", "1", 1e-6, 10.0, "rolling / normal stiffness"},
-                 &C::rolling_stiffness_ratio),
-      of_contact({"contact.rolling_damping", "1", 0.0, 2.0, "rolling dashpot, of critical"}, &C::rolling_damping),
-      of_contact({"contact.work_of_adhesion", "J/m2", 0.0, 100.0, "work of adhesion between grains, jkr and dmt"},
-                 &C::work_of_adhesion),
-      of_contact({"contact.wall_work_of_adhesion", "J/m2", 0.0, 100.0,
-                  "work of adhesion at walls; follows work_of_adhesion when not set"},
-                 &C::wall_work_of_adhesion, &C::work_of_adhesion),
-      of_contact({"contact.true_stiffness", "N/m", 1e-3, 1e12,
-                  "stiffness of the real grain: attraction scaled by the root of stiffness / it"},
-                 &C::true_stiffness, &C::stiffness),
-      of_contact({"contact.true_young_modulus", "Pa", 1e3, 1e13,
-                  "Young's modulus of the real grain: attraction scaled by (young_modulus / it)^0.4"},
-                 &C::true_young_modulus, &C::young_modulus),
-      {{"material.geometric_sd", "1", 1.001, 3.0, "spread of log-normal sizes, exp of the deviation of ln diameter"},
-       [](const Case& c) { return c.material.log_normal.value_or(LogNormalSizes{}).geometric_sd; },
-       [](Case& c, double x) { c.material.log_normal->geometric_sd = x; },
-       [](const Case& c) { return c.material.log_normal ? "" : "is read with a log-normal distribution only"; }},
-      of_drum({"rig.drum_radius", "m", 1e-6, 10.0, "radius of the drum, inside"}, &Drum::radius),
-      of_drum({"rig.drum_length", "m", 1e-6, 10.0, "length of the drum between its end plates"}, &Drum::length),
-      {{"rig.level", "1", 1e-6, 1.0,
-        "bed / drum, or bed / room of the machine below its blades' top, of volume, the bed at rest with a solid "
-        "fraction of 0.6"},
-       level_of,
-       [](Case& c, double x) { c.rig.level = x; },
-       of_level_only},
-      of_machine({"rig.machine_length", "m", 1e-6, 100.0, "length of the machine between its end walls"},
-                 &Machine::length),
-      of_machine({"rig.opening", "m", 1e-6, 100.0, "length of the opening at each end of the partition"},
-                 &Machine::opening),
-      of_machine({"rig.partition", "m", 1e-6, 10.0, "thickness of the partition"}, &Machine::partition),
-      of_machine({"rig.partition_height", "m", 1e-6, 10.0, "height of the partition above the axes"},
-                 &Machine::partition_height),
-      of_machine({"rig.sill", "m", -10.0, 10.0, "height of the openings' lower edge above the axes"}, &Machine::sill),
   };
+}
+
+Binding of_log_normal_sizes() {
+  return {{"material.geometric_sd", "1", 1.001, 3.0, "spread of log-normal sizes, exp of the deviation of ln diameter"},
+          [](const Case& c) { return c.material.log_normal.value_or(LogNormalSizes{}).geometric_sd; },
+          [](Case& c, double x) { c.material.log_normal->geometric_sd = x; },
+          [](const Case& c) { return c.material.log_normal ? "" : "is read with a log-normal distribution only"; }};
+}
+
+/// The order is that of settings_text, by which runs are known: what came first stands first.
+std::vector<Binding> make_bindings() {
+  const auto contact = coefficients();
+  std::vector<Binding> all;
+  const auto add_contact = [&](std::span<const Coefficient> some) {
+    for (const Coefficient& k : some) all.push_back(of_contact(k));
+  };
+  const auto add_rig = [&](const RigKind& kind) {
+    for (const RigQuantity& q : kind.quantities) {
+      Binding one = of_rig(q);
+      const bool known =
+          std::any_of(all.begin(), all.end(), [&](const Binding& b) { return b.target.name == one.target.name; });
+      if (!known) all.push_back(std::move(one));
+    }
+  };
+  add_contact(contact.first(first_coefficients));
+  for (Binding& one : of_bed()) all.push_back(std::move(one));
+  add_rig(slice_rig);
+  add_contact(contact.subspan(first_coefficients));
+  all.push_back(of_log_normal_sizes());
+  add_rig(drum_rig);
+  for (const RigKind* kind : rig_kinds()) add_rig(*kind);
+  return all;
+}
+
+const std::vector<Binding>& bindings() {
+  static const std::vector<Binding> all = make_bindings();
   return all;
 }
 

@@ -12,6 +12,7 @@
 
 #include "data/error.hpp"
 #include "dem/case/case.hpp"
+#include "dem/case/coefficients.hpp"
 
 namespace dem {
 
@@ -21,19 +22,6 @@ struct Target {
   double low, high;     ///< SI, values that a simulation can take
   std::string meaning;  ///< one line
 };
-
-/// The coefficients that a pair of materials may have of its own, by key.
-struct PairKey {
-  std::string_view key;
-  std::optional<double> PairContact::*field;
-};
-inline constexpr PairKey pair_keys[]{{"stiffness", &PairContact::stiffness},
-                                     {"restitution", &PairContact::restitution},
-                                     {"friction", &PairContact::friction},
-                                     {"rolling_friction", &PairContact::rolling_friction},
-                                     {"twisting_friction", &PairContact::twisting_friction},
-                                     {"hamaker", &PairContact::hamaker},
-                                     {"work_of_adhesion", &PairContact::work_of_adhesion}};
 
 /// Those that every case has; the others' names depend on the materials.
 const std::vector<Target>& targets();

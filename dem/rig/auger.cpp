@@ -117,7 +117,7 @@ void check_fill(const Case& c, const TroughFill& fill, std::vector<data::Problem
                                "the blade's top",
                                bed.spheres, 1e3 * bed.mass, fill.share),
                    fmt::format("lower the fill to {:.2g} g, or check density, diameter and the {}'s lengths",
-                               1e3 * bed.mass / fill.share, c.rig.machine ? "machine" : "slice")});
+                               1e3 * bed.mass / fill.share, rig_kind(c))});
 }
 
 }  // namespace dem

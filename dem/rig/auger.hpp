@@ -3,11 +3,13 @@
 //
 // The shaft and the blade's rim are 48-gons with vertices on the radius, the blade's two faces helicoids of 48 by 2
 // quadrilaterals a pitch at x = pitch angle / 2 pi -+ thickness / 2.
+#include <array>
 #include <vector>
 
 #include "data/error.hpp"
 #include "dem/case/case.hpp"
 #include "dem/case/cross_section.hpp"
+#include "dem/rig/rig_kind.hpp"
 #include "dem/walls/mesh.hpp"
 
 namespace dem {
@@ -29,6 +31,25 @@ struct Stretch {
 /// An auger that repeats along x is open at the blade's ends.
 enum class BladeEnds { open, closed };
 TriangleMesh auger_mesh(const Rig& rig, Stretch shaft, Stretch blade, BladeEnds ends);
+
+/// Of augers and trough.
+template <double Rig::*Field>
+constexpr RigQuantity auger_length(const char* key, double low, double high, const char* meaning) {
+  return {key,
+          "m",
+          low,
+          high,
+          meaning,
+          [](const Case& c) { return c.rig.*Field; },
+          [](Case& c, double si) { c.rig.*Field = si; }};
+}
+inline constexpr std::array auger_quantities{
+    auger_length<&Rig::shaft_radius>("shaft_radius", 1e-6, 10.0, "radius of the shaft"),
+    auger_length<&Rig::blade_radius>("blade_radius", 1e-6, 10.0, "outer radius of the blade"),
+    auger_length<&Rig::blade_thickness>("blade_thickness", 1e-7, 10.0, "thickness of the blade along the axis"),
+    auger_length<&Rig::pitch>("pitch", 1e-6, 100.0, "pitch of the helix"),
+    auger_length<&Rig::trough_radius>("trough_radius", 1e-6, 10.0, "radius of the trough"),
+};
 
 /// What of augers and troughs cannot be simulated.
 std::vector<data::Problem> auger_problems(const Case& c);

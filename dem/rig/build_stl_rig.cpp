@@ -17,6 +17,7 @@
 #include "dem/rig/drive.hpp"
 #include "dem/rig/grow.hpp"
 #include "dem/rig/packing.hpp"
+#include "dem/rig/read_stl_rig.hpp"
 #include "dem/rig/rig_kind.hpp"
 
 namespace dem {
@@ -311,6 +312,15 @@ double fill_depth(const Case& c, double volume) {
 }  // namespace
 
 const RigKind stl_rig{.name = "stl",
+                      .is = [](const Case& c) { return c.rig.stl != nullptr; },
+                      .fill_by = FillBy::fill,
+                      .quantities = {},
+                      .read =
+                          [](const data::Section& s, const std::string& folder, Case& c) {
+                            c.rig.stl = read_stl_rig(s, folder);
+                            if (!c.rig.stl->packing.empty())
+                              c.rig.fill = static_cast<double>(c.rig.stl->packing.size());
+                          },
                       .build = build,
                       .meshes = meshes,
                       .warnings = [](const Case& c) { return c.rig.stl->warnings; },
@@ -320,6 +330,7 @@ const RigKind stl_rig{.name = "stl",
                       .measured_bodies = [](const Case& c) { return measured_meshes(*c.rig.stl).size(); },
                       .channels = channels,
                       .tool_speed = [](const Case& c) { return mesh_speed(*c.rig.stl, c.rig.angular_velocity); },
-                      .fill_depth = fill_depth};
+                      .fill_depth = fill_depth,
+                      .outlook = nullptr};
 
 }  // namespace dem

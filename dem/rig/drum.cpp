@@ -6,8 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem/rig/choose.hpp"
 #include "dem/rig/grow.hpp"
+#include "dem/rig/level.hpp"
 #include "dem/rig/rig_kind.hpp"
+#include "dem/rig/rig_words.hpp"
 
 namespace dem {
 namespace {
@@ -159,26 +162,64 @@ std::vector<BodyLabel> labels(const Case& c) {
   return all;
 }
 
-std::string settings(const Case& c) {
-  constexpr const char* names[]{"turning", "resting", "none"};
-  return fmt::format("rig.end_plates = {}\n", names[static_cast<std::size_t>(c.rig.drum->end_plates)]);
+RigOutlook outlook(const Case& c) {
+  const Drum& drum = *c.rig.drum;
+  const DrumFill fill = fill_of_drum(c);
+  RigOutlook found{.fill = fill.share, .surface = fill.surface, .up = "above the axis", .full_at = "the drum's top"};
+  const bool both = drum.end_plates == EndPlates::turning;
+  found.bodies = {
+      fmt::format("shell: {} x {} mm, turns about -y at {:.4g} rpm; the output is its torque{}", mm(2.0 * drum.radius),
+                  mm(drum.length), rpm(c.rig.angular_velocity), both ? " and that of the end plates" : ""),
+      both                                    ? "plates: both end plates turn with the shell"
+      : drum.end_plates == EndPlates::resting ? "plates: both end plates rest"
+                                              : "no end plates: the drum repeats along its axis"};
+  if (drum.end_plates != EndPlates::none) found.passages = {{"the end plates", drum.length}};
+  if (const double froude = froude_number(c); froude > 1.0)
+    found.warnings.push_back(fmt::format(
+        "at {:.4g} rpm the Froude number is {:.3g}: from 1 on the powder goes round with the shell "
+        "(the drum flows below {:.4g} rpm)",
+        rpm(std::abs(c.rig.angular_velocity)), froude, rpm(std::abs(c.rig.angular_velocity)) / std::sqrt(froude)));
+  return found;
 }
+
+template <double Drum::*Field>
+constexpr RigQuantity drum_length(const char* key, double low, double high, const char* meaning) {
+  return {key,
+          "m",
+          low,
+          high,
+          meaning,
+          [](const Case& c) { return c.rig.drum.value_or(Drum{}).*Field; },
+          [](Case& c, double si) { c.rig.drum.value().*Field = si; }};
+}
+constexpr RigQuantity drum_quantities[]{
+    drum_length<&Drum::radius>("drum_radius", 1e-6, 10.0, "radius of the drum, inside"),
+    drum_length<&Drum::length>("drum_length", 1e-6, 10.0, "length of the drum between its end plates"), level_quantity};
 
 }  // namespace
 
 const RigKind drum_rig{
     .name = "drum",
+    .is = [](const Case& c) { return c.rig.drum.has_value(); },
+    .fill_by = FillBy::fill_or_level,
+    .quantities = drum_quantities,
+    .read =
+        [](const data::Section& s, const std::string&, Case& c) {
+          choose(s, "end_plates", c.rig.drum.emplace().end_plates);
+          c.rig.level = 0.5;
+        },
     .build = build,
     .meshes = meshes,
     .warnings = [](const Case&) { return std::vector<std::string>{}; },
     .problems = problems_of,
-    .settings = settings,
+    .settings =
+        [](const Case& c) { return fmt::format("rig.end_plates = {}\n", data::to_text(c.rig.drum->end_plates)); },
     .labels = labels,
     .measured_bodies =
         [](const Case& c) { return std::size_t{c.rig.drum->end_plates == EndPlates::turning ? 2u : 1u}; },
     .channels = [](const Case&) { return Channels{}; },
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.drum->radius; },
-    .fill_depth = [](const Case& c,
-                     double volume) { return volume / (c.rig.drum->length * 2.0 * c.rig.drum->radius); }};
+    .fill_depth = [](const Case& c, double volume) { return volume / (c.rig.drum->length * 2.0 * c.rig.drum->radius); },
+    .outlook = outlook};
 
 }  // namespace dem

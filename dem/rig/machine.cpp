@@ -9,7 +9,9 @@
 
 #include "dem/rig/auger.hpp"
 #include "dem/rig/grow.hpp"
+#include "dem/rig/level.hpp"
 #include "dem/rig/rig_kind.hpp"
+#include "dem/rig/rig_words.hpp"
 
 namespace dem {
 namespace {
@@ -213,10 +215,70 @@ std::vector<NamedMesh> meshes(const Case& c) {
           {"trough", double_trough(c.rig, 2.0 * c.rig.machine->partition_height)}};
 }
 
+RigOutlook outlook(const Case& c) {
+  const Rig& rig = c.rig;
+  const TroughFill fill = fill_of_machine(c);
+  RigOutlook found{.fill = fill.share, .surface = fill.surface, .up = "above the axes", .full_at = "the blades' top"};
+  for (const char* name : {"first_mixer", "second_mixer"})
+    found.bodies.push_back(fmt::format("{}: turns at {:.4g} rpm; the sum of both mixers' torques is the output", name,
+                                       rpm(rig.angular_velocity)));
+  found.passages = {{"blade and trough", rig.clearance()},
+                    {"two flights of the blade", rig.pitch - rig.blade_thickness}};
+  found.tools = {{"each blade", -rig.blade_radius}};
+  if (fill.surface < rig.machine->sill)
+    found.warnings.push_back(fmt::format(
+        "the bed's surface will lie at {} mm, below the openings' sill at {} mm: the powder goes round only "
+        "where it heaps up",
+        mm(fill.surface), mm(rig.machine->sill)));
+  if (fill.surface > rig.machine->partition_height)
+    found.warnings.push_back(fmt::format(
+        "the powder will stand above the partition, at {} mm: it passes over it everywhere", mm(fill.surface)));
+  // An auger carries its powder by a pitch a turn at most.
+  if (const double round = 2.0 * rig.machine->length / rig.pitch; c.run.start_up_turns < round)
+    found.warnings.push_back(fmt::format(
+        "the powder goes round this machine once in {:.3g} turns at best, and run.start_up_turns is {:g}: where the "
+        "bed lies is not yet what it will be (raise it)",
+        round, c.run.start_up_turns));
+  return found;
+}
+
+template <double Machine::*Field>
+constexpr RigQuantity machine_length(const char* key, double low, double high, const char* meaning) {
+  return {key,
+          "m",
+          low,
+          high,
+          meaning,
+          [](const Case& c) { return c.rig.machine.value_or(Machine{}).*Field; },
+          [](Case& c, double si) { c.rig.machine.value().*Field = si; }};
+}
+constexpr RigQuantity machine_quantities[]{
+    auger_quantities[0],
+    auger_quantities[1],
+    auger_quantities[2],
+    auger_quantities[3],
+    auger_quantities[4],
+    level_quantity,
+    machine_length<&Machine::length>("machine_length", 1e-6, 100.0, "length of the machine between its end walls"),
+    machine_length<&Machine::opening>("opening", 1e-6, 100.0, "length of the opening at each end of the partition"),
+    machine_length<&Machine::partition>("partition", 1e-6, 10.0, "thickness of the partition"),
+    machine_length<&Machine::partition_height>("partition_height", 1e-6, 10.0,
+                                               "height of the partition above the axes"),
+    machine_length<&Machine::sill>("sill", -10.0, 10.0, "height of the openings' lower edge above the axes"),
+};
+
 }  // namespace
 
 const RigKind machine_rig{
     .name = "machine",
+    .is = [](const Case& c) { return c.rig.machine.has_value(); },
+    .fill_by = FillBy::fill_or_level,
+    .quantities = machine_quantities,
+    .read =
+        [](const data::Section&, const std::string&, Case& c) {
+          c.rig.machine.emplace();
+          c.rig.fill_mass = 0.3;
+        },
     .build = build,
     .meshes = meshes,
     .warnings = [](const Case&) { return std::vector<std::string>{}; },
@@ -230,6 +292,7 @@ const RigKind machine_rig{
     .channels = channels,
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.blade_radius; },
     .fill_depth = [](const Case& c,
-                     double volume) { return volume / (c.rig.machine->length * 4.0 * c.rig.trough_radius); }};
+                     double volume) { return volume / (c.rig.machine->length * 4.0 * c.rig.trough_radius); },
+    .outlook = outlook};
 
 }  // namespace dem

@@ -1,18 +1,23 @@
 #include "dem/rig/rig.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 
 #include "dem/rig/rig_kind.hpp"
 
 namespace dem {
-namespace {
 
-const RigKind& kind_of(const Case& c) {
-  return c.rig.stl ? stl_rig : c.rig.drum ? drum_rig : c.rig.machine ? machine_rig : slice_rig;
+std::span<const RigKind* const> rig_kinds() {
+  static constexpr std::array all{&slice_rig, &machine_rig, &drum_rig, &stl_rig};
+  return all;
 }
 
-}  // namespace
+const RigKind& kind_of(const Case& c) {
+  const auto all = rig_kinds();
+  // The slice has no data of its own by which to know it: it is what no other kind is.
+  return **std::find_if(all.rbegin(), all.rend(), [&](const RigKind* kind) { return kind->is(c); });
+}
 
 const char* rig_kind(const Case& c) { return kind_of(c).name; }
 BuiltRig build_rig(const Case& c, std::uint64_t seed) { return kind_of(c).build(c, seed); }

@@ -11,6 +11,7 @@
 #include "dem/rig/auger.hpp"
 #include "dem/rig/packing.hpp"
 #include "dem/rig/rig_kind.hpp"
+#include "dem/rig/rig_words.hpp"
 
 namespace dem {
 using std::numbers::pi;
@@ -146,10 +147,45 @@ std::vector<NamedMesh> meshes(const Case& c) {
   return {{"mixer", auger_mesh(c.rig)}, {"trough", trough_mesh(c.rig, 2.0 * c.rig.blade_radius)}};
 }
 
+RigOutlook outlook(const Case& c) {
+  const Rig& rig = c.rig;
+  const TroughFill fill = fill_of_slice(c);
+  RigOutlook found{.fill = fill.share, .surface = fill.surface, .up = "above the axis", .full_at = "the blade's top"};
+  found.bodies = {
+      fmt::format("mixer: turns about x at {:.4g} rpm; its torque is the output", rpm(rig.angular_velocity))};
+  found.passages = {{"blade and trough", rig.trough_radius - rig.blade_radius},
+                    {"two flights of the blade", rig.pitch - rig.blade_thickness}};
+  found.tools = {{"the blade", -rig.blade_radius}};
+  if (fill.share > 1.0) {
+    found.warnings.push_back(
+        fmt::format("the powder will stand {} mm above the blade: {:.2g} times what fits below its top",
+                    mm(fill.surface - rig.blade_radius), fill.share));
+  }
+  Case loose = c;
+  if (loose.rig.fill_mass) *loose.rig.fill_mass *= packing_fraction / loosest_bed;
+  loose.rig.fill *= packing_fraction / loosest_bed;
+  if (fill_of_slice(loose).surface + summarise_bed(c).largest < -rig.blade_radius) {
+    found.problems.push_back(
+        {"rig.fill",
+         fmt::format("makes a bed up to {} mm above the axis, but the blade reaches down to {} mm: "
+                     "it never touches the powder",
+                     mm(fill.surface), mm(-rig.blade_radius)),
+         "raise the fill"});
+  }
+  return found;
+}
+
 }  // namespace
 
 const RigKind slice_rig{
     .name = "slice",
+    .is = [](const Case&) { return true; },
+    .fill_by = FillBy::fill,
+    .quantities = auger_quantities,
+    .read =
+        [](const data::Section& s, const std::string&, Case& c) {
+          c.rig.pitches = static_cast<int>(s.integer("pitches", {.low = 1, .high = 1000}, c.rig.pitches));
+        },
     .build = build,
     .meshes = meshes,
     .warnings = [](const Case&) { return std::vector<std::string>{}; },
@@ -163,6 +199,7 @@ const RigKind slice_rig{
     .channels = [](const Case&) { return Channels{}; },
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.blade_radius; },
     .fill_depth = [](const Case& c,
-                     double volume) { return volume / (c.rig.pitches * c.rig.pitch * 2.0 * c.rig.trough_radius); }};
+                     double volume) { return volume / (c.rig.pitches * c.rig.pitch * 2.0 * c.rig.trough_radius); },
+    .outlook = outlook};
 
 }  // namespace dem

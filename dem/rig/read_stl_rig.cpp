@@ -1,4 +1,4 @@
-#include "dem/reading/read_stl_rig.hpp"
+#include "dem/rig/read_stl_rig.hpp"
 
 #include <fmt/format.h>
 
