@@ -1,6 +1,6 @@
 #pragma once
 // Reads one material's DEM case from a study: [rig], [materials.NAME], [contact] and [run]. data/study_keys_table.cpp lists
-// every key with its unit, range and default; rigs from meshes are read by dem/reading/read_stl_rig.hpp.
+// every key with its unit, range and default; rigs from meshes are read by dem/rig/read_stl_rig.hpp.
 #include <string_view>
 
 #include "data/study_file.hpp"
