@@ -4,7 +4,7 @@
 RUNS is the folder that steady.py leaves its runs in (--out), references among them. Each part is a mean over seeds,
 with its error from their scatter; the last part of a point is its level, all that its references measured from there
 on. A point that has fewer than two references keeps the level of OLD.csv. From here come the table of dem/STEADY.md and
-tests/dem/series/start_up.csv, to which test_steady_flow holds run.start_up_turns.
+tests/dem/series/start_up.csv, to which tests/dem/run/steady_flow holds run.start_up_turns.
 """
 import pathlib
 import re

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "shot.hpp"
+#include "tests/dem/shot.hpp"
 
 namespace scene {
 

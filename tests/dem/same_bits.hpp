@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "dem/run/run.hpp"
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 namespace scene {
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "dem/contact/collision.hpp"
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 namespace scene {
 

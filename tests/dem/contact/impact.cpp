@@ -8,7 +8,7 @@
 // 5, whose sphere sinks in by 1 %, falls short of the rigid body's by the overlap weighted with the force, B(7/5, 1/2)
 // / 2 of the largest. And a dashpot that may pull takes away from the normal impulse at the end, where friction has
 // stopped: tests 6 to 8 clamp the tension, with the damping that so gives the wanted restitution.
-#include "shot.hpp"
+#include "tests/dem/shot.hpp"
 
 namespace {
 

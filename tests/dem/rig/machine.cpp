@@ -15,7 +15,7 @@
 #include "dem/rig/machine.hpp"
 #include "dem/run/mixing.hpp"
 #include "dem/run/run.hpp"
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 using Catch::Contains;
 

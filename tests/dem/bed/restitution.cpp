@@ -6,7 +6,7 @@
 
 #include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 namespace {
 

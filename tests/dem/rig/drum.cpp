@@ -10,8 +10,8 @@
 #include "dem/reading/target.hpp"
 #include "dem/rig/drum.hpp"
 #include "dem/run/run.hpp"
-#include "same_bits.hpp"
-#include "scene.hpp"
+#include "tests/dem/same_bits.hpp"
+#include "tests/dem/scene.hpp"
 
 using Catch::Contains;
 

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 namespace {
 

@@ -1,92 +1,11 @@
-// run.h5 and the study's DEM sections.
+// run.h5: what it gives back, and what goes on from it.
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "data/error.hpp"
-#include "dem/reading/prepare.hpp"
-#include "dem/reading/read_case.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/run/run_file.hpp"
 #include "tests/temporary.hpp"
-
-namespace {
-
-data::StudyFile study(const TemporaryFolder& folder, const std::string& text) {
-  folder.write("study.toml", text);
-  return data::StudyFile::open(folder.path());
-}
-
-const std::string text = R"(
-[rig]
-kind = "slice"
-pitch = "10 mm"
-fill = "3 g"
-rpm = "120 rpm"
-[materials.steel]
-density = "7800 kg/m3"
-diameter = "1 mm"
-[materials.glass]
-density = "2500 kg/m3"
-diameter = "900 um"
-fill = 900
-contact = { restitution = 0.9 }
-[contact]
-friction = 0.3
-wall_friction = 0.2
-hamaker = "2e-18 J"
-cap = "thornton"
-tension = "clamped"
-wall_attraction = "derjaguin"
-minimum_separation = "1 nm"
-[run]
-settle = "50 ms"
-skin = 0.2
-[training]
-standard_error = 0.05
-)";
-
-}  // namespace
-
-TEST_CASE("a study's rig, material, contact and run keys reach the case in SI, each material with its own") {
-  const TemporaryFolder folder;
-  const data::StudyFile file = study(folder, text);
-  const dem::Case steel = dem::read_case(file, "steel"), glass = dem::read_case(file, "glass");
-  CHECK_NOTHROW(file.finish());
-  CHECK(steel.rig.pitch == Approx(0.01));
-  CHECK(steel.rig.fill_mass.value() == Approx(3e-3));
-  CHECK(steel.rig.angular_velocity == Approx(12.566370614359172));
-  CHECK(steel.material.name == "steel");
-  CHECK(steel.material.density == 7800.0);
-  CHECK_FALSE(glass.rig.fill_mass.has_value());
-  CHECK(dem::get_target(glass, "fill") == 900.0);
-  CHECK(glass.material.diameter == Approx(0.9e-3));
-  CHECK(glass.contact.restitution == 0.9);
-  CHECK(steel.contact.restitution == dem::Contact{}.restitution);
-  CHECK(steel.contact.wall_friction.value() == 0.2);
-  CHECK(steel.contact.cap == dem::FrictionCap::thornton);
-  CHECK(steel.contact.tension == dem::DashpotTension::clamped);
-  CHECK(steel.contact.wall_attraction == dem::WallAttraction::derjaguin);
-  CHECK(steel.contact.minimum_separation == Approx(1e-9));
-  CHECK(steel.run.settle == Approx(0.05));
-  CHECK(steel.run.standard_error == 0.05);
-}
-
-TEST_CASE("a mistyped key, a wrong unit and a value out of range of the DEM's sections are all named at once") {
-  const TemporaryFolder folder;
-  const data::StudyFile file = study(
-      folder,
-      "[rig]\nkind = \"slice\"\n[contact]\nfrikction = 0.3\nfriction = -1\nhamaker = \"3 mm\"\n[run]\nskin = 0\n");
-  dem::read_case(file, "");
-  try {
-    file.finish();
-    FAIL("nothing was said");
-  } catch (const data::InputError& error) {
-    const std::string said = error.what();
-    CHECK(error.status == data::ExitStatus::bad_study);
-    CHECK_THAT(said, Catch::Contains("frikction") && Catch::Contains("contact.friction") &&
-                         Catch::Contains("hamaker") && Catch::Contains("skin"));
-  }
-}
 
 TEST_CASE("a run file gives back the run, and its checkpoint goes on with the same bits") {
   const TemporaryFolder folder;
@@ -226,22 +145,6 @@ TEST_CASE("a run too short to be steady, or to know its error, says so in its re
   CHECK(back.drift_p == run.summary.drift_p);
   CHECK(back.measured_from == run.summary.measured_from);
   CHECK(back.turns == run.summary.turns);
-}
-
-TEST_CASE("sample, window and length of a run that do not fit into each other are refused, each by name") {
-  const auto said = [](double sample, double window, double longest) {
-    dem::Case c;
-    c.run.sample_interval = sample;
-    c.run.window = window;
-    c.run.longest = longest;
-    std::string all;
-    for (const data::Problem& p : dem::problems(c)) all += p.place + " " + p.what + "; ";
-    return all;
-  };
-  CHECK_THAT(said(10.0, 0.02, 0.3), Catch::Contains("run.sample_interval is 10 s, longer than run.window"));
-  CHECK_THAT(said(1e-3, 0.5, 1.0), Catch::Contains("run.window is 0.5 s, of which fewer than 8"));
-  CHECK_THAT(said(1e-3, 0.02, 0.1), Catch::Contains("run.longest leaves nothing to measure"));
-  CHECK_THAT(said(1e-3, 0.02, 1.0), !Catch::Contains("run.sample") && !Catch::Contains("run.window"));
 }
 
 TEST_CASE("a run file that is cut short, or is something else, is refused by name") {

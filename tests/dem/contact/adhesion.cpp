@@ -2,7 +2,7 @@
 // imposed the contact tears 3/4 (pi^2 w^2 R* / E*^2)^(1/3) beyond touching, at 5/9 F (K. Johnson, K. Kendall, A.
 // Roberts, Proc. R. Soc. A 324:301 (1971); K. Johnson, Contact Mechanics, 1985). DMT: 2 pi w R* in contact, nothing
 // beyond (B. Derjaguin, V. Muller, Y. Toporov, J. Colloid Interface Sci. 53:314 (1975)).
-#include "shot.hpp"
+#include "tests/dem/shot.hpp"
 
 namespace {
 

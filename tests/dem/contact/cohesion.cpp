@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "dem/contact/forces/compose.hpp"
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 TEST_CASE("the Bond number at 2.0e-18 J on 0.8 mm zirconia is 52, 8.3 and 0.5 for h_min 0.4, 1 and 4 nm") {
   const double expected[][2] = {{0.4e-9, 52.0}, {1.0e-9, 8.3}, {4.0e-9, 0.52}};

@@ -7,8 +7,8 @@
 #include "dem/reading/target.hpp"
 #include "dem/rig/slice.hpp"
 #include "dem/run/run.hpp"
-#include "same_bits.hpp"
-#include "scene.hpp"
+#include "tests/dem/same_bits.hpp"
+#include "tests/dem/scene.hpp"
 
 namespace {
 
@@ -126,46 +126,6 @@ TEST_CASE("spheres that start inside each other end the run instead of spreading
         for (int k = 0; k < 100; ++k) s.step();
       }(),
       dem::Fault);
-}
-
-TEST_CASE("a quantity is set and read by its full and its short name, and refused out of its range") {
-  dem::Case c;
-  dem::set_target(c, "friction", 0.25);
-  CHECK(dem::get_target(c, "contact.wall_friction") == 0.25);
-  dem::set_target(c, "contact.wall_friction", 0.5);
-  dem::set_target(c, "friction", 0.3);
-  CHECK(dem::get_target(c, "wall_friction") == 0.5);
-  CHECK_THROWS_AS(dem::set_target(c, "friction", -1.0), data::InputError);
-  CHECK_THROWS_AS(dem::set_target(c, "frikction", 0.1), data::InputError);
-  for (const dem::Target& t : dem::targets()) {
-    if (!dem::unused_because(c, t.name).empty()) continue;
-    const double before = dem::get_target(c, t.name);
-    dem::set_target(c, t.name, before);
-    CHECK(dem::get_target(c, t.name) == Approx(before));
-  }
-}
-
-TEST_CASE("two cases have the same settings text only when no setting differs") {
-  dem::Case a, b;
-  CHECK(dem::settings_text(a) == dem::settings_text(b));
-  for (const dem::Target& t : dem::targets()) {
-    if (!dem::unused_because(a, t.name).empty()) continue;
-    dem::Case changed = a;
-    const double x = dem::get_target(a, t.name);
-    dem::set_target(changed, t.name, x == 0.0 ? 0.5 * t.high : x * 1.25);
-    INFO(t.name);
-    CHECK(dem::settings_text(changed) != dem::settings_text(a));
-  }
-}
-
-TEST_CASE("what cannot be simulated is named before it is tried") {
-  dem::Case c;
-  CHECK(dem::problems(c).empty());
-  c.contact.stiffness = 1e-3;
-  c.rig.blade_radius = 8e-3;
-  c.rig.angular_velocity = 0.0;
-  CHECK(dem::problems(c).size() == 3);
-  CHECK_THROWS_AS(dem::run(c, 1), data::InputError);
 }
 
 TEST_CASE("in steady state the torques of mixer and trough and the weight's moment balance", "[slow]") {

@@ -9,7 +9,7 @@
 #include "data/error.hpp"
 #include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 namespace {
 

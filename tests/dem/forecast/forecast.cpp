@@ -235,13 +235,3 @@ TEST_CASE("a slice whose spheres do not pass between trough and shaft is refused
   CHECK_THAT(data::describe(dem::problems(c)), Contains("rig.trough_radius"));
   CHECK_THROWS_WITH(dem::pack(c, 1), Contains("rig.trough_radius") && Contains("leaves no place for a sphere"));
 }
-
-TEST_CASE("a run's cost is that of spheres which touch, whether anything attracts them or not") {
-  dem::Case c;
-  c.contact.stiffness = 300.0;
-  const double without = dem::measure_effort(c, dem::derive(c)).rate;
-  c.contact.hamaker = 9e-18;
-  const double with = dem::measure_effort(c, dem::derive(c)).rate;
-  // In an open box spheres without attraction flew apart, and three times as many steps seemed to be made.
-  CHECK(without < 2.0 * with);
-}

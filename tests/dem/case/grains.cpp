@@ -11,7 +11,7 @@
 #include "dem/reading/target.hpp"
 #include "dem/rig/slice.hpp"
 #include "dem/run/run.hpp"
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-// The study's keys of contact laws, pairs, sizes and mixtures: each reaches the case, changes the settings, and is
+// The study's keys of rig, materials, contact laws, pairs, sizes, mixtures and runs: each reaches the case, changes the settings, and is
 // refused by name where it cannot be.
 #include <catch2/catch.hpp>
 
@@ -44,7 +44,82 @@ std::string one_material(const std::string& contact) {
   return rig + "[materials.mix]\ndensity = \"2600 kg/m3\"\ndiameter = \"0.8 mm\"\n[contact]\n" + contact;
 }
 
+data::StudyFile study(const TemporaryFolder& folder, const std::string& text) {
+  folder.write("study.toml", text);
+  return data::StudyFile::open(folder.path());
+}
+
+const std::string two_materials = R"(
+[rig]
+kind = "slice"
+pitch = "10 mm"
+fill = "3 g"
+rpm = "120 rpm"
+[materials.steel]
+density = "7800 kg/m3"
+diameter = "1 mm"
+[materials.glass]
+density = "2500 kg/m3"
+diameter = "900 um"
+fill = 900
+contact = { restitution = 0.9 }
+[contact]
+friction = 0.3
+wall_friction = 0.2
+hamaker = "2e-18 J"
+cap = "thornton"
+tension = "clamped"
+wall_attraction = "derjaguin"
+minimum_separation = "1 nm"
+[run]
+settle = "50 ms"
+skin = 0.2
+[training]
+standard_error = 0.05
+)";
+
 }  // namespace
+
+TEST_CASE("a study's rig, material, contact and run keys reach the case in SI, each material with its own") {
+  const TemporaryFolder folder;
+  const data::StudyFile file = study(folder, two_materials);
+  const dem::Case steel = dem::read_case(file, "steel"), glass = dem::read_case(file, "glass");
+  CHECK_NOTHROW(file.finish());
+  CHECK(steel.rig.pitch == Approx(0.01));
+  CHECK(steel.rig.fill_mass.value() == Approx(3e-3));
+  CHECK(steel.rig.angular_velocity == Approx(12.566370614359172));
+  CHECK(steel.material.name == "steel");
+  CHECK(steel.material.density == 7800.0);
+  CHECK_FALSE(glass.rig.fill_mass.has_value());
+  CHECK(dem::get_target(glass, "fill") == 900.0);
+  CHECK(glass.material.diameter == Approx(0.9e-3));
+  CHECK(glass.contact.restitution == 0.9);
+  CHECK(steel.contact.restitution == dem::Contact{}.restitution);
+  CHECK(steel.contact.wall_friction.value() == 0.2);
+  CHECK(steel.contact.cap == dem::FrictionCap::thornton);
+  CHECK(steel.contact.tension == dem::DashpotTension::clamped);
+  CHECK(steel.contact.wall_attraction == dem::WallAttraction::derjaguin);
+  CHECK(steel.contact.minimum_separation == Approx(1e-9));
+  CHECK(steel.run.settle == Approx(0.05));
+  CHECK(steel.run.standard_error == 0.05);
+}
+
+TEST_CASE("a mistyped key, a wrong unit and a value out of range of the DEM's sections are all named at once") {
+  const TemporaryFolder folder;
+  const data::StudyFile file = study(
+      folder,
+      "[rig]\nkind = \"slice\"\n[contact]\nfrikction = 0.3\nfriction = -1\nhamaker = \"3 mm\"\n[run]\nskin = 0\n");
+  dem::read_case(file, "");
+  try {
+    file.finish();
+    FAIL("nothing was said");
+  } catch (const data::InputError& error) {
+    const std::string said = error.what();
+    CHECK(error.status == data::ExitStatus::bad_study);
+    CHECK_THAT(said, Catch::Contains("frikction") && Catch::Contains("contact.friction") &&
+                         Catch::Contains("hamaker") && Catch::Contains("skin"));
+  }
+}
 
 TEST_CASE("each key of the contact section reaches the case, in SI, and changes the settings") {
   const std::string usual = dem::settings_text(reading(one_material("")).c);

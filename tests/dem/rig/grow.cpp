@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 namespace {
 

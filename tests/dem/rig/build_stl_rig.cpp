@@ -9,7 +9,7 @@
 #include "dem/rig/slice.hpp"
 #include "dem/run/run.hpp"
 #include "dem/walls/stl.hpp"
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 #include "tests/temporary.hpp"
 
 namespace {

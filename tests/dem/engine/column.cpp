@@ -1,6 +1,6 @@
 // A narrow column of grains: H. Janssen's silo, Z. Ver. Dtsch. Ing. 39:1045 (1895).
 #include "data/random.hpp"
-#include "shot.hpp"
+#include "tests/dem/shot.hpp"
 
 namespace {
 

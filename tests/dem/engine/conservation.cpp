@@ -1,8 +1,8 @@
-// Conservation in the simulation: momentum (test_slice.cpp has it in a periodic gas), angular momentum, and energy:
+// Conservation in the simulation: momentum (rig/slice.cpp has it in a periodic gas), angular momentum, and energy:
 // kinetic + elastic + gravity + attraction grows by the work of the tools less what contacts dissipate.
 #include "data/random.hpp"
 #include "dem/rig/rig.hpp"
-#include "families.hpp"
+#include "tests/dem/families.hpp"
 
 namespace {
 

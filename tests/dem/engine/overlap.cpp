@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "dem/run/run.hpp"
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 namespace {
 

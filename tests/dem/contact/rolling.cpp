@@ -2,7 +2,7 @@
 // triangles.
 #include <catch2/catch.hpp>
 
-#include "shot.hpp"
+#include "tests/dem/shot.hpp"
 
 namespace {
 

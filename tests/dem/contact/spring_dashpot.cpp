@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "scene.hpp"
+#include "tests/dem/scene.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include "data/random.hpp"
 #include "dem/rig/rig.hpp"
 #include "dem/rig/slice.hpp"
-#include "shot.hpp"
+#include "tests/dem/shot.hpp"
 
 namespace {
 
