@@ -15,6 +15,7 @@
 #include "dem/run/run.hpp"
 #include "uq/emulate/surrogate_settings.hpp"
 #include "uq/findings/report_file.hpp"
+#include "uq/findings/study_units.hpp"
 
 namespace campaign {
 namespace fs = std::filesystem;
@@ -171,7 +172,7 @@ std::unique_ptr<data::FolderLock> hold_out(const Workspace& workspace, Writes fi
 }
 
 std::string with_unit(double si, const data::Unit& unit) {
-  return fmt::format("{:.5g}{}{}", unit.from_si(si), unit.symbol.empty() ? "" : " ", unit.symbol);
+  return fmt::format("{:.5g}{}", unit.from_si(si), uq::behind_number(unit.symbol));
 }
 
 }  // namespace campaign

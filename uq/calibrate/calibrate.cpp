@@ -10,6 +10,7 @@
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "uq/calibrate/data_check.hpp"
+#include "uq/findings/study_units.hpp"
 #include "uq/findings/wording.hpp"
 #include "uq/posterior/predictive.hpp"
 #include "uq/posterior/support.hpp"
@@ -96,7 +97,7 @@ std::optional<WithoutRuns> without_runs(const data::Study& study, const std::vec
     const auto column = static_cast<Eigen::Index>(k);
     const Slot& slot = sampled.model->slots[k];
     Eigen::VectorXd values = draws.col(column);
-    for (double& value : values) value = slot.prior.parameter().unit.from_si(slot.value(value));
+    for (double& value : values) value = in_study_unit(slot.prior.parameter(), value);
     const double sd = std::sqrt((values.array() - values.mean()).square().mean());
     matters =
         matters || std::abs(values.mean() - other.mean) > 0.5 * other.sd || sd > 1.5 * other.sd || sd < other.sd / 1.5;
@@ -133,10 +134,9 @@ WithoutRuns calibrate_without(const data::Study& study, const std::vector<Fitted
   found.fits = identified.fits;
   for (const ParameterReport& parameter : identified.parameters) {
     found.parameters.push_back(again(parameter));
-    const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
     found.sentence += fmt::format("{}{} {} +- {}{} ({})", found.sentence.empty() ? "" : ", ", parameter.name,
                                   with_error(parameter.mean, parameter.sd), with_error(parameter.sd, parameter.sd),
-                                  unit, to_text(parameter.verdict));
+                                  behind_number(parameter.unit), to_text(parameter.verdict));
   }
   if (!sampled.draws.converged) found.sentence += "; the chains have not converged";
   found.sentence += ".";

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "uq/calibrate/calibrate.hpp"
+#include "uq/findings/study_units.hpp"
 #include "uq/posterior/held.hpp"
 
 namespace uq {
@@ -62,8 +63,8 @@ std::vector<ModelComparison> compare_models(const data::Study& study, const Samp
                                    [label = name](const Slot& one) { return one.label == label; });
     held.push_back({.coordinate = static_cast<int>(slot - sampled.model->slots.begin()),
                     .value = parameter.axis().to_unit(value)});
-    found.held += fmt::format("{}{} = {:.4g}{}{}", found.held.empty() ? "" : ", ", name, parameter.unit.from_si(value),
-                              parameter.unit.symbol.empty() ? "" : " ", parameter.unit.symbol);
+    found.held += fmt::format("{}{} = {:.4g}{}", found.held.empty() ? "" : ", ", name, parameter.unit.from_si(value),
+                              behind_number(parameter.unit.symbol));
     names += (names.empty() ? "" : " and ") + name;
   }
   MixtureSamplerOptions sampler = options.mixture;

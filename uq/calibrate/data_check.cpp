@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "uq/calibrate/data_columns.hpp"
+#include "uq/findings/study_units.hpp"
 #include "uq/posterior/prior.hpp"
 
 namespace uq {
@@ -249,15 +250,15 @@ std::vector<Finding> check_outputs(const data::Study& study, const data::RunTabl
       findings.push_back(std::move(finding));
     }
     if (count > 2 && !(most > least))
-      findings.push_back({.kind = data::FindingKind::no_response,
-                          .place = table.rows.front().place,
-                          .severity = Severity::warning,
-                          .what = fmt::format("{} is {:.5g}{}{} in all {} runs: it does not respond to any input, and "
-                                              "nothing can be learned from it",
-                                              output.name, output.unit.from_si(least),
-                                              output.unit.symbol.empty() ? "" : " ", output.unit.symbol, count),
-                          .remedy = "look at how the column was written",
-                          .places = {}});
+      findings.push_back(
+          {.kind = data::FindingKind::no_response,
+           .place = table.rows.front().place,
+           .severity = Severity::warning,
+           .what = fmt::format("{} is {:.5g}{} in all {} runs: it does not respond to any input, and "
+                               "nothing can be learned from it",
+                               output.name, output.unit.from_si(least), behind_number(output.unit.symbol), count),
+           .remedy = "look at how the column was written",
+           .places = {}});
   }
   return findings;
 }
@@ -279,9 +280,8 @@ std::vector<Finding> check_priors(const data::Study& study) {
          .place = parameter.place,
          .severity = Severity::note,
          .what = fmt::format(
-             "the prior of {} is not stated, and uniform in its value, with {:.0f} % of it above {:.4g}{}{}",
-             parameter.name, 100.0 * share, parameter.unit.from_si(top), parameter.unit.symbol.empty() ? "" : " ",
-             parameter.unit.symbol),
+             "the prior of {} is not stated, and uniform in its value, with {:.0f} % of it above {:.4g}{}",
+             parameter.name, 100.0 * share, parameter.unit.from_si(top), behind_number(parameter.unit.symbol)),
          .remedy =
              "prior = { kind = \"log_uniform\" } gives every decade the same weight; kind = \"uniform\" says that "
              "this is meant",

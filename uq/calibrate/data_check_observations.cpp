@@ -17,6 +17,7 @@
 #include "data/time_series.hpp"
 #include "uq/calibrate/data_columns.hpp"
 #include "uq/emulate/surrogates.hpp"
+#include "uq/findings/study_units.hpp"
 #include "uq/posterior/case_model.hpp"
 
 namespace uq {
@@ -86,7 +87,7 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
     const bool far = seen.high < runs.low - reach || seen.low > runs.high + reach || !(ratio > 0.2 && ratio < 5.0);
     if (!(reach > 0.0) || !apart || !far) continue;
     const auto shown = [&](double si) { return output.unit.from_si(si); };
-    const std::string unit = output.unit.symbol.empty() ? "" : " " + output.unit.symbol;
+    const std::string unit = behind_number(output.unit.symbol);
     Finding finding{
         .kind = data::FindingKind::unit,
         .place = place_of(set, set.points.front()) + ": " + output.name,

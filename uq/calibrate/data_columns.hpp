@@ -6,6 +6,7 @@
 #include "data/run_table.hpp"
 #include "data/study.hpp"
 #include "uq/calibrate/data_check.hpp"
+#include "uq/findings/study_units.hpp"
 
 namespace uq {
 
@@ -18,7 +19,7 @@ struct InputColumn {
   std::vector<std::string> places;
 
   double shown(double si) const { return unit.from_si(si); }
-  std::string unit_text() const { return unit.symbol.empty() ? "" : " " + unit.symbol; }
+  std::string unit_text() const { return behind_number(unit.symbol); }
 };
 
 /// Whether the row's material holds the parameter ([materials.X] fixed): its range does not concern the row.

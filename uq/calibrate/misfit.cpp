@@ -1,4 +1,5 @@
 #include "uq/calibrate/misfit.hpp"
+#include "uq/findings/study_units.hpp"
 
 #include <fmt/core.h>
 
@@ -32,9 +33,9 @@ std::string farthest_off(const std::vector<PredictivePoint>& points) {
     std::string at;
     for (const auto& [name, value] : point.controls)
       at += fmt::format("{}{} {:.4g}", at.empty() ? " at " : ", ", name, value);
-    text += fmt::format("{} {} {:.4g}{}{}{} of {}, where the model gives {:.4g} ({:.2g} sd)", i == 0 ? "" : ";",
-                        point.output, point.observed, point.unit.empty() ? "" : " ", point.unit, at,
-                        point.observation_set, point.mean, deviations(point));
+    text += fmt::format("{} {} {:.4g}{}{} of {}, where the model gives {:.4g} ({:.2g} sd)", i == 0 ? "" : ";",
+                        point.output, point.observed, behind_number(point.unit), at, point.observation_set, point.mean,
+                        deviations(point));
   }
   if (off.size() > most) text += fmt::format("; and {} more", off.size() - most);
   return text + ".";

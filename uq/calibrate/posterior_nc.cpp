@@ -12,6 +12,7 @@
 #include "data/csv.hpp"
 #include "data/error.hpp"
 #include "data/provenance.hpp"
+#include "uq/findings/study_units.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/predictive.hpp"
 
@@ -184,7 +185,7 @@ void write_unknowns(const File& file, const SampledCase& sampled) {
     const data::Parameter& parameter = slot.prior.parameter();
     std::vector<double> values;
     for (const auto& chain : sampled.draws.chains)
-      for (const double u : chain.x.col(k)) values.push_back(parameter.unit.from_si(parameter.axis().from_unit(u)));
+      for (const double u : chain.x.col(k)) values.push_back(in_study_unit(parameter, u));
     group.doubles(variable_name(slot), {"chain", "draw"}, values, parameter.unit.symbol);
   }
 }
@@ -284,7 +285,7 @@ std::string draws_csv(const SampledCase& sampled) {
       rows += fmt::format("{},{}", c, i);
       for (int k = 0; k < sampled.model->dimension(); ++k) {
         const Slot& slot = sampled.model->slots[k];
-        rows += fmt::format(",{:.10g}", slot.prior.parameter().unit.from_si(slot.value(chain.x(i, k))));
+        rows += fmt::format(",{:.10g}", in_study_unit(slot.prior.parameter(), chain.x(i, k)));
       }
       rows += fmt::format(",{:.10g}\n", chain.log_density[i]);
     }

@@ -8,6 +8,7 @@
 #include "uq/calibrate/data_columns.hpp"
 #include "uq/calibrate/misfit.hpp"
 #include "uq/emulate/scale_hint.hpp"
+#include "uq/findings/study_units.hpp"
 #include "uq/infer/diagnostics.hpp"
 #include "uq/infer/quadrature.hpp"
 #include "uq/posterior/discrepancy.hpp"
@@ -28,7 +29,7 @@ void add_diagnostics(CaseReport& report, const SampledCase& sampled) {
     parameter.ess_tail = sampled.draws.ess_tail[column];
     const data::Parameter& source = sampled.model->slots[k].prior.parameter();
     Eigen::MatrixXd values = sampled.draws.coordinate(static_cast<int>(k));
-    for (double& value : values.reshaped()) value = source.unit.from_si(source.axis().from_unit(value));
+    for (double& value : values.reshaped()) value = in_study_unit(source, value);
     parameter.mcse = mean_mcse(values);
   }
 }
@@ -46,7 +47,7 @@ void add_modes(CaseReport& report, const CaseModel& model, const Identification&
       for (int k = 0; k < model.own_count(); ++k) {
         const Slot& slot = model.slots[k];
         const data::Unit& unit = slot.prior.parameter().unit;
-        made.mean[slot.label] = unit.from_si(slot.value(mode.mean[k]));
+        made.mean[slot.label] = in_study_unit(slot.prior.parameter(), mode.mean[k]);
         made.sd[slot.label] = mode.sd[k] * std::abs(slot.slope(mode.mean[k])) / unit.factor;
       }
       report.modes.push_back(std::move(made));
@@ -65,8 +66,7 @@ void add_draws(CaseReport& report, const CaseModel& model, const Eigen::MatrixXd
   Eigen::MatrixXd values = draws.leftCols(own);
   for (Eigen::Index k = 0; k < own; ++k) {
     const data::Parameter& parameter = model.slots[k].prior.parameter();
-    for (Eigen::Index i = 0; i < values.rows(); ++i)
-      values(i, k) = parameter.unit.from_si(parameter.axis().from_unit(values(i, k)));
+    for (Eigen::Index i = 0; i < values.rows(); ++i) values(i, k) = in_study_unit(parameter, values(i, k));
   }
   const Eigen::MatrixXd centred = values.rowwise() - values.colwise().mean();
   const Eigen::VectorXd length = centred.colwise().norm();
@@ -251,7 +251,7 @@ NuisanceReport summary_of(const SampledCase& sampled, int unknown) {
   const Slot& slot = sampled.model->slots[unknown];
   const data::Unit& unit = slot.prior.parameter().unit;
   Eigen::VectorXd values = sampled.draws.coordinate(unknown).reshaped();
-  for (double& value : values) value = unit.from_si(slot.value(value));
+  for (double& value : values) value = in_study_unit(slot.prior.parameter(), value);
   const double mean = values.mean();
   return {.name = slot.label,
           .unit = unit.symbol,

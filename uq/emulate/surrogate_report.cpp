@@ -12,6 +12,7 @@
 #include "uq/emulate/outlying_runs.hpp"
 #include "uq/emulate/scale_hint.hpp"
 #include "uq/emulate/sensitivity.hpp"
+#include "uq/findings/study_units.hpp"
 
 namespace uq {
 namespace {
@@ -102,10 +103,9 @@ std::string point_text(const data::Study& study, const TrainingRows& rows, const
   std::string text;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     const data::Input input = input_of(study, rows.inputs[k]);
-    const std::string& symbol = input.unit.symbol;
-    text += fmt::format("{}{} {:.3g}{}{}", text.empty() ? "" : ", ", input.name,
+    text += fmt::format("{}{} {:.3g}{}", text.empty() ? "" : ", ", input.name,
                         input.unit.from_si(input.axis.from_unit(point[static_cast<Eigen::Index>(k)])),
-                        symbol.empty() ? "" : " ", symbol);
+                        behind_number(input.unit.symbol));
   }
   return text;
 }
@@ -259,10 +259,9 @@ std::vector<std::string> extrapolation_notes(const data::Study& study, const Tra
       const data::Parameter& parameter = study.parameters[input.index];
       if (low > slack || high < 1.0 - slack)
         notes.push_back(fmt::format(
-            "the runs cover {} from {:.3g} to {:.3g}{}{} only; in the rest of its range the surrogate extrapolates",
-            parameter.name, parameter.unit.from_si(parameter.axis().from_unit(low)),
-            parameter.unit.from_si(parameter.axis().from_unit(high)), parameter.unit.symbol.empty() ? "" : " ",
-            parameter.unit.symbol));
+            "the runs cover {} from {:.3g} to {:.3g}{} only; in the rest of its range the surrogate extrapolates",
+            parameter.name, in_study_unit(parameter, low), in_study_unit(parameter, high),
+            behind_number(parameter.unit.symbol)));
       continue;
     }
     const data::Control& control = study.controls[input.index];

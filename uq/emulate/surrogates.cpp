@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "uq/emulate/surrogate_report.hpp"
+#include "uq/findings/study_units.hpp"
 
 namespace uq {
 namespace {
@@ -86,8 +87,8 @@ std::shared_ptr<const RunCloud> cloud_of(const FittedSurrogate& fitted) {
 
 /// "runs.csv:31 (83.5 where the others say 8.35 mN m, 640 sd)".
 std::string outlying_text(const OutlyingRun& run, const std::string& unit) {
-  return fmt::format("{} ({:.4g} where the others say {:.4g}{}{}, {:.0f} sd off)", run.place, run.observed,
-                     run.expected, unit.empty() ? "" : " ", unit, std::abs(run.deviations));
+  return fmt::format("{} ({:.4g} where the others say {:.4g}{}, {:.0f} sd off)", run.place, run.observed, run.expected,
+                     behind_number(unit), std::abs(run.deviations));
 }
 
 std::string outlying_warning(const SurrogateReport& report) {

@@ -1,4 +1,5 @@
 #include "uq/findings/wording.hpp"
+#include "uq/findings/study_units.hpp"
 
 #include <fmt/format.h>
 
@@ -42,7 +43,7 @@ std::string mantissa(double value, const Rounding& rounding, Typography typograp
 /// Adds the power of ten, with brackets where `body` is more than one number, and the unit.
 std::string dress(std::string body, const Rounding& rounding, std::string_view unit, Typography typography,
                   bool several) {
-  const bool bare = unit.empty() || unit == "1";
+  const bool bare = is_bare(unit);
   if (rounding.exponent != 0 || (several && !bare)) {
     if (several) body = "(" + body + ")";
   }
@@ -88,7 +89,7 @@ std::string format_interval(double low, double high, const Rounding& rounding, s
   if (std::isnan(low) && std::isnan(high)) return "not available";
   const std::string body = mantissa(low, rounding, typography) + " to " + mantissa(high, rounding, typography);
   if (rounding.exponent == 0) {
-    const bool bare = unit.empty() || unit == "1";
+    const bool bare = is_bare(unit);
     return bare ? body : body + (typography == Typography::unicode ? "\u00a0" : " ") + std::string(unit);
   }
   return dress(body, rounding, unit, typography, true);
@@ -176,7 +177,7 @@ std::string significant(double value, int digits, Typography typography) {
 }
 
 std::string name_in_unit(std::string_view name, std::string_view unit) {
-  return unit.empty() || unit == "1" || unit == name ? std::string(name) : fmt::format("{} ({})", name, unit);
+  return is_bare(unit) || unit == name ? std::string(name) : fmt::format("{} ({})", name, unit);
 }
 
 std::string slug(std::string_view text) {

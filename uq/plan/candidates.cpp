@@ -10,6 +10,7 @@
 
 #include "data/error.hpp"
 #include "data/time_series.hpp"
+#include "uq/findings/study_units.hpp"
 #include "uq/posterior/control_reach.hpp"
 #include "uq/posterior/more_data.hpp"
 #include "uq/posterior/posterior.hpp"
@@ -72,7 +73,7 @@ std::string name_of(const Study& study, const Candidate& candidate, bool of_seve
     std::vector<std::string> texts;
     for (const double value : values) texts.push_back(fmt::format("{:.4g}", unit.from_si(value)));
     settings.push_back(fmt::format("{}{}{}", study.controls.size() > 1 ? study.controls[c].name + " " : "",
-                                   fmt::join(texts, ", "), unit.symbol.empty() ? "" : " " + unit.symbol));
+                                   fmt::join(texts, ", "), behind_number(unit.symbol)));
   }
   std::string name = fmt::format("{} at {}", fmt::join(outputs, " and "), fmt::join(settings, ", "));
   if (of_several_materials) name += " of " + candidate.material;

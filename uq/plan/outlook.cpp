@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "surrogate/design.hpp"
+#include "uq/findings/study_units.hpp"
 #include "uq/infer/parallel.hpp"
 #include "uq/posterior/posterior.hpp"
 
@@ -26,8 +27,7 @@ Outlook::Outlook(const ExtendedCase& extended, const MatrixXd& draws, Given give
   values_.resize(draws.rows(), model.own_count());
   for (Index i = 0; i < draws.rows(); ++i)
     for (Index k = 0; k < values_.cols(); ++k) {
-      const Slot& slot = model.slots[k];
-      values_(i, k) = slot.prior.parameter().unit.from_si(slot.value(draws(i, k)));
+      values_(i, k) = in_study_unit(model.slots[k].prior.parameter(), draws(i, k));
     }
   laws_.resize(static_cast<std::size_t>(draws.rows()));
   for_each_index(static_cast<int>(draws.rows()), threads, [&](int job) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "uq/findings/study_units.hpp"
 #include "uq/infer/parallel.hpp"
 #include "uq/plan/plan_basis.hpp"
 #include "uq/plan/plan_batches.hpp"
@@ -37,12 +38,7 @@ PlanCandidate describe(const PlanBasis& basis, std::size_t i) {
                     .error = error_text(basis.study, candidate),
                     .parameters = {}};
   for (const std::size_t output : candidate.outputs) one.outputs.push_back(basis.study.outputs[output].name);
-  for (const auto& controls : candidate.settings) {
-    std::map<std::string, double> setting;
-    for (std::size_t c = 0; c < controls.size(); ++c)
-      setting[basis.study.controls[c].name] = basis.study.controls[c].unit.from_si(controls[c]);
-    one.settings.push_back(std::move(setting));
-  }
+  for (const auto& controls : candidate.settings) one.settings.push_back(named_controls(basis.study, controls));
   const Information information = basis.information_of(rows);
   one.information = information.total.value;
   one.information_error = information.total.error;
@@ -131,11 +127,9 @@ void add_arrows(const PlanBasis& basis, PlanReport& report, const std::vector<st
     if (candidate.settings.size() != 1 || candidate.outputs.size() != 1) continue;
     const Index row = basis.extended.planned[i].front();
     for (int k = 0; k < model.own_count(); ++k) {
-      PlanArrow arrow{
-          .output = basis.study.outputs[candidate.outputs.front()].name, .parameter = basis.name_of(k), .setting = {}};
-      for (std::size_t c = 0; c < basis.study.controls.size(); ++c)
-        arrow.setting[basis.study.controls[c].name] =
-            basis.study.controls[c].unit.from_si(candidate.settings.front()[c]);
+      PlanArrow arrow{.output = basis.study.outputs[candidate.outputs.front()].name,
+                      .parameter = basis.name_of(k),
+                      .setting = named_controls(basis.study, candidate.settings.front())};
       arrow.change = slopes(row, k) * model.slots[k].prior.sd() / std::sqrt(prediction.noise[row]);
       report.arrows.push_back(std::move(arrow));
     }

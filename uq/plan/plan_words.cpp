@@ -1,4 +1,5 @@
 #include "uq/plan/plan_words.hpp"
+#include "uq/findings/study_units.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +11,7 @@ namespace {
 /// With as many digits as it takes to tell the width now from that afterwards, three at most.
 std::string width(const PlannedParameter& parameter, double sd) {
   const bool two = fmt::format("{:.2g}", parameter.sd_now) != fmt::format("{:.2g}", parameter.sd_after);
-  return fmt::format("{:.{}g}{}{}", sd, two ? 2 : 3, parameter.unit.empty() ? "" : " ", parameter.unit);
+  return fmt::format("{:.{}g}{}", sd, two ? 2 : 3, behind_number(parameter.unit));
 }
 
 std::string chance_of_identified(const std::string& name, const PlannedParameter& gain) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "uq/findings/study_units.hpp"
 #include "uq/findings/wording.hpp"
 #include "uq/posterior/prior.hpp"
 
@@ -35,11 +36,10 @@ double scatter(const FittedSurrogate& fitted, double mean) {
 }
 
 std::map<std::string, double> values_of(const data::Study& study, const data::RunRow& row) {
-  std::map<std::string, double> values;
-  for (std::size_t p = 0; p < study.parameters.size(); ++p)
+  const auto parameters = study.parameters.size();
+  std::map<std::string, double> values = named_controls(study, std::span(row.inputs).subspan(parameters));
+  for (std::size_t p = 0; p < parameters; ++p)
     values[study.parameters[p].name] = study.parameters[p].unit.from_si(row.inputs[p]);
-  for (std::size_t c = 0; c < study.controls.size(); ++c)
-    values[study.controls[c].name] = study.controls[c].unit.from_si(row.inputs[study.parameters.size() + c]);
   return values;
 }
 

@@ -1,6 +1,7 @@
 // One case of the page: verdict in words, its parameters, where runs support it, profiles; the order of its parts.
 #include <cmath>
 
+#include "uq/findings/study_units.hpp"
 #include "uq/findings/thresholds.hpp"
 #include "uq/report/figures.hpp"
 #include "uq/report/page.hpp"
@@ -86,8 +87,7 @@ Markup support_part(const SupportReport& support) {
           {"Input"}, {"Covered by runs", nowrap}, {"Posterior beyond", number}, {"Posterior in a gap", number}}};
   for (const InputSupport& input : support.inputs) {
     const std::string gap = input.gap > 0.0 ? " (" + between(input.gap_low, input.gap_high) + ")" : "";
-    table.rows.push_back({input.name,
-                          between(input.runs_low, input.runs_high) + (input.unit.empty() ? "" : " ") + input.unit,
+    table.rows.push_back({input.name, between(input.runs_low, input.runs_high) + behind_number(input.unit),
                           percent(input.outside), percent(input.gap) + gap});
   }
   return tag::h3("Support by runs") +

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "uq/findings/study_units.hpp"
 #include "uq/findings/wording.hpp"
 
 namespace uq {
@@ -14,7 +15,7 @@ namespace {
 constexpr std::size_t rows_shown = 12;
 
 std::string with_unit(double sd, const std::string& unit) {
-  return significant(sd, 2, Typography::ascii) + (unit.empty() ? "" : " " + unit);
+  return significant(sd, 2, Typography::ascii) + behind_number(unit);
 }
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100.0 * share); }

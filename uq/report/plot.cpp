@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uq/findings/study_units.hpp"
 #include "uq/report/gnuplot.hpp"
 
 namespace uq::plot {
@@ -16,7 +17,7 @@ Axis axis_for(std::string_view name, std::string_view unit, double largest) {
     exponent = 3 * static_cast<int>(std::floor(std::log10(largest) / 3.0));
     axis.scale = std::pow(10.0, -exponent);
   }
-  const bool bare = unit.empty() || unit == "1" || unit == name;
+  const bool bare = is_bare(unit) || unit == name;
   if (exponent != 0) {
     static const char* const digits[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                          "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "data/random.hpp"
+#include "uq/findings/study_units.hpp"
 
 namespace uq {
 namespace {
@@ -189,12 +190,11 @@ CombinationText write_combination(const FittedCombination& combination, const st
   CombinationText out{.text = {}, .unit = {}, .scale = 1.0, .written = combination};
   std::vector<CombinationTerm>& terms = out.written.terms;
   const bool product = combination.form == CombinationForm::product;
-  const auto bare = [](const std::string& unit) { return unit.empty() || unit == "1"; };
   const auto same_units = std::all_of(columns.begin(), columns.end(), [&](const CombinationColumn& column) {
-    return column.unit == columns.front().unit || (bare(column.unit) && bare(columns.front().unit));
+    return column.unit == columns.front().unit || (is_bare(column.unit) && is_bare(columns.front().unit));
   });
   const auto with_unit = std::count_if(columns.begin(), columns.end(),
-                                       [&](const CombinationColumn& column) { return !bare(column.unit); });
+                                       [&](const CombinationColumn& column) { return !is_bare(column.unit); });
   const int digits = combination.spread < 0.02 ? 3 : 2;
 
   if (product) {
@@ -206,7 +206,7 @@ CombinationText write_combination(const FittedCombination& combination, const st
       for (CombinationTerm& term : terms) term.power = std::round(100.0 * term.power / reference) / 100.0;
     }
     for (std::size_t i = 0; i < terms.size(); ++i)
-      if (!bare(columns[i].unit) && with_unit == 1 && terms[i].power == 1.0) out.unit = columns[i].unit;
+      if (!is_bare(columns[i].unit) && with_unit == 1 && terms[i].power == 1.0) out.unit = columns[i].unit;
   } else {
     if (same_units) out.unit = columns.front().unit;
   }
@@ -218,10 +218,10 @@ CombinationText write_combination(const FittedCombination& combination, const st
     double scale = 1.0;
     std::string name = column.name;
     const double decade = column.typical > 0.0 ? std::floor(std::log10(column.typical)) : 0.0;
-    if (!plain && !bare(column.unit)) {
+    if (!plain && !is_bare(column.unit)) {
       if (decade < -2.0 || decade > 3.0) scale = std::pow(10.0, decade);
       name += scale == 1.0 ? fmt::format("/({})", column.unit) : fmt::format("/({:.0e} {})", scale, column.unit);
-    } else if (plain && bare(column.unit) && !product && (decade < -3.0 || decade > 4.0)) {
+    } else if (plain && is_bare(column.unit) && !product && (decade < -3.0 || decade > 4.0)) {
       scale = std::pow(10.0, decade);
       name += fmt::format("/{:.0e}", scale);
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uq/findings/study_units.hpp"
 #include "uq/infer/diagnostics.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/support.hpp"
@@ -19,14 +20,11 @@ namespace {
 Eigen::VectorXd shown(const Slot& slot, const Eigen::VectorXd& u) {
   const data::Parameter& parameter = slot.prior.parameter();
   Eigen::VectorXd values(u.size());
-  for (Eigen::Index i = 0; i < u.size(); ++i) values[i] = parameter.unit.from_si(parameter.axis().from_unit(u[i]));
+  for (Eigen::Index i = 0; i < u.size(); ++i) values[i] = in_study_unit(parameter, u[i]);
   return values;
 }
 
-double shown(const Slot& slot, double u) {
-  const data::Parameter& parameter = slot.prior.parameter();
-  return parameter.unit.from_si(parameter.axis().from_unit(u));
-}
+double shown(const Slot& slot, double u) { return in_study_unit(slot.prior.parameter(), u); }
 
 /// The parts of the interval, with the draws nearest to each.
 std::vector<ValueRange> ranges_of(const Slot& slot, const Eigen::VectorXd& u, const Profile& profile) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "uq/findings/study_units.hpp"
 #include "uq/findings/wording.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/verdict/verdict.hpp"
@@ -152,8 +153,9 @@ std::vector<std::string> unvisited(const CaseModel& model, const Profiles& all, 
       const data::Unit& unit = slot.prior.parameter().unit;
       const double width = (profile.parts[i].high - profile.parts[i].low) *
                            std::abs(slot.slope(profile.u[profile.parts[i].best])) / unit.factor;
-      names.push_back(slot.label + " near " +
-                      with_error(unit.from_si(slot.value(profile.u[profile.parts[i].best])), 0.25 * width));
+      names.push_back(
+          slot.label + " near " +
+          with_error(in_study_unit(slot.prior.parameter(), profile.u[profile.parts[i].best]), 0.25 * width));
     }
   }
   return names;
@@ -175,15 +177,13 @@ std::string parted_by(const data::Study& study, const CaseModel& model, const st
   const RowGroup& group = model.groups[found.place.group];
   const data::Output& output = study.outputs.at(group.emulator.output);
   const data::Control& control = study.controls.at(group.emulator.inputs[found.place.input].index);
-  const double setting = control.unit.from_si(control.axis().from_unit(found.setting));
+  const double setting = in_study_unit(control, found.setting);
   const double sd = std::abs(found.first - found.second) / found.errors / output.unit.factor;
-  const auto in = [](const std::string& text, const std::string& unit) {
-    return unit.empty() || unit == "1" ? text : text + " " + unit;
-  };
   return fmt::format("measure {} at {} {}, where the values part: {} against {}, {:.1f} standard errors", output.name,
-                     control.name, in(fmt::format("{:.4g}", setting), control.unit.symbol),
+                     control.name, fmt::format("{:.4g}", setting) + behind_number(control.unit.symbol),
                      with_error(output.unit.from_si(found.first), sd),
-                     in(with_error(output.unit.from_si(found.second), sd), output.unit.symbol), found.errors);
+                     with_error(output.unit.from_si(found.second), sd) + behind_number(output.unit.symbol),
+                     found.errors);
 }
 
 }  // namespace uq

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "uq/findings/listed.hpp"
+#include "uq/findings/study_units.hpp"
 #include "uq/findings/wording.hpp"
 #include "uq/posterior/predictive.hpp"
 #include "uq/verdict/combination.hpp"
@@ -26,10 +27,7 @@ constexpr double tighter = 0.5;
 const double straight_fill = std::sqrt(2.0);
 
 /// Value of own parameter k at u, in the study's unit.
-double shown(const CaseModel& model, int k, double u) {
-  const data::Parameter& parameter = model.slots[k].prior.parameter();
-  return parameter.unit.from_si(parameter.axis().from_unit(u));
-}
+double shown(const CaseModel& model, int k, double u) { return in_study_unit(model.slots[k].prior.parameter(), u); }
 
 double range_of(const CaseModel& model, int k) {
   const data::Parameter& parameter = model.slots[k].prior.parameter();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uq/findings/study_units.hpp"
 #include "uq/verdict/verdict_words.hpp"
 
 namespace uq {
@@ -13,9 +14,7 @@ namespace {
 /// Three significant digits.
 std::string number(double value) { return fmt::format("{:.3g}", value); }
 
-std::string in_unit(const std::string& text, const std::string& unit) {
-  return unit.empty() || unit == "1" ? text : text + " " + unit;
-}
+std::string in_unit(const std::string& text, const std::string& unit) { return text + behind_number(unit); }
 
 std::string interval(const ParameterEvidence& parameter) {
   std::string text;

@@ -1,0 +1,34 @@
+#pragma once
+// The way from the numerics to the findings: values in SI, or as places on an axis, become those of the study's units, in
+// which findings are kept (results.hpp) and said.
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/study.hpp"
+
+namespace uq {
+
+/// A place on the axis of a parameter or a control.
+template <class Input>
+double in_study_unit(const Input& input, double place) {
+  return input.unit.from_si(input.axis().from_unit(place));
+}
+
+/// SI values of the study's controls, each by its name.
+inline std::map<std::string, double> named_controls(const data::Study& study, std::span<const double> controls) {
+  std::map<std::string, double> named;
+  for (std::size_t c = 0; c < study.controls.size(); ++c)
+    named[study.controls[c].name] = study.controls[c].unit.from_si(controls[c]);
+  return named;
+}
+
+/// Whether a number of this unit stands alone.
+inline bool is_bare(std::string_view unit) { return unit.empty() || unit == "1"; }
+
+/// What stands behind a number: " mN m", or nothing.
+inline std::string behind_number(std::string_view unit) { return is_bare(unit) ? "" : " " + std::string(unit); }
+
+}  // namespace uq
