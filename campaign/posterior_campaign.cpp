@@ -23,7 +23,7 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
 
 }  // namespace
 
-PosteriorCampaign::PosteriorCampaign(const Workspace& workspace, const PosteriorLimits& limits, TrainingRows rows)
+PosteriorCampaign::PosteriorCampaign(const Workspace& workspace, const PosteriorLimits& limits, StudyRows rows)
     : workspace_(workspace), limits_(limits), rows_(std::move(rows)) {
   if (limits.runs > 0)
     most_ = limits.runs;
@@ -74,7 +74,7 @@ bool PosteriorCampaign::choose(double elapsed) {
 }
 
 void PosteriorCampaign::take(const BatchResult& result) {
-  rows_ = training_rows(workspace_);  // what the batch kept, without the runs that are not of the steady flow
+  rows_ = study_rows(workspace_);  // what the batch kept, without the runs that are not of the steady flow
   totals_.finished += result.finished;
   totals_.unsteady += result.unsteady;
   append(totals_.failures, result.failures);

@@ -39,7 +39,7 @@ struct CampaignTotals {
 class PosteriorCampaign {
  public:
   /// Takes up what an unfinished campaign left in OUT. `workspace` must outlive the object.
-  PosteriorCampaign(const Workspace& workspace, const PosteriorLimits& limits, TrainingRows rows);
+  PosteriorCampaign(const Workspace& workspace, const PosteriorLimits& limits, StudyRows rows);
 
   bool continued() const { return continued_; }
   /// Runs that it may still make; none: no such limit.
@@ -58,7 +58,7 @@ class PosteriorCampaign {
   void finish() const;
 
   std::optional<CampaignEnding> ending() const { return ending_; }
-  const TrainingRows& rows() const { return rows_; }
+  const StudyRows& rows() const { return rows_; }
   const Assessment& assessment() const { return assessment_; }
   bool assessed() const { return !assessment_.shares.empty(); }
   const CampaignTotals& totals() const { return totals_; }
@@ -70,7 +70,7 @@ class PosteriorCampaign {
 
   const Workspace& workspace_;
   PosteriorLimits limits_;
-  TrainingRows rows_;
+  StudyRows rows_;
   std::optional<int> most_;  // new runs
   bool continued_ = false, chosen_ = false;
   std::vector<PlannedRun> pending_;

@@ -141,7 +141,7 @@ bool Assessment::settled(double most) const {
          std::all_of(cases.begin(), cases.end(), [](const uq::SampledCase& one) { return one.draws.converged; });
 }
 
-Assessment assess(const Workspace& workspace, const TrainingRows& rows) {
+Assessment assess(const Workspace& workspace, const StudyRows& rows) {
   const data::Study& study = workspace.study;
   uq::SurrogateOptions options = *workspace.surrogates;
   options.fit.seed = study.seed;
@@ -161,7 +161,7 @@ Assessment assess(const Workspace& workspace, const TrainingRows& rows) {
   return found;
 }
 
-ChosenRuns choose_runs(const Workspace& workspace, const TrainingRows& rows, const Assessment& assessment, int runs,
+ChosenRuns choose_runs(const Workspace& workspace, const StudyRows& rows, const Assessment& assessment, int runs,
                        int tried) {
   const data::Study& study = workspace.study;
   uq::Acquisition acquisition;
@@ -171,7 +171,7 @@ ChosenRuns choose_runs(const Workspace& workspace, const TrainingRows& rows, con
                                                                        : sampled.draws.pooled(),
                                  .log_evidence = sampled.draws.log_evidence});
   data::RunTable table = in_order(rows.table);
-  std::erase_if(table.rows, [](const data::RunRow& row) { return !row.left_out.empty(); });
+  std::erase_if(table.rows, [](const data::RunRow& row) { return static_cast<bool>(row.left_out); });
   for (const data::RunRow& row : table.rows)
     acquisition.existing.push_back(to_run(workspace, assessment.surrogates, Point{row.material, row.inputs}));
   acquisition.noise = [&](const uq::Emulator& emulator) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "campaign/run_batch.hpp"
-#include "campaign/training_rows.hpp"
+#include "campaign/study_rows.hpp"
 #include "uq/calibrate/calibrate.hpp"
 #include "uq/posterior/surrogate_share.hpp"
 #include "uq/refine/next_runs.hpp"
@@ -25,7 +25,7 @@ struct Assessment {
 };
 
 /// A function of the rows and the study alone, in whatever order the rows came.
-Assessment assess(const Workspace& workspace, const TrainingRows& rows);
+Assessment assess(const Workspace& workspace, const StudyRows& rows);
 
 /// The runs that take most from the integrated variance of the posteriors (uq/refine/next_runs.hpp). `tried` counts runs that
 /// failed before, so that others are chosen.
@@ -35,7 +35,7 @@ struct ChosenRuns {
   double variance_before = 0.0;  ///< of the posterior density, share of its mean square; the worst case's
   double variance_after_expected = 0.0;
 };
-ChosenRuns choose_runs(const Workspace& workspace, const TrainingRows& rows, const Assessment& assessment, int runs,
+ChosenRuns choose_runs(const Workspace& workspace, const StudyRows& rows, const Assessment& assessment, int runs,
                        int tried = 0);
 
 /// The run that gives row `row` of a case's group at the unknowns u, in five digits.

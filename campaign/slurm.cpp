@@ -78,7 +78,7 @@ class Follower {
     for (bool first = true; !over(); first = false) {
       if (!first) wait(looks++);
       if (batch_.stop.stop_requested()) break;
-      look();
+      ask_slurm();
       collect();
       decide();
       const bool all_there = submit();
@@ -126,12 +126,12 @@ class Follower {
   }
 
   /// Asks Slurm for the jobs' tasks, and settles which submissions in doubt were taken.
-  void look() {
+  void ask_slurm() {
     std::vector<std::string> names;
     for (const auto& [name, job] : record_.jobs) names.push_back(name);
     queue_.clear();
     if (names.empty()) return;
-    const SlurmCommands::Seen seen = commands_.look(names);
+    const SlurmCommands::Seen seen = commands_.ask(names);
     tell_answer(seen.answered, seen.said);
     if (!seen.answered) return;
     queue_ = seen.queue;
@@ -296,7 +296,7 @@ class Follower {
       note(fmt::format("submitted job {}: {} runs in {} tasks", *submitted.id, which.size(), job.tasks));
       return true;
     }
-    if (submitted.refusal == Refusal::silence) {  // the job may be there: look() finds out
+    if (submitted.refusal == Refusal::silence) {  // the job may be there: ask_slurm() finds out
       tell_answer(false, submitted.said);
       return false;
     }

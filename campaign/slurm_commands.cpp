@@ -49,7 +49,7 @@ SlurmCommands::Submitted SlurmCommands::submit(const Submission& submission) con
   return {.id = {}, .refusal = refusal_of(end.err), .said = last_line(end.err.empty() ? end.out : end.err)};
 }
 
-SlurmCommands::Seen SlurmCommands::look(const std::vector<std::string>& job_names) const {
+SlurmCommands::Seen SlurmCommands::ask(const std::vector<std::string>& job_names) const {
   const data::ProgramEnd end = run(squeue_words(job_names));
   if (end.start_error != 0) return {.answered = false, .queue = {}, .said = std::strerror(end.start_error)};
   if (end.exit_status != 0) return {.answered = false, .queue = {}, .said = last_line(end.err)};

@@ -33,7 +33,7 @@ class SlurmCommands {
     Queue queue;
     std::string said = {};  ///< by squeue, when it has no answer
   };
-  Seen look(const std::vector<std::string>& job_names) const;
+  Seen ask(const std::vector<std::string>& job_names) const;
 
  private:
   data::ProgramEnd run(std::vector<std::string> words) const;

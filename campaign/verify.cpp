@@ -103,7 +103,7 @@ bool is_run(const Workspace& workspace, const data::RunRow& row, const PlannedRu
 
 }  // namespace
 
-std::vector<ListedRun> verification_runs(const Workspace& workspace, const TrainingRows& rows,
+std::vector<ListedRun> verification_runs(const Workspace& workspace, const StudyRows& rows,
                                          const uq::Calibration& calibration, int points) {
   std::vector<ListedRun> listed;
   std::vector<PlannedRun> planned;

@@ -22,7 +22,7 @@ struct ListedRun {
 
 /// `points` points of each case's posterior, its equivalent points first, then draws spread over it; each at up to
 /// three of the measured settings of the controls (lowest, middle, highest), with a seed that the table does not have.
-std::vector<ListedRun> verification_runs(const Workspace& workspace, const TrainingRows& rows,
+std::vector<ListedRun> verification_runs(const Workspace& workspace, const StudyRows& rows,
                                          const uq::Calibration& calibration, int points);
 
 std::string verify_runs_path(const Workspace& workspace);

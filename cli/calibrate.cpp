@@ -28,7 +28,7 @@ struct CalibrateOptions {
   bool no_scan = false;
 };
 
-uq::Calibration calibrate_once(const CalibrateOptions& options, const Workspace& workspace, const TrainingRows& rows) {
+uq::Calibration calibrate_once(const CalibrateOptions& options, const Workspace& workspace, const StudyRows& rows) {
   const uq::SurrogateOptions surrogates = surrogate_options(options.common, workspace, rows);
   uq::Calibration result;
   {
@@ -45,7 +45,7 @@ uq::Calibration calibrate_once(const CalibrateOptions& options, const Workspace&
   return result;
 }
 
-data::ExitStatus report_on(const Common& common, const Workspace& workspace, const TrainingRows& rows,
+data::ExitStatus report_on(const Common& common, const Workspace& workspace, const StudyRows& rows,
                            uq::Calibration& result) {
   for (const uq::SampledCase& sampled : result.cases)
     if (!sampled.draws.chains.empty())
@@ -86,7 +86,7 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
   const Workspace workspace = open_workspace(common);
   const bool rig = !workspace.cases.empty();
   data::require_cases(workspace.study);
-  TrainingRows rows = rows_to_learn_from(common, workspace);
+  StudyRows rows = rows_to_learn_from(common, workspace);
   make_out(workspace, rig ? "runs" : "");
   const auto results = hold_out(workspace, Writes::results, "calibrate --verify");
   const auto training = rig ? hold_out(workspace, Writes::training, "calibrate --verify") : nullptr;
@@ -97,7 +97,7 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
   for (int round = 1;; ++round) {
     // Surrogates that have not seen the round's runs, and the runs.
     HeldBack held = hold_back(workspace, rows.table, listed);
-    TrainingRows unseen = rows;
+    StudyRows unseen = rows;
     unseen.table = held.others;
     uq::Calibration result = calibrate_once(options, workspace, unseen);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
@@ -187,7 +187,7 @@ Action add_calibrate(CLI::App& program) {
     if (options->verify > 0) return calibrate_and_verify(*options);
     const Workspace workspace = open_workspace(options->common);
     data::require_cases(workspace.study);
-    const TrainingRows rows = rows_to_learn_from(options->common, workspace);
+    const StudyRows rows = rows_to_learn_from(options->common, workspace);
     const auto held = hold_out(workspace, Writes::results, "calibrate");
     uq::Calibration result = calibrate_once(*options, workspace, rows);
     return report_on(options->common, workspace, rows, result);

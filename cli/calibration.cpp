@@ -38,8 +38,8 @@ std::string attraction_note(const std::string& material, const dem::Case& c) {
 
 }  // namespace
 
-TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace) {
-  TrainingRows rows = training_rows(workspace);
+StudyRows rows_to_learn_from(const Common& common, const Workspace& workspace) {
+  StudyRows rows = study_rows(workspace);
   for (const std::string& note : rows.notes) say(common, "note: " + note);
   require_rows(workspace, rows, common.study);
   std::vector<data::Finding> found =
@@ -52,7 +52,7 @@ TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace
   return rows;
 }
 
-std::vector<std::string> say_warnings(const Common& common, const TrainingRows& rows,
+std::vector<std::string> say_warnings(const Common& common, const StudyRows& rows,
                                       const std::vector<uq::FittedSurrogate>& fitted,
                                       const std::vector<std::string>& more) {
   std::vector<std::string> warnings, notes;
@@ -83,7 +83,7 @@ void write_next_runs(const Workspace& workspace, const std::vector<uq::SupportRe
   if (!points.empty()) write_points(workspace, next_runs_path(workspace), points);
 }
 
-uq::SurrogateOptions surrogate_options(const Common& common, const Workspace& workspace, const TrainingRows& rows) {
+uq::SurrogateOptions surrogate_options(const Common& common, const Workspace& workspace, const StudyRows& rows) {
   uq::SurrogateOptions options = *workspace.surrogates;
   options.fit.seed = workspace.study.seed;
   options.low = rows.low;
@@ -93,7 +93,7 @@ uq::SurrogateOptions surrogate_options(const Common& common, const Workspace& wo
   return options;
 }
 
-void keep_surrogates(const Workspace& workspace, const TrainingRows& rows, const uq::SurrogateOptions& options,
+void keep_surrogates(const Workspace& workspace, const StudyRows& rows, const uq::SurrogateOptions& options,
                      const std::vector<uq::FittedSurrogate>& fitted) {
   const bool nothing_new = std::all_of(fitted.begin(), fitted.end(), [&](const uq::FittedSurrogate& one) {
     return std::any_of(options.known.begin(), options.known.end(),
@@ -115,7 +115,7 @@ void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>
   }
 }
 
-void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const TrainingRows& rows) {
+void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const StudyRows& rows) {
   const data::Study& study = workspace.study;
   std::vector<std::pair<std::string, std::string>> program = data::provenance();
   report.provenance.insert(report.provenance.begin(), program.begin(), program.end());

@@ -14,19 +14,19 @@ namespace cli {
 
 /// The rows of the run table, looked at (uq/calibrate/data_check.hpp): its findings are added to theirs. Throws InputError (66)
 /// when there are none, saying how to get some, and (65, 78) for what cannot be meant; prints what was left out.
-TrainingRows rows_to_learn_from(const Common& common, const Workspace& workspace);
+StudyRows rows_to_learn_from(const Common& common, const Workspace& workspace);
 
 /// The study's options of every surrogate, with those that OUT/surrogate.h5 holds, if it is still of this study and
 /// table; if not, the user is told why.
-uq::SurrogateOptions surrogate_options(const Common& common, const Workspace& workspace, const TrainingRows& rows);
+uq::SurrogateOptions surrogate_options(const Common& common, const Workspace& workspace, const StudyRows& rows);
 
 /// Writes OUT/surrogate.h5 if there is anything new; what it held and still holds true stays.
-void keep_surrogates(const Workspace& workspace, const TrainingRows& rows, const uq::SurrogateOptions& options,
+void keep_surrogates(const Workspace& workspace, const StudyRows& rows, const uq::SurrogateOptions& options,
                      const std::vector<uq::FittedSurrogate>& fitted);
 
 /// What stands in the first lines of `fit` and `sample`, as `calibrate` says it: warnings, then notes. Returns the
 /// warnings.
-std::vector<std::string> say_warnings(const Common& common, const TrainingRows& rows,
+std::vector<std::string> say_warnings(const Common& common, const StudyRows& rows,
                                       const std::vector<uq::FittedSurrogate>& fitted,
                                       const std::vector<std::string>& more = {});
 
@@ -37,7 +37,7 @@ void write_next_runs(const Workspace& workspace, const std::vector<uq::SupportRe
 void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>& fitted);
 
 /// The report's provenance and the choices behind it, as the study, the table and the DEM's settings tell them.
-void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const TrainingRows& rows);
+void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const StudyRows& rows);
 
 /// report.json, and report.html with its figures, in OUT.
 void write_report(const Workspace& workspace, const uq::CalibrationReport& report);

@@ -27,7 +27,7 @@ std::vector<std::string> refusals(const Action& action) {
 }
 
 /// What a calibration would refuse of the runs that there are, and a plan of the candidates that [plan] lists.
-std::vector<std::string> refused_later(const Workspace& workspace, const TrainingRows& rows) {
+std::vector<std::string> refused_later(const Workspace& workspace, const StudyRows& rows) {
   const data::Study& study = workspace.study;
   if (data::used_rows(rows.table) == 0) return {};
   std::vector<uq::Emulator> outlines;  // what there are runs of; nothing is fitted
@@ -48,7 +48,7 @@ Action add_check(CLI::App& program) {
   return [common] {
     const Workspace workspace = open_workspace(*common);
     const data::Study& study = workspace.study;
-    TrainingRows rows = training_rows(workspace);
+    StudyRows rows = study_rows(workspace);
     // Runs of one's own come later; those of another code are what the study rests on.
     if (workspace.cases.empty() && !study.training.table.empty()) require_rows(workspace, rows, common->study);
     std::vector<std::string> warnings = rows.notes;

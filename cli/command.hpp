@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "campaign/training_rows.hpp"
+#include "campaign/study_rows.hpp"
 #include "campaign/workspace.hpp"
 #include "data/error.hpp"
 

@@ -24,7 +24,7 @@ Action add_design(CLI::App& program) {
     const Common& common = options->common;
     const Workspace workspace = open_workspace(common);
     const auto held = hold_out(workspace, Writes::training, "design");
-    const TrainingRows rows = training_rows(workspace);
+    const StudyRows rows = study_rows(workspace);
     for (const std::string& note : rows.notes) say(common, "note: " + note);
     const Campaign campaign = plan_campaign(workspace, rows.all, options->runs);
     write_design(workspace, campaign.points);

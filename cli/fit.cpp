@@ -9,7 +9,7 @@ Action add_fit(CLI::App& program) {
                     "demcal fit data/developer", *common);
   return [common] {
     const Workspace workspace = open_workspace(*common);
-    const TrainingRows rows = rows_to_learn_from(*common, workspace);
+    const StudyRows rows = rows_to_learn_from(*common, workspace);
     const auto held = hold_out(workspace, Writes::results, "fit");
     const uq::SurrogateOptions options = surrogate_options(*common, workspace, rows);
     const std::vector<uq::FittedSurrogate> fitted = uq::fit_surrogates(workspace.study, rows.table, options);

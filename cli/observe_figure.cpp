@@ -91,7 +91,7 @@ uq::Figure log_figure(const data::TorqueLog& log, const std::vector<data::Platea
         colour, title.empty() ? "notitle" : fmt::format("title '{}'", title));
   };
   figure.script =
-      plot::look() + "set multiplot\nset lmargin 11\nset rmargin 3\n" +
+      plot::common_style() + "set multiplot\nset lmargin 11\nset rmargin 3\n" +
       fmt::format("set xrange [{:.10g}:{:.10g}]\n", log.time.front(), log.time.back()) +
       "set size 1, 0.68\nset origin 0, 0.32\nset format x ''\nset bmargin 0.6\n" +
       plot::label('y', {.scale = 1.0, .label = fmt::format("torque ({})", torque_unit.symbol)}) + "plot " +

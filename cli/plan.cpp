@@ -72,7 +72,7 @@ std::string text_of(const Workspace& workspace, const Point& point) {
 }
 
 /// The training runs that would sharpen the posterior most, and their cost, beside the measurements.
-void add_runs(const Workspace& workspace, const TrainingRows& rows, const Assessment& of_case, uq::PlanReport& plan) {
+void add_runs(const Workspace& workspace, const StudyRows& rows, const Assessment& of_case, uq::PlanReport& plan) {
   const ChosenRuns runs = choose_runs(workspace, rows, of_case, runs_listed);
   for (const PlannedRun& run : runs.runs) plan.runs.points.push_back(text_of(workspace, run.point));
   plan.runs.seconds = median_run_time(rows.all) * static_cast<double>(runs.runs.size());
@@ -105,7 +105,7 @@ data::ExitStatus plan(const PlanOptions& options) {
   else
     require_measurements(workspace);
   const std::vector<std::size_t> cases = chosen_cases(options, workspace);
-  const TrainingRows rows = rows_to_learn_from(common, workspace);
+  const StudyRows rows = rows_to_learn_from(common, workspace);
   const auto held = hold_out(workspace, Writes::results, "plan");
   data::Study& study = workspace.study;
   const uq::CalibrateOptions calibrate{.surrogates = surrogate_options(common, workspace, rows), .seed = study.seed};

@@ -92,7 +92,7 @@ Action add_sample(CLI::App& program) {
     const Workspace workspace = open_workspace(*common);
     const data::Study& study = workspace.study;
     data::require_cases(study);
-    const TrainingRows rows = rows_to_learn_from(*common, workspace);
+    const StudyRows rows = rows_to_learn_from(*common, workspace);
     const auto held = hold_out(workspace, Writes::results, "sample");
     const uq::CalibrateOptions options{
         .surrogates = surrogate_options(*common, workspace, rows), .sampler = *sampler, .seed = study.seed};

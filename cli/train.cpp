@@ -81,7 +81,7 @@ Action add_train(CLI::App& program) {
     require_rig(workspace);
     make_out(workspace, "runs");
     const auto held = hold_out(workspace, Writes::training, "train");
-    TrainingRows rows = training_rows(workspace);
+    StudyRows rows = study_rows(workspace);
     for (const std::string& note : rows.notes) say(common, "note: " + note);
     const std::size_t before = rows.all.rows.size();
     const Campaign campaign = options->at_posterior > 0 ? plan_at_posterior(workspace, rows.all, options->at_posterior)

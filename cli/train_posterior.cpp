@@ -83,7 +83,7 @@ nlohmann::json shares_json(const data::Study& study, const Assessment& assessmen
 
 /// For another code's runs: the points, in a file.
 data::ExitStatus list_points(const Common& common, const Workspace& workspace, const PosteriorTraining& options) {
-  const TrainingRows rows = training_rows(workspace);
+  const StudyRows rows = study_rows(workspace);
   for (const std::string& note : rows.notes) say(common, "note: " + note);
   const Assessment assessment = assess(workspace, rows);
   answer(common, share_text(workspace.study, assessment));
@@ -169,7 +169,7 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
   }
   make_out(workspace, "runs");
   const auto held = hold_out(workspace, Writes::training, "train");
-  TrainingRows rows = training_rows(workspace);
+  StudyRows rows = study_rows(workspace);
   for (const std::string& note : rows.notes) say(common, "note: " + note);
   PosteriorCampaign campaign(
       workspace, {.share = options.share, .batch = options.jobs, .runs = options.runs, .seconds = options.seconds},

@@ -58,7 +58,7 @@ std::vector<std::string> drop_unreliable(RunTable& table) {
 
 std::size_t used_rows(const RunTable& table) {
   return static_cast<std::size_t>(
-      std::count_if(table.rows.begin(), table.rows.end(), [](const RunRow& row) { return row.left_out.empty(); }));
+      std::count_if(table.rows.begin(), table.rows.end(), [](const RunRow& row) { return !row.left_out; }));
 }
 
 TableRead read_table(const std::string& path, const Study& study) {

@@ -15,6 +15,22 @@ struct Column {
   Unit unit;
 };
 
+/// Why a row is not learnt from; nothing: it is.
+struct LeftOut {
+  enum class Because {
+    nothing,
+    study_says_so,
+    its_column_says_so,
+    it_failed,
+    it_is_a_copy,
+    it_is_far_off,
+    others_contradict
+  };
+  Because because = Because::nothing;
+  std::string words = {};  ///< "a copy of runs.csv:12"
+  explicit operator bool() const { return because != Because::nothing; }
+};
+
 struct RunRow {
   std::string material;                 ///< "" in a study without materials
   std::vector<double> inputs;           ///< SI: parameters, then controls, in the table's column order
@@ -28,7 +44,7 @@ struct RunRow {
   std::string state = {};       ///< "steady", or why the means are not those of the steady flow; "" where nobody said
   std::string unreliable = {};  ///< outputs whose errors are not known, by name, separated by spaces
   std::string place = {};       ///< "runs.csv:31": where the row stands, by which the user names it; not stored
-  std::string left_out = {};    ///< why the row is not learnt from ("a copy of runs.csv:12"); empty: it is. Not stored
+  LeftOut left_out = {};        ///< not stored
 };
 /// Whether the row says of itself that it is not of the steady flow.
 bool is_unsteady(const RunRow& row);

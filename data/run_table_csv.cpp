@@ -54,9 +54,6 @@ void check_whole(const Csv& csv, const std::string& text) {
   }
 }
 
-/// What a row says that its user's own column leaves out.
-constexpr const char* user_column = "its own column ";
-
 struct Columns {
   std::vector<std::size_t> inputs, outputs;
   std::vector<std::optional<std::size_t>> errors;  ///< none: nobody stated them, and 0 stands for it
@@ -162,8 +159,8 @@ void tell_failures(TableRead& result) {
     std::vector<std::string> places;
     std::string example;
     for (const RunRow& row : result.table.rows) {
-      if (row.left_out.empty() || (row.left_out.rfind(user_column, 0) == 0) != asked) continue;
-      if (places.empty()) example = row.left_out;
+      if (!row.left_out || (row.left_out.because == LeftOut::Because::its_column_says_so) != asked) continue;
+      if (places.empty()) example = row.left_out.words;
       places.push_back(row.place);
     }
     if (places.empty()) continue;
@@ -177,13 +174,16 @@ void tell_failures(TableRead& result) {
   }
 }
 
-/// "status: failed", if a status column says so.
-std::string failure(const Csv& csv, const CsvRow& row, const Columns& at) {
-  for (const std::size_t column : at.status)
-    if (says_failed(csv.columns[column], row.fields[column]))
-      return fmt::format("{}{} says '{}'", is_user_column(csv.columns[column]) ? user_column : "the column ",
-                         csv.columns[column], row.fields[column]);
-  return "";
+/// What a status column says of the row, or a column by which its user chooses rows.
+LeftOut left_out_by_its_columns(const Csv& csv, const CsvRow& row, const Columns& at) {
+  for (const std::size_t column : at.status) {
+    if (!says_failed(csv.columns[column], row.fields[column])) continue;
+    const bool chosen = is_user_column(csv.columns[column]);
+    return {chosen ? LeftOut::Because::its_column_says_so : LeftOut::Because::it_failed,
+            fmt::format("{} {} says '{}'", chosen ? "its own column" : "the column", csv.columns[column],
+                        row.fields[column])};
+  }
+  return {};
 }
 
 std::string read_material(const Csv& csv, const CsvRow& row, const std::optional<std::size_t>& column,
@@ -334,7 +334,7 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     if (at.state) row.state = line.fields[*at.state];
     if (at.unreliable) row.unreliable = line.fields[*at.unreliable];
     row.place = fmt::format("{}:{}", file_name, line.line);
-    row.left_out = failure(csv, line, at);
+    row.left_out = left_out_by_its_columns(csv, line, at);
     table.rows.push_back(std::move(row));
   }
   result.left_out = notes.texts();

@@ -32,7 +32,7 @@ void leave_out_named(TableRead& read, const Study& study) {
   for (RunRow& row : read.table.rows)
     for (const std::string& label : study.training.leave_out)
       if (names_row(label, row.place)) {
-        row.left_out = "the study leaves it out";
+        row.left_out = {LeftOut::Because::study_says_so, "the study leaves it out"};
         places.push_back(row.place);
         break;
       }
@@ -52,7 +52,7 @@ void leave_out_zeros(TableRead& read) {
     std::vector<std::string> places;
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (RunRow& row : table.rows) {
-      if (!row.left_out.empty() || !std::isfinite(row.outputs[k])) continue;
+      if (row.left_out || !std::isfinite(row.outputs[k])) continue;
       if (row.outputs[k] == 0.0 && row.standard_errors[k] == 0.0) {
         zeros.push_back(&row);
         continue;
@@ -70,7 +70,8 @@ void leave_out_zeros(TableRead& read) {
           std::all_of(row->outputs.begin(), row->outputs.end(), [](double value) { return !(std::abs(value) > 0.0); });
       row->outputs[k] = NAN;
       row->standard_errors[k] = NAN;
-      if (all_zero || nothing_else) row->left_out = "0 with a standard error of 0: a run that failed";
+      if (all_zero || nothing_else)
+        row->left_out = {LeftOut::Because::it_failed, "0 with a standard error of 0: a run that failed"};
     }
     const Column& column = table.outputs[k];
     Finding finding = about_rows(FindingKind::failed_runs, Severity::warning, places);
@@ -90,7 +91,7 @@ void leave_out_copies(TableRead& read) {
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const RunRow& row = table.rows[i];
-    if (!row.left_out.empty()) continue;
+    if (row.left_out) continue;
     RepeatableRow one{.at = row.inputs, .values = {}, .errors = {}};
     const auto material = std::find_if(table.rows.begin(), table.rows.end(),
                                        [&](const RunRow& other) { return other.material == row.material; });
@@ -110,7 +111,7 @@ void leave_out_copies(TableRead& read) {
     if (!copies[i]) continue;
     RunRow& row = table.rows[index[i]];
     const RunRow& source = table.rows[index[*copies[i]]];
-    row.left_out = "a copy of " + source.place;
+    row.left_out = {LeftOut::Because::it_is_a_copy, "a copy of " + source.place};
     noisy =
         noisy || std::any_of(row.standard_errors.begin(), row.standard_errors.end(), [](double e) { return e > 0.0; });
     if (places.empty()) example = fmt::format("{} of {}", row.place, source.place);

@@ -62,7 +62,7 @@ std::vector<Pair> Simulation::pairs_of(std::size_t chunk) const {
   std::size_t count = 0;
   for (std::uint32_t i = s.chunk_first[chunk]; i < s.chunk_first[chunk + 1]; ++i) {
     const PositionRow p = s.position[i];
-    const auto look = [&](std::uint32_t from, std::uint32_t to) {
+    const auto add_near = [&](std::uint32_t from, std::uint32_t to) {
       if (from >= to) return;
       if (found.size() < count + (to - from)) found.resize(2 * count + (to - from) + 1024);
       for (std::uint32_t j = from; j < to; ++j) {
@@ -80,8 +80,8 @@ std::vector<Pair> Simulation::pairs_of(std::size_t chunk) const {
       for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, ny - 1); ++y) {
         const std::size_t column = (static_cast<std::size_t>(x) * ny + y) * nz;
         const std::size_t from = column + z_low, to = column + z_high + 1;
-        look(std::max(cells_.first[from], i + 1), cells_.first[to]);
-        look(ghosts + cells_.ghost_first[from], ghosts + cells_.ghost_first[to]);
+        add_near(std::max(cells_.first[from], i + 1), cells_.first[to]);
+        add_near(ghosts + cells_.ghost_first[from], ghosts + cells_.ghost_first[to]);
       }
     }
   }

@@ -83,7 +83,7 @@ Bonds find_bonds(const State& state, const Box& box) {
   Bonds found;
   for (std::uint32_t i = 0; i < state.particles(); ++i) {
     const auto& c = grid.cell[i];
-    const auto look = [&](std::uint32_t j) {
+    const auto bond_to = [&](std::uint32_t j) {
       if (j == i) return;
       Vec3 way = state.position[j].at - state.position[i].at;
       for (int a = 0; a < 3; ++a)
@@ -96,7 +96,7 @@ Bonds find_bonds(const State& state, const Box& box) {
       around(c[1], grid.n[1], box.periodic[1], [&](int y) {
         around(c[2], grid.n[2], box.periodic[2], [&](int z) {
           const std::size_t cell = grid.number({x, y, z});
-          for (std::uint32_t k = grid.first[cell]; k < grid.first[cell + 1]; ++k) look(grid.member[k]);
+          for (std::uint32_t k = grid.first[cell]; k < grid.first[cell + 1]; ++k) bond_to(grid.member[k]);
         });
       });
     });

@@ -25,7 +25,7 @@ TEST_CASE("a campaign makes no more runs than were asked for, and an interrupted
   const Workspace workspace = test::small_study(folder.path("out"));
   std::filesystem::create_directories(workspace.out);
   const PosteriorLimits limits{.batch = 2, .runs = 3, .seconds = {}};
-  PosteriorCampaign campaign(workspace, limits, training_rows(workspace));
+  PosteriorCampaign campaign(workspace, limits, study_rows(workspace));
   CHECK_FALSE(campaign.continued());
   CHECK_FALSE(campaign.look());  // a surrogate needs runs first
   REQUIRE(campaign.choose(0.0));
@@ -35,7 +35,7 @@ TEST_CASE("a campaign makes no more runs than were asked for, and an interrupted
   CHECK(campaign.batch().size() == 2);
   CHECK(campaign.runs_left() == 2);
 
-  PosteriorCampaign next(workspace, limits, training_rows(workspace));
+  PosteriorCampaign next(workspace, limits, study_rows(workspace));
   CHECK(next.continued());
   CHECK(next.runs_left() == 2);
   REQUIRE(next.batch().size() == 2);
@@ -54,14 +54,14 @@ TEST_CASE("a campaign ends when its time is up, or when nothing but failures com
   const TemporaryFolder folder;
   const Workspace workspace = test::small_study(folder.path("out"));
   std::filesystem::create_directories(workspace.out);
-  PosteriorCampaign late(workspace, {.batch = 2, .seconds = 60.0}, training_rows(workspace));
+  PosteriorCampaign late(workspace, {.batch = 2, .seconds = 60.0}, study_rows(workspace));
   CHECK_FALSE(late.runs_left());
   late.look();
   CHECK(late.choose(59.0));
   CHECK_FALSE(late.choose(61.0));
   CHECK(late.ending() == CampaignEnding::time_up);
 
-  PosteriorCampaign failing(workspace, {.batch = 2, .seconds = 60.0}, training_rows(workspace));
+  PosteriorCampaign failing(workspace, {.batch = 2, .seconds = 60.0}, study_rows(workspace));
   for (int batch = 0; batch < 30 && !failing.ending(); ++batch) {
     failing.look();
     REQUIRE(failing.choose(0.0));

@@ -46,7 +46,7 @@ TEST_CASE("runs equal to the last digit count once, whatever their seeds, and th
   const auto found =
       read("0.4,100,8.13579,0.1,1\n0.5,100,9.02468,0.1,1\n0.4,100,8.13579,0.1,2\n", "", header + ",seed");
   CHECK(data::used_rows(found.table) == 2);
-  CHECK(found.table.rows[2].left_out == "a copy of runs.csv:2");
+  CHECK(found.table.rows[2].left_out.words == "a copy of runs.csv:2");
   const data::Finding* copies = find(found, "copied rows");
   REQUIRE(copies);
   CHECK(copies->severity == data::Severity::warning);

@@ -63,7 +63,8 @@ std::vector<FittedSurrogate> without_outlying(const data::Study& study, const da
   if (places.empty()) return {};
   data::RunTable rest = table;
   for (data::RunRow& row : rest.rows)
-    if (row.left_out.empty() && places.contains(row.place)) row.left_out = "contradicted by the others";
+    if (!row.left_out && places.contains(row.place))
+      row.left_out = {data::LeftOut::Because::others_contradict, "contradicted by the others"};
   if (data::used_rows(rest) == data::used_rows(table)) return {};
   try {
     return fit_surrogates(study, rest, options);

@@ -104,7 +104,7 @@ std::optional<Finding> exchanged_output(const data::Study& study, const data::Ru
     InputColumn output{study.outputs[k].name, unit, 0.0, 1.0, false, {}, {}};
     std::size_t inside = 0;
     for (const data::RunRow& row : table.rows) {
-      if (!row.left_out.empty() || !std::isfinite(row.outputs[k])) continue;
+      if (row.left_out || !std::isfinite(row.outputs[k])) continue;
       output.values.push_back(row.outputs[k]);
       const double number = unit.from_si(row.outputs[k]);
       inside += number >= control.shown(control.low) && number <= control.shown(control.high);
@@ -188,7 +188,7 @@ std::vector<Finding> check_ranges(const data::Study& study, data::RunTable& tabl
     double least = HUGE_VAL, most = -HUGE_VAL;
     for (data::RunRow& row : table.rows) {
       const double value = row.inputs[input_column(table, column.name)];
-      if (!row.left_out.empty() || is_held(study, row, column.name)) continue;
+      if (row.left_out || is_held(study, row, column.name)) continue;
       if (parameter.scale == data::Scale::log && !(value > 0.0)) continue;
       const double u = parameter.axis().to_unit(value);
       if (u >= -t.outside && u <= 1.0 + t.outside) continue;
@@ -196,7 +196,9 @@ std::vector<Finding> check_ranges(const data::Study& study, data::RunTable& tabl
       most = std::max(most, value);
       const bool is_far = u < -t.far_outside || u > 1.0 + t.far_outside;
       (is_far ? far : near).push_back(row.place);
-      if (is_far) row.left_out = fmt::format("{} lies far outside its range", column.name);
+      if (is_far)
+        row.left_out = {data::LeftOut::Because::it_is_far_off,
+                        fmt::format("{} lies far outside its range", column.name)};
     }
     if (near.empty() && far.empty()) continue;
     std::vector<std::string> places = far;
@@ -226,7 +228,7 @@ std::vector<Finding> check_outputs(const data::Study& study, const data::RunTabl
     double least = HUGE_VAL, most = -HUGE_VAL;
     for (const data::RunRow& row : table.rows) {
       const double value = row.outputs[k], error = row.standard_errors[k];
-      if (!row.left_out.empty() || !std::isfinite(value) || !std::isfinite(error)) continue;
+      if (row.left_out || !std::isfinite(value) || !std::isfinite(error)) continue;
       ++count;
       with_error += error > 0.0;
       least = std::min(least, value);

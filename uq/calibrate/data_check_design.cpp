@@ -150,7 +150,7 @@ std::vector<InputColumn> input_columns(const data::Study& study, const data::Run
   for (InputColumn& column : columns) {
     const std::size_t at = input_column(table, column.name);
     for (const data::RunRow& row : table.rows) {
-      if (!row.left_out.empty() || (material != nullptr && row.material != *material)) continue;
+      if (row.left_out || (material != nullptr && row.material != *material)) continue;
       if (column.is_parameter && is_held(study, row, column.name)) continue;
       column.values.push_back(row.inputs[at]);
       column.places.push_back(row.place);
@@ -163,7 +163,7 @@ std::vector<Finding> check_design(const data::Study& study, const data::RunTable
   std::vector<Finding> findings;
   std::set<std::string> materials;
   for (const data::RunRow& row : table.rows)
-    if (row.left_out.empty()) materials.insert(row.material);
+    if (!row.left_out) materials.insert(row.material);
   for (const std::string& material : materials) {
     const std::vector<InputColumn> columns = input_columns(study, table, &material);
     std::vector<const InputColumn*> varied;

@@ -69,7 +69,7 @@ std::optional<Finding> other_readings(const data::Study& study, const data::RunT
   const std::size_t k = set.outputs[column];
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (const data::RunRow& row : table.rows) {
-    if (!row.left_out.empty() || row.material != set.material || !std::isfinite(row.outputs[k])) continue;
+    if (row.left_out || row.material != set.material || !std::isfinite(row.outputs[k])) continue;
     least = std::min(least, row.outputs[k]);
     most = std::max(most, row.outputs[k]);
   }
@@ -108,7 +108,7 @@ std::vector<Finding> check_mixed_units(const data::Study& study, const data::Run
   for (std::size_t k = 0; k < study.outputs.size(); ++k) {
     std::map<std::string, std::vector<Entry>> by_material;
     for (const data::RunRow& row : table.rows)
-      if (row.left_out.empty() && std::isfinite(row.outputs[k]) && row.outputs[k] != 0.0)
+      if (!row.left_out && std::isfinite(row.outputs[k]) && row.outputs[k] != 0.0)
         by_material[row.material].push_back({row.outputs[k], &row});
     for (auto& [material, entries] : by_material)
       if (auto found = two_units(study.outputs[k], std::move(entries))) findings.push_back(std::move(*found));

@@ -77,7 +77,7 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
     const data::Output& output = study.outputs[set.outputs[column]];
     Extent runs, seen;
     for (const data::RunRow& row : table.rows)
-      if (row.left_out.empty() && row.material == set.material && std::isfinite(row.outputs[set.outputs[column]]))
+      if (!row.left_out && row.material == set.material && std::isfinite(row.outputs[set.outputs[column]]))
         runs.add(row.outputs[set.outputs[column]]);
     for (const data::Observation& point : set.points) seen.add(point.values[column]);
     if (runs.values.size() < 5 || seen.values.empty() || is_scaled(study, set, set.outputs[column])) continue;
@@ -115,7 +115,7 @@ void check_control_unit(const data::Study& study, const data::RunTable& table, c
     const data::Control& control = study.controls[c];
     Extent runs, seen;
     for (const data::RunRow& row : table.rows)
-      if (row.left_out.empty() && row.material == set.material) runs.add(row.inputs[input_column(table, control.name)]);
+      if (!row.left_out && row.material == set.material) runs.add(row.inputs[input_column(table, control.name)]);
     for (const data::Observation& point : set.points) seen.add(point.controls[c]);
     if (runs.values.empty() || seen.values.empty()) continue;
     constexpr double least_factor = 1.5;  // units differ by more

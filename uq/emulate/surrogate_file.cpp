@@ -34,7 +34,7 @@ surrogate::SurrogateKey key_of(const data::Study& study, const data::RunTable& t
 std::string table_hash(const data::RunTable& table) {
   std::string text;
   for (const data::RunRow& row : table.rows) {
-    text += data::row_key(row) + (row.left_out.empty() ? "" : " left out");
+    text += data::row_key(row) + (row.left_out ? " left out" : "");
     for (std::size_t i = 0; i < row.outputs.size(); ++i)
       text += fmt::format(" {} {}", row.outputs[i], row.standard_errors[i]);
     text += "\n";

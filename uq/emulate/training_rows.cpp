@@ -62,7 +62,7 @@ LevelRows level_rows(const data::Study& study, const data::RunTable& table, cons
   const std::size_t column = columns.outputs[output];
   std::vector<const data::RunRow*> rows;
   for (const auto& row : table.rows)
-    if (row.left_out.empty() && row.material == material && std::isfinite(row.outputs[column]) &&
+    if (!row.left_out && row.material == material && std::isfinite(row.outputs[column]) &&
         std::isfinite(row.standard_errors[column]))
       rows.push_back(&row);
   const auto count = static_cast<Eigen::Index>(rows.size());
@@ -203,7 +203,7 @@ std::vector<DesignReport> designs_of(const data::Study& study, const data::RunTa
       for (const EmulatorInput& input : one.rows.inputs)
         point.push_back(input_of(study, input).unit.from_si(row.inputs[column_of(columns, input)]));
       const std::size_t column = columns.outputs[one.rows.output];
-      const std::string reason = !row.left_out.empty() ? row.left_out
+      const std::string reason = row.left_out ? row.left_out.words
                                  : std::isfinite(row.outputs[column])
                                      ? ""
                                      : "without " + study.outputs[one.rows.output].name;

@@ -60,7 +60,7 @@ Figure trace_figure(const CaseReport& result, std::size_t parameter, const std::
                     c == 0 ? "plot " : ", \\\n  ", stem, c, colour_of(c));
   }
   const plot::Extent range = up.padded(0.05);
-  figure.script = plot::look() + "set xlabel 'share of the chain'\n" + plot::label('y', axis) +
+  figure.script = plot::common_style() + "set xlabel 'share of the chain'\n" + plot::label('y', axis) +
                   fmt::format("sy = {:.0e}\nset xrange [0:1]\nset yrange [{:.10g}*sy:{:.10g}*sy]\n", axis.scale,
                               range.low, range.high) +
                   curves;
@@ -88,7 +88,7 @@ Figure chain_rank_figure(const CaseReport& result, std::size_t parameter, const 
     curves += fmt::format("{}'{}.dat' index 'chain{}' using 1:2 with histeps linecolor rgb '{}' linewidth 1.2 notitle",
                           c == 0 ? "plot " : ", \\\n  ", stem, c, colour_of(c));
   }
-  figure.script = plot::look() + plot::label('x', {1.0, of.name + ": rank among all draws"}) +
+  figure.script = plot::common_style() + plot::label('x', {1.0, of.name + ": rank among all draws"}) +
                   plot::label('y', {1.0, "draws of the chain"}) +
                   fmt::format("set xrange [0:1]\nset yrange [0:{:.10g}]\n", 1.15 * top) + curves;
   figure.alt = fmt::format("ranks of the draws of {} by chain", of.name);
@@ -121,7 +121,7 @@ Figure marginal_figure(const CaseReport& result, std::size_t parameter, const st
                 .height = 260};
   const plot::Extent range = across.padded(0.05);
   figure.script =
-      plot::look() + plot::label('x', axis) + plot::label('y', {1.0, "share of the draws"}) +
+      plot::common_style() + plot::label('x', axis) + plot::label('y', {1.0, "share of the draws"}) +
       fmt::format("sx = {:.0e}\nset boxwidth {:.10g}*sx\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [0:*]\n",
                   axis.scale, 0.95 * width, range.low, range.high);
   const std::array marks{of.q05, of.q50, of.q95};

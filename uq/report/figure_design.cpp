@@ -28,7 +28,7 @@ Figure design_figure(const DesignReport& design, std::pair<std::size_t, std::siz
   const plot::Axis y = plot::axis_for(design.inputs[second], design.units[second], up.largest());
   const plot::Extent x_range = across.padded(0.05), y_range = up.padded(0.05);
   figure.script =
-      plot::look() + plot::label('x', x) + plot::label('y', y) +
+      plot::common_style() + plot::label('x', x) + plot::label('y', y) +
       fmt::format("sx = {:.0e}\nsy = {:.0e}\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}*sy:{:.10g}*sy]\n",
                   x.scale, y.scale, x_range.low, x_range.high, y_range.low, y_range.high) +
       fmt::format(

@@ -18,7 +18,7 @@ Figure discrepancy_figure(const CaseReport& result, const DiscrepancyBand& band,
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .height = 330};
   figure.data = plot::block("band", {band.x, band.mean, band.q05, band.q95});
   figure.script =
-      plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
+      plot::common_style() + plot::label('x', horizontal) + plot::label('y', vertical) +
       fmt::format("sx = {:.0e}\nsy = {:.0e}\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}*sy:{:.10g}*sy]\n",
                   horizontal.scale, vertical.scale, x_range.low, x_range.high, y_range.low, y_range.high) +
       fmt::format(

@@ -129,7 +129,7 @@ Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t
                                       {b.prior_low, b.prior_low, b.prior_high, b.prior_high, b.prior_low}}) +
                 plot::block("mode", {{a.map}, {b.map}});
   std::string& script = figure.script;
-  script = plot::look() + plot::label('x', horizontal) + plot::label('y', vertical);
+  script = plot::common_style() + plot::label('x', horizontal) + plot::label('y', vertical);
   script += fmt::format("sx = {:.0e}\nsy = {:.0e}\n", horizontal.scale, vertical.scale);
   if (!grid.density.empty()) {
     figure.data += region_block("region90", contour(grid, box, grid.level90)) +

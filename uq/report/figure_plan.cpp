@@ -87,7 +87,8 @@ std::optional<Figure> information_figure(const PlanReport& plan, const std::stri
         i == 0 ? "plot " : ", \\\n  ", stem, i, plot::colours[i], 4 + i, gnuplot_text(all[i].title));
   }
   const plot::Extent range = across.padded(0.05);
-  figure.script = plot::look() + plot::label('x', {1.0, control}) + plot::label('y', {1.0, "information (nats)"}) +
+  figure.script = plot::common_style() + plot::label('x', {1.0, control}) +
+                  plot::label('y', {1.0, "information (nats)"}) +
                   fmt::format("set xrange [{:.10g}:{:.10g}]\nset yrange [0:{:.10g}]\n", range.low, range.high,
                               std::max(1.08 * top, 0.05)) +
                   curves;
@@ -122,7 +123,7 @@ std::optional<Figure> arrow_figure(const PlanReport& plan, const std::string& st
   }
   const plot::Extent range = both.padded(0.08);
   figure.script =
-      plot::look() + plot::label('x', {1.0, plan.about + " (errors per prior sd)"}) +
+      plot::common_style() + plot::label('x', {1.0, plan.about + " (errors per prior sd)"}) +
       plot::label('y', {1.0, other->name + " (errors per prior sd)"}) +
       fmt::format("set xrange [{0:.10g}:{1:.10g}]\nset yrange [{0:.10g}:{1:.10g}]\n", range.low, range.high) + curves;
   figure.alt = fmt::format("directions in which readings change with {} and {}", plan.about, other->name);

@@ -35,7 +35,7 @@ Figure rank_figure(const SimulationCalibration& found, const std::string& stem) 
   }
   const plot::Extent range = up.padded(0.1);
   figure.script =
-      plot::look() +
+      plot::common_style() +
       fmt::format(
           "set xlabel 'rank of the truth among the draws, as a share' textcolor rgb '{0}'\n"
           "set ylabel 'share of ranks below, minus the uniform share' textcolor rgb '{0}'\n"

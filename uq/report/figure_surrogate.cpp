@@ -38,7 +38,7 @@ Figure leave_one_out_figure(const SurrogateReport& surrogate, const std::string&
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 410};
   figure.data = plot::block("runs", {x, y, x_error, y_error});
   figure.script =
-      plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
+      plot::common_style() + plot::label('x', horizontal) + plot::label('y', vertical) +
       fmt::format("s = {:.0e}\nset size ratio 1\nset xrange [{:.10g}*s:{:.10g}*s]\n", horizontal.scale, range.low,
                   range.high) +
       fmt::format("set yrange [{:.10g}*s:{:.10g}*s]\n", range.low, range.high) +
@@ -71,7 +71,7 @@ Figure standardised_figure(const SurrogateReport& surrogate, const std::string& 
 
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 410};
   figure.data = plot::block("inside", {x, inside}) + plot::block("beyond", {x_beyond, beyond});
-  figure.script = plot::look() + plot::label('x', horizontal) +
+  figure.script = plot::common_style() + plot::label('x', horizontal) +
                   fmt::format("set ylabel 'standardised leave-one-out error' textcolor rgb '{}'\n", plot::ink) +
                   fmt::format("sx = {:.0e}\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}:{:.10g}]\n",
                               horizontal.scale, range.low, range.high, y_range.low, y_range.high) +
@@ -106,7 +106,7 @@ Figure verification_figure(const VerificationReport& round, const VerifiedValue&
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 410};
   figure.data = plot::block("runs", {x, y, x_error, y_error});
   figure.script =
-      plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
+      plot::common_style() + plot::label('x', horizontal) + plot::label('y', vertical) +
       fmt::format("s = {:.0e}\nset size ratio 1\nset xrange [{:.10g}*s:{:.10g}*s]\nset yrange [{:.10g}*s:{:.10g}*s]\n",
                   horizontal.scale, range.low, range.high, range.low, range.high) +
       fmt::format(

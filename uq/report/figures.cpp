@@ -68,7 +68,7 @@ std::string frame(const Observed& observed, const std::vector<const PredictiveCu
   const Axis vertical = plot::axis_for(one.output, one.unit, up.largest());
   const Extent x_range = across.padded(0.04);
   const Extent y_range = up.padded(0.12);
-  return plot::look() + plot::label('x', horizontal) + plot::label('y', vertical) +
+  return plot::common_style() + plot::label('x', horizontal) + plot::label('y', vertical) +
          fmt::format("sx = {:.0e}\nsy = {:.0e}\n", horizontal.scale, vertical.scale) +
          fmt::format("set xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}*sy:{:.10g}*sy]\n", x_range.low,
                      x_range.high, y_range.low, y_range.high);
@@ -204,7 +204,7 @@ Figure profile_figure(const ParameterReport& parameter, const std::string& stem)
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}, .width = 420, .height = 310};
   figure.data = plot::block("profile", {parameter.profile_x, parameter.profile_deviance});
   const Extent range = across.padded(0.02);
-  figure.script = plot::look() + plot::label('x', horizontal) +
+  figure.script = plot::common_style() + plot::label('x', horizontal) +
                   fmt::format("set ylabel '−2 Δ ln L' textcolor rgb '{}'\n", plot::ink) +
                   fmt::format("sx = {:.0e}\nset xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [0:{:.10g}]\n",
                               horizontal.scale, range.low, range.high, top);

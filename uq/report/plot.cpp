@@ -51,7 +51,7 @@ std::string block(std::string_view name, const std::vector<std::vector<double>>&
   return text + "\n\n";
 }
 
-std::string look() {
+std::string common_style() {
   return fmt::format(
       "set border 3 linecolor rgb '{0}' linewidth 1\n"
       "set tics nomirror out scale 0.6 textcolor rgb '{1}'\n"

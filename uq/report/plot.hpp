@@ -29,7 +29,7 @@ Axis axis_for(std::string_view name, std::string_view unit, double largest);
 std::string block(std::string_view name, const std::vector<std::vector<double>>& columns);
 
 /// Grid, borders and fonts, the same in every figure; the key above the plot, where it hides no data.
-std::string look();
+std::string common_style();
 
 /// set xlabel / ylabel (`which` is x or y).
 std::string label(char which, const Axis& axis);

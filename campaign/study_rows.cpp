@@ -1,4 +1,4 @@
-#include "campaign/training_rows.hpp"
+#include "campaign/study_rows.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Lines of [training] leave_out at which no row stands.
-void tell_unknown_rows(const data::Study& study, TrainingRows& rows) {
+void tell_unknown_rows(const data::Study& study, StudyRows& rows) {
   const auto stands = [&](const std::string& label) {
     const auto named = [&](const data::RunRow& row) { return data::names_row(label, row.place); };
     return std::any_of(rows.table.rows.begin(), rows.table.rows.end(), named) ||
@@ -32,7 +32,7 @@ void tell_unknown_rows(const data::Study& study, TrainingRows& rows) {
                                .places = {}});
 }
 
-void leave_out_unsteady(const Workspace& workspace, TrainingRows& rows) {
+void leave_out_unsteady(const Workspace& workspace, StudyRows& rows) {
   if (workspace.unsteady == Unsteady::use) return;
   std::map<std::string, int> left_out;
   std::erase_if(rows.table.rows, [&](const data::RunRow& row) {
@@ -50,9 +50,9 @@ void leave_out_unsteady(const Workspace& workspace, TrainingRows& rows) {
 
 }  // namespace
 
-TrainingRows training_rows(const Workspace& workspace) {
+StudyRows study_rows(const Workspace& workspace) {
   const data::Study& study = workspace.study;
-  TrainingRows result{data::empty_table(study), {}, {}, {}};
+  StudyRows result{data::empty_table(study), {}, {}, {}};
   std::map<std::string, std::string> settings;
   for (const auto& [material, unused] : workspace.cases) settings[material] = settings_hash(workspace, material);
   const auto add = [&](const std::string& path, const data::TableRead& read) {
@@ -89,7 +89,7 @@ TrainingRows training_rows(const Workspace& workspace) {
   return result;
 }
 
-void require_rows(const Workspace& workspace, const TrainingRows& rows, const std::string& study) {
+void require_rows(const Workspace& workspace, const StudyRows& rows, const std::string& study) {
   if (data::used_rows(rows.table) > 0) return;
   const std::string why = rows.notes.empty() ? "" : ": " + rows.notes.front();
   throw data::InputError(data::ExitStatus::missing_input,
