@@ -167,24 +167,44 @@ void add_sampler_warnings(CaseReport& report, const Draws& draws) {
         fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
 }
 
-constexpr const char* unconverged = "the sampler has not converged";
+/// What it is that cannot carry a verdict.
+enum class DoubtOf { nothing, surrogate, support, draws, runs };
+
+struct Doubt {
+  DoubtOf of = DoubtOf::nothing;
+  std::vector<std::string> unsupported;  ///< of each parameter, in words; as IdentifyOptions has it
+};
+
+Doubt doubt_about(const SampledCase& sampled, const std::vector<std::string>& already) {
+  const CaseModel& model = *sampled.model;
+  const bool unusable = !doubt_of(model).empty(), supported = sampled.support.supported;
+  Doubt found{.of = DoubtOf::nothing, .unsupported = already};
+  if (found.unsupported.empty()) found.unsupported = unsupported_parameters(model, sampled.support);
+  if (!found.unsupported.empty()) {
+    found.of = unusable ? DoubtOf::surrogate : supported ? DoubtOf::runs : DoubtOf::support;
+  } else if (!sampled.draws.converged) {
+    found.of = DoubtOf::draws;
+    found.unsupported.assign(static_cast<std::size_t>(model.own_count()), "the sampler has not converged");
+  }
+  return found;
+}
 
 /// Where the runs or the draws cannot carry a verdict, that is the finding, and what is printed beside it is no result.
-void doubt(CaseReport& report, Words& words, const data::Study& study) {
+void say_doubt(CaseReport& report, DoubtOf of, Words& words, const data::Study& study) {
   const bool own_engine = study.training.engine == "demcal";
   words.finding = fmt::format("No verdict: {}.{}", report.doubt,
                               report.fits ? "" : " As it stands, the surrogate does not reproduce the data either.");
   if (const std::string off = farthest_off(report.predictive); !report.fits && !off.empty()) words.finding += " " + off;
   report.traded.clear();
-  if (report.unusable) {
+  if (of == DoubtOf::surrogate) {
     words.consequence = "What the surrogate gives for the parameters is not the model's, and is not shown.";
     words.remedy = "See the surrogate's remedy above; then calibrate again.";
-  } else if (!report.support.supported) {
+  } else if (of == DoubtOf::support) {
     words.consequence = "The values are extrapolated, and no results.";
     words.remedy =
         fmt::format("Run {} of the posterior's points ({}), and calibrate again.", report.support.next_runs.size(),
                     own_engine ? "demcal train STUDY --at-posterior N" : "next-runs.csv beside the report");
-  } else if (report.doubt == unconverged) {
+  } else if (of == DoubtOf::draws) {
     words.consequence = "The values are those of draws that do not agree yet, and no results.";
     words.remedy = "Fix what the data say nothing of, or try the other sampler (--sampler nuts, --sampler mixture).";
   } else {
@@ -222,8 +242,8 @@ void add_poor_fit(Words& words, const FitCheck& check) {
   words.remedy = words.remedy == none_needed ? look : look + " " + words.remedy;
 }
 
-void add_warnings(CaseReport& report, const SampledCase& sampled) {
-  if (!report.doubt.empty() && !report.unusable && report.doubt != unconverged)
+void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
+  if (of == DoubtOf::support || of == DoubtOf::runs)
     report.warnings.push_back(fmt::format("case {}: {}", report.name, report.doubt));
   if (!sampled.draws.converged)
     report.warnings.push_back(
@@ -301,10 +321,9 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
 
   const Eigen::MatrixXd draws = sampled.draws.pooled();
   report.support = sampled.support;
+  const Doubt doubt = doubt_about(sampled, options.identify.unsupported);
   IdentifyOptions judged = options.identify;
-  if (judged.unsupported.empty()) judged.unsupported = unsupported_parameters(model, sampled.support);
-  if (judged.unsupported.empty() && !sampled.draws.converged)
-    judged.unsupported.assign(static_cast<std::size_t>(model.own_count()), unconverged);
+  judged.unsupported = doubt.unsupported;
   if (!judged.unsupported.empty()) report.doubt = judged.unsupported.front();
   report.unusable = !doubt_of(model).empty();
   Identification found = identify(model, draws, judged);
@@ -353,7 +372,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
           !hint.empty() && words.remedy.find(hint) == std::string::npos)
         words.remedy += " " + hint;
   }
-  if (!report.doubt.empty()) doubt(report, words, study);
+  if (doubt.of != DoubtOf::nothing) say_doubt(report, doubt.of, words, study);
   if (lone) {
     report.lone_reading = line_of(study, lone->origin);
     words.finding += fmt::format(" {} contradicts all others, which fit without it (p {:.2g}).",
@@ -365,7 +384,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.finding = words.finding;
   report.consequence = words.consequence;
   report.remedy = words.remedy;
-  add_warnings(report, sampled);
+  add_warnings(report, doubt.of, sampled);
   return report;
 }
 
