@@ -40,8 +40,8 @@ std::string unused_of_rig(const Case& c, std::string_view key) {
   if (has(kind_of(c))) return "";
   std::vector<std::string> names;
   for (const RigKind* kind : rig_kinds())
-    if (has(*kind)) names.push_back(fmt::format("kind = \"{}\"", kind->name));
-  return fmt::format("is of the rig{} {} only", names.size() > 1 ? "s" : "", fmt::join(names, " and "));
+    if (has(*kind)) names.push_back(fmt::format("\"{}\"", kind->name));
+  return fmt::format("is of the rig{} kind = {} only", names.size() > 1 ? "s" : "", fmt::join(names, " and "));
 }
 
 Binding of_rig(const RigQuantity& q) {
