@@ -41,7 +41,7 @@ std::string unused_of_rig(const Case& c, std::string_view key) {
   std::vector<std::string> names;
   for (const RigKind* kind : rig_kinds())
     if (has(*kind)) names.push_back(fmt::format("\"{}\"", kind->name));
-  return fmt::format("is of the rig{} kind = {} only", names.size() > 1 ? "s" : "", fmt::join(names, " and "));
+  return fmt::format("belongs to rigs of kind {} only", fmt::join(names, " and "));
 }
 
 Binding of_rig(const RigQuantity& q) {

@@ -159,7 +159,8 @@ TEST_CASE("the rig's speed drives its meshes, its dimensions do not exist, and i
   CHECK(dem::programme_speed(built.bodies[0].motion, 1.0) == -3.0);
   CHECK(dem::programme_speed(built.bodies[1].motion, 1.0) == 0.0);
   CHECK(built.sensor.driven.at(0).torque_axis.x == 1.0);
-  CHECK_THROWS_WITH(dem::set_target(c, "rig.pitch", 0.01), Catch::Contains("dimension of the slice"));
+  CHECK_THROWS_WITH(dem::set_target(c, "rig.pitch", 0.01),
+                    Catch::Contains("belongs to rigs of kind \"slice\" and \"machine\" only"));
   const std::string before = dem::settings_text(c);
   const std::vector<std::pair<std::string, std::string>> changes{
       {"speed_ratio = 1", "speed_ratio = 2"},
