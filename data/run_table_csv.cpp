@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -70,15 +71,23 @@ bool says_steadiness(const Csv& csv, std::size_t column) {
   });
 }
 
+/// Whether the table has the column of an output's standard errors, or should: one of our own, or one that has another
+/// word for an error there, which may be a standard deviation.
+bool has_errors(const Csv& csv, const std::string& output) {
+  constexpr std::array words = {"se",  "sd",    "std",   "stdev", "sem",        "stderr",
+                                "err", "error", "sigma", "unc",   "uncertainty"};
+  return csv.find("settings").has_value() || std::any_of(words.begin(), words.end(), [&](const char* word) {
+           return csv.find(output + "_" + word, Csv::Capitals::any).has_value();
+         });
+}
+
 Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) {
   Columns at;
   for (const Column& column : table.parameters) at.inputs.push_back(csv.column(column.name));
   for (const Column& column : table.controls) at.inputs.push_back(csv.column(column.name));
   for (const Column& column : table.outputs) {
     at.outputs.push_back(csv.column(column.name));
-    const std::string error = column.name + "_se";
-    const bool stated = csv.find("settings") || csv.find(error, Csv::Capitals::any);  // those of ours are
-    at.errors.push_back(stated ? std::optional(csv.column(error)) : std::nullopt);
+    at.errors.push_back(has_errors(csv, column.name) ? std::optional(csv.column(column.name + "_se")) : std::nullopt);
   }
   at.material = study.materials.size() > 1 ? csv.column("material") : csv.find("material");
   at.seed = csv.find("seed");

@@ -100,6 +100,9 @@ TEST_CASE("a table of another code without standard errors is read with none, an
   REQUIRE(read.findings.size() == 1);
   CHECK(read.findings[0].severity == data::Severity::note);
   CHECK(read.findings[0].what == "has no column torque_se: the runs' scatter is estimated");
+  // A standard deviation is no standard error, and says that there is one.
+  const auto sd = folder.write("sd.csv", "friction,cohesion,speed,warmth,torque,torque_sd\n0.4,4,60,20,8,1\n");
+  CHECK_THROWS_WITH(data::read_table(sd, study), Catch::Contains("the column 'torque_se' is missing"));
 }
 
 TEST_CASE("rows with NaN or an empty cell are left out and named") {
