@@ -162,8 +162,7 @@ void learn_from_draws(const Draws& draws, std::vector<Half>& halves, const Mixtu
 }
 
 /// What the draws miss of the maxima that were found last: how many fewer lie near each than its mass asks for,
-/// beyond two standard deviations of their number.
-/// In words; empty where it is little.
+/// beyond two standard deviations of their number. In words; empty where it is little.
 std::string missed_of(const std::vector<LastMaximum>& last, const Draws& draws, const MixtureSamplerOptions& options) {
   const Eigen::MatrixXd all = draws.pooled();
   const auto count = static_cast<double>(all.rows());
