@@ -126,10 +126,9 @@ void note_gaps(SurrogateReport& report, const data::Study& study, const FittedSu
     std::set<long> values;
     for (const double value : data.points.col(static_cast<Eigen::Index>(k))) values.insert(std::lround(1e6 * value));
     report.notes.push_back(fmt::format(
-        "{} values of {} were run, and what lies between them is doubted by up to {:.0f} % of the runs' scatter. Runs "
-        "at "
-        "other values would show it. Where the response is known to be smooth, [surrogate] between_runs = \"trusted\" "
-        "takes the doubt away",
+        "{} values of {} were run, and what lies between them is doubted by up to {:.0f} % of the runs' scatter. "
+        "Runs at other values would show it. Where the response is known to be smooth, [surrogate] "
+        "between_runs = \"trusted\" takes the doubt away",
         values.size(), input_of(study, fitted.rows.inputs[input]).name, 100.0 * widest));
   }
 }
