@@ -40,7 +40,7 @@ struct MixtureSamplerOptions {
   double local_share = 0.2;     ///< chance that a move is a local one
   double unknown_ratio = 30.0;  ///< p / (Z q) from which a place is unknown to a proposal
   double unknown_mass = 1e-4;   ///< of the whole, from which an unknown maximum joins the proposal
-  double missing_mass = 1e-2;   ///< of the whole, that the draws may lack of the maxima found last
+  double missing_mass = 2e-3;   ///< of the whole, that the draws may lack of the maxima found last
   int search_rounds = 3;        ///< in which unknown maxima are added
   int learn_again = 2;          ///< times that the proposals may be learnt anew from the draws, see 5
   double apart_max = 4.5;       ///< standard errors by which the halves may differ
