@@ -65,10 +65,26 @@ std::vector<Half> make_halves(const std::vector<Population>& populations, const 
   return halves;
 }
 
+void begin_halves(const Target& target, const Scouts& scouts, std::vector<Half>& halves,
+                  const MixtureSamplerOptions& options) {
+  const Eigen::Index share = scouts.x.rows() / options.chains;
+  for_each_index(static_cast<int>(halves.size()), options.threads, [&](int h) {
+    Half& half = halves[h];
+    const Eigen::Index first = static_cast<Eigen::Index>(half.chains.front()) * share,
+                       count = static_cast<Eigen::Index>(half.chains.size()) * share;
+    Proposals sent{.x = scouts.x.middleRows(first, count),
+                   .log_density = scouts.log_density.segment(first, count),
+                   .log_proposal = Eigen::VectorXd(count),
+                   .tries = static_cast<double>(count)};
+    for (Eigen::Index i = 0; i < count; ++i)
+      sent.log_proposal[i] = target.reference.log_density(sent.x.row(i).transpose());
+    half.proposal = begin_proposal(half.archive, sent, half.random, options.proposal);
+  });
+}
+
 void adapt_halves(const Target& target, std::vector<Half>& halves, const MixtureSamplerOptions& options) {
   for_each_index(static_cast<int>(halves.size()), options.threads, [&](int h) {
     Half& half = halves[h];
-    if (half.proposal.points.size() == 0) half.proposal = begin_proposal(half.archive, half.random, options.proposal);
     adapt(target, half.proposal, half.random, options.proposal);
   });
 }

@@ -19,6 +19,10 @@ struct Half {
 /// Two halves, or one where there are not four chains to share.
 std::vector<Half> make_halves(const std::vector<Population>& populations, const MixtureSamplerOptions& options);
 
+/// Begins the proposals with what the scouts found, each half with those of its own chains.
+void begin_halves(const Target& target, const Scouts& scouts, std::vector<Half>& halves,
+                  const MixtureSamplerOptions& options);
+
 /// Begins the proposals, or goes on with them after modes were added.
 void adapt_halves(const Target& target, std::vector<Half>& halves, const MixtureSamplerOptions& options);
 

@@ -155,9 +155,10 @@ void learn_from_draws(const Draws& draws, std::vector<Half>& halves, const Mixtu
     const Eigen::Index count = std::min<Eigen::Index>(rows, options.proposal.points_max);
     Eigen::MatrixXd points(count, all.cols());
     for (Eigen::Index i = 0; i < count; ++i) points.row(i) = all.row(i * rows / count);
-    const std::int64_t evaluations = half.proposal.evaluations;
+    const Adaptation before = std::move(half.proposal);
     half.proposal = begin_proposal(points, half.random, options.proposal);
-    half.proposal.evaluations = evaluations;
+    half.proposal.evaluations = before.evaluations;
+    half.proposal.kept = before.kept;
   }
 }
 
@@ -210,6 +211,7 @@ Draws sample_as_given(const Target& target, const MixtureSamplerOptions& given) 
 
   // The proposals of the two halves, and what both do not know.
   std::vector<Half> halves = make_halves(populations, options);
+  begin_halves(target, scouts, halves, options);
   adapt_halves(target, halves, options);
   const std::vector<LastMaximum> last = find_unknown(target, scouts, populations[best], halves, options, result);
   for (int learnt = 0;; ++learnt) {

@@ -7,8 +7,9 @@
 //
 // 1. Scouts are drawn from the reference (uq/infer/explore.hpp). Each chain tempers a population of its own from its share of
 //    them (uq/infer/tempering.hpp): over-dispersed starts.
-// 2. The chains are two halves. For each a proposal is adapted to the populations of its own chains (uq/infer/proposal.hpp),
-//    so that what one lost the other may have. Maxima that a search finds and the proposals do not know join both.
+// 2. The chains are two halves. For each a proposal is adapted to the populations of its own chains and to their scouts,
+//    weighted (uq/infer/proposal.hpp), so that what one lost the other may have. Maxima that a search finds and the
+//    proposals do not know join both, and stay: a fit to some thousand points loses what holds half a per cent.
 //    After this nothing adapts.
 // 3. A chain starts at a point of its own population. Each move is, by chance, an independence proposal from the
 // mixture

@@ -30,6 +30,22 @@ void thin(Adaptation& state, Eigen::Index count, data::RandomStream& random) {
                  static_cast<double>(count);
 }
 
+/// Weighted draws join what is known, in proportion to how well they stand for the density; large weights are cut at
+/// sqrt(n) times the mean (E. L. Ionides, J. Comput. Graph. Stat. 17 (2008) 295), so that one of them cannot make a
+/// component of its own. `before`: how many draws the points stand for.
+void gather(Adaptation& state, const Proposals& made, const Weights& weights, double before, double trust_min) {
+  const double count = static_cast<double>(made.x.rows());
+  const double cut = weights.values.mean() * std::sqrt(count);
+  const Eigen::VectorXd cut_weights = weights.values.cwiseMin(cut);
+  const double trust = std::max(weights.efficiency, trust_min) * count;
+  Eigen::MatrixXd all(state.points.rows() + made.x.rows(), made.x.cols());
+  all << state.points, made.x;
+  Eigen::VectorXd shares(all.rows());
+  shares << state.shares * before / (before + trust), cut_weights * (trust / (before + trust) / cut_weights.sum());
+  state.points = std::move(all);
+  state.shares = std::move(shares);
+}
+
 }  // namespace
 
 Adaptation begin_proposal(const Eigen::MatrixXd& points, data::RandomStream& random, const ProposalOptions& options) {
@@ -38,6 +54,20 @@ Adaptation begin_proposal(const Eigen::MatrixXd& points, data::RandomStream& ran
   state.best = state.current;
   state.points = points;
   state.shares = even;
+  return state;
+}
+
+Adaptation begin_proposal(const Eigen::MatrixXd& points, const Proposals& made, data::RandomStream& random,
+                          const ProposalOptions& options) {
+  Adaptation state;
+  state.points = points;
+  state.shares = Eigen::VectorXd::Constant(points.rows(), 1.0 / static_cast<double>(points.rows()));
+  const Weights weights = importance_weights(made);
+  if (weights.efficiency > 0.0) {
+    gather(state, made, weights, 0.5 * static_cast<double>(points.rows()), 0.0);
+    thin(state, options.points_max, random);
+  }
+  state.current = state.best = fit_mixture(state.points, state.shares, random, options.mixture);
   return state;
 }
 
@@ -60,22 +90,12 @@ void adapt(const Target& target, Adaptation& state, data::RandomStream& random, 
     const bool hard = state.efficiency < options.poor && misses < 4;
     if (state.efficiency > 0.85 || (refit > 1 && !better && !hard) || weights.efficiency == 0.0) break;
     if (refit >= (hard ? options.hard_refits_max : options.refits_max)) break;
-    // Weighted draws join what is known, in proportion to how well they stand for the density; large weights are cut at
-    // sqrt(n) times the mean (E. L. Ionides, J. Comput. Graph. Stat. 17 (2008) 295), so that one of them cannot make a
-    // component of its own.
-    const double cut = weights.values.mean() * std::sqrt(static_cast<double>(count));
-    const Eigen::VectorXd cut_weights = weights.values.cwiseMin(cut);
-    const double trust = std::max(weights.efficiency, 0.05) * count;
     const double before =
         refit == 0 ? 0.5 * static_cast<double>(first_points) : static_cast<double>(state.points.rows());
-    Eigen::MatrixXd all(state.points.rows() + made.x.rows(), target.dimension);
-    all << state.points, made.x;
-    Eigen::VectorXd shares(all.rows());
-    shares << state.shares * before / (before + trust), cut_weights * (trust / (before + trust) / cut_weights.sum());
-    state.points = std::move(all);
-    state.shares = std::move(shares);
+    gather(state, made, weights, before, 0.05);
     thin(state, options.points_max, random);
-    state.current = fit_mixture(state.points, state.shares, random, options.mixture, &state.current);
+    state.current =
+        with_kept(fit_mixture(state.points, state.shares, random, options.mixture, &state.current), state.kept);
   }
 }
 
@@ -89,6 +109,10 @@ void add_modes(Adaptation& state, const std::vector<Peak>& modes, double share) 
   // Nothing is known of how good it is.
   state.best = state.current;
   state.efficiency = 0.0;
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    added[i].weight = std::clamp(2.0 * std::exp(modes[i].log_mass - state.log_evidence), 0.002, 0.1);
+    state.kept.push_back(added[i]);
+  }
 }
 
 }  // namespace uq

@@ -23,11 +23,15 @@ struct Adaptation {
   double log_evidence = nowhere;
   Eigen::MatrixXd points = {};  ///< gathered so far, with their shares
   Eigen::VectorXd shares = {};
+  std::vector<MixtureComponent> kept = {};  ///< modes that joined, which a fit to few points would lose again
   std::int64_t evaluations = 0;
 };
 
 /// To points of equal weight.
 Adaptation begin_proposal(const Eigen::MatrixXd& points, data::RandomStream& random, const ProposalOptions& options);
+/// To points of equal weight and to weighted draws of any proposal, which count as far as they stand for the density.
+Adaptation begin_proposal(const Eigen::MatrixXd& points, const Proposals& made, data::RandomStream& random,
+                          const ProposalOptions& options);
 /// To its own weighted draws.
 void adapt(const Target& target, Adaptation& state, data::RandomStream& random, const ProposalOptions& options);
 /// Puts a component at each mode, `share` of the weight in all.

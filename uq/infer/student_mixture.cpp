@@ -247,6 +247,20 @@ Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weight
   return mixture;
 }
 
+Mixture with_kept(Mixture mixture, const std::vector<MixtureComponent>& kept) {
+  if (kept.empty()) return mixture;
+  double share = 0.0;
+  for (const auto& component : kept) share += component.weight;
+  const double scale = std::min(1.0, 0.5 / share);
+  for (auto& component : mixture.components) component.weight *= 1.0 - scale * share;
+  for (const auto& component : kept) {
+    mixture.components.push_back(component);
+    mixture.components.back().weight *= scale;
+  }
+  weigh(mixture, 1.0);
+  return mixture;
+}
+
 Mixture with_components(Mixture mixture, const std::vector<MixtureComponent>& added) {
   double share = 0.0;
   for (const auto& component : added) share += component.weight;

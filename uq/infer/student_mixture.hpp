@@ -42,6 +42,9 @@ struct MixtureOptions {
 Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, data::RandomStream& random,
                     const MixtureOptions& options = {}, const Mixture* before = nullptr);
 
+/// With components at its end that no fit to points moves, whose weights are shares of the whole; at most half of it.
+Mixture with_kept(Mixture mixture, const std::vector<MixtureComponent>& kept);
+
 /// With further components, whose weights are shares of the whole.
 Mixture with_components(Mixture mixture, const std::vector<MixtureComponent>& added);
 
