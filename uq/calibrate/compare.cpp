@@ -34,12 +34,14 @@ std::string plain_error(double error) {
 }
 
 /// The evidence on each side is the mean over the torques that the surrogate allows, so its doubt is in the Bayes
-/// factor, and the words follow from that. The error says how far the factor of one of these torques alone may lie from
-/// it, sampling included.
+/// factor, and the words follow from that. What a sharper surrogate, that is one of these torques alone, may change is
+/// said beside it.
 std::string in_words(const ModelComparison& found, const std::string& names) {
-  std::string number = fmt::format("ln Bayes factor {:.1f} +- {}", found.log_bayes_factor, plain_error(found.error));
+  std::string number =
+      fmt::format("ln Bayes factor {:.1f} +- {}", found.log_bayes_factor, plain_error(found.sampling_error));
   if (found.surrogate_error > std::max(found.sampling_error, 0.1 * std::abs(found.log_bayes_factor)))
-    number += ", most of it the surrogate's";
+    number += fmt::format(", the mean over all that the surrogate leaves open; a sharper one may move it by {}",
+                          plain_error(found.surrogate_error));
   constexpr const char* caveat = "a wider prior range of what is held would lower it";
   if (std::abs(found.log_bayes_factor) < 1.0 + 2.0 * found.sampling_error)
     return fmt::format("The data do not decide between {} and {} free ({}; {}).", found.held, names, number, caveat);
