@@ -25,8 +25,8 @@ data::ExitStatus check_width(const Common& common, const Workspace& workspace,
   make_out(workspace, "figures");
   for (std::size_t i = 0; i < workspace.study.cases.size(); ++i) {
     const uq::CaseModel model = uq::build_case(workspace.study, emulators, i);
-    if (std::any_of(model.slots.begin(), model.slots.end(),
-                    [](const uq::Slot& slot) { return !slot.cut_from.empty(); })) {
+    if (std::any_of(model.unknowns.begin(), model.unknowns.end(),
+                    [](const uq::Unknown& unknown) { return !unknown.cut_from.empty(); })) {
       say(common, model.name + ": a cut posterior is not that of its own data, so its ranks are not checked");
       continue;
     }

@@ -103,7 +103,7 @@ std::shared_ptr<const uq::CaseModel> make_model(const Function& function, const 
   for (const char* name : {"theta1", "theta2"}) {
     data::Parameter parameter;
     parameter.name = name;
-    model->slots.push_back({.label = name, .prior = uq::ScaledPrior(parameter, parameter.prior), .cut = {}});
+    model->unknowns.push_back({.label = name, .prior = uq::ScaledPrior(parameter, parameter.prior), .cut = {}});
   }
   for (Index k = 0; k < runs.y.cols(); ++k) {
     surrogate::FitOptions fit = settings.fit;
@@ -112,7 +112,7 @@ std::shared_ptr<const uq::CaseModel> make_model(const Function& function, const 
         runs.x, runs.y.col(k), VectorXd::Constant(runs.x.rows(), std::pow(settings.noise, 2) * function.variance[k])};
     uq::RowGroup group{.emulator = {},
                        .base = MatrixXd::Zero(1, 2),
-                       .slot = Eigen::RowVector2i(0, 1),
+                       .unknown = Eigen::RowVector2i(0, 1),
                        .observed = function.observed.segment(k, 1),
                        .variance = function.variance.segment(k, 1),
                        .origin = {{}},

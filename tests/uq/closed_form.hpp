@@ -11,7 +11,7 @@
 
 namespace closed_form {
 
-struct Unknown {
+struct FreeParameter {
   std::string name;
   double low = 0.0, high = 1.0;
   data::Prior prior = {};  // uniform on the range unless its kind or bounds say otherwise
@@ -22,7 +22,7 @@ struct Unknown {
 /// Model value at (parameters in SI, x).
 using Formula = std::function<double(const Eigen::VectorXd& parameters, double x)>;
 
-inline data::Parameter parameter_of(const Unknown& unknown) {
+inline data::Parameter parameter_of(const FreeParameter& unknown) {
   data::Parameter parameter;
   parameter.name = unknown.name;
   parameter.unit.factor = unknown.unit_factor;
@@ -38,19 +38,19 @@ inline data::Parameter parameter_of(const Unknown& unknown) {
 }
 
 /// y measured at x with the given sd; the emulator is the formula itself, without error.
-inline uq::CaseModel make_case(const std::vector<Unknown>& unknowns, const Formula& formula, const Eigen::VectorXd& x,
-                               const Eigen::VectorXd& y, const Eigen::VectorXd& sd) {
-  uq::CaseModel model{.name = "closed form", .slots = {}, .groups = {}, .linked = {}, .observed_sets = {}};
+inline uq::CaseModel make_case(const std::vector<FreeParameter>& unknowns, const Formula& formula,
+                               const Eigen::VectorXd& x, const Eigen::VectorXd& y, const Eigen::VectorXd& sd) {
+  uq::CaseModel model{.name = "closed form", .unknowns = {}, .groups = {}, .linked = {}, .observed_sets = {}};
   std::vector<data::Parameter> parameters;
   for (const auto& unknown : unknowns) {
     parameters.push_back(parameter_of(unknown));
-    model.slots.push_back(
+    model.unknowns.push_back(
         {.label = unknown.name, .prior = uq::ScaledPrior(parameters.back(), parameters.back().prior), .cut = {}});
   }
   const auto d = static_cast<Eigen::Index>(unknowns.size());
   uq::RowGroup group{.emulator = {},
                      .base = Eigen::MatrixXd::Zero(x.size(), d + 1),
-                     .slot = Eigen::MatrixXi::Constant(x.size(), d + 1, -1),
+                     .unknown = Eigen::MatrixXi::Constant(x.size(), d + 1, -1),
                      .observed = y,
                      .variance = sd.cwiseAbs2(),
                      .origin = {},
@@ -68,7 +68,7 @@ inline uq::CaseModel make_case(const std::vector<Unknown>& unknowns, const Formu
     }
     return found;
   };
-  for (Eigen::Index k = 0; k < d; ++k) group.slot.col(k).setConstant(static_cast<int>(k));
+  for (Eigen::Index k = 0; k < d; ++k) group.unknown.col(k).setConstant(static_cast<int>(k));
   group.base.col(d) = x;
   for (Eigen::Index i = 0; i < x.size(); ++i) group.origin.push_back({0, static_cast<std::size_t>(i), 0});
   uq::find_coordinates(group, static_cast<int>(d));
@@ -77,7 +77,7 @@ inline uq::CaseModel make_case(const std::vector<Unknown>& unknowns, const Formu
 }
 
 /// The same with y from the formula at `truth` plus normal noise of the stated sd, index `index`.
-inline uq::CaseModel make_synthetic(const std::vector<Unknown>& unknowns, const Formula& formula,
+inline uq::CaseModel make_synthetic(const std::vector<FreeParameter>& unknowns, const Formula& formula,
                                     const Eigen::VectorXd& x, const Eigen::VectorXd& truth, double relative_error,
                                     std::uint32_t index) {
   Eigen::VectorXd y(x.size()), sd(x.size());

@@ -96,9 +96,9 @@ std::optional<WithoutRuns> without_runs(const data::Study& study, const std::vec
   for (std::size_t k = 0; k < without.parameters.size(); ++k) {
     const ParameterAgain& other = without.parameters[k];
     const auto column = static_cast<Eigen::Index>(k);
-    const Slot& slot = sampled.model->slots[k];
+    const Unknown& unknown = sampled.model->unknowns[k];
     Eigen::VectorXd values = draws.col(column);
-    for (double& value : values) value = in_study_unit(slot.prior.parameter(), value);
+    for (double& value : values) value = in_study_unit(unknown.prior.parameter(), value);
     const double sd = std::sqrt((values.array() - values.mean()).square().mean());
     matters =
         matters || std::abs(values.mean() - other.mean) > 0.5 * other.sd || sd > 1.5 * other.sd || sd < other.sd / 1.5;

@@ -61,9 +61,9 @@ std::vector<ModelComparison> compare_models(const data::Study& study, const Samp
   std::vector<Held> held;
   for (const auto& [name, value] : item.held) {
     const data::Parameter& parameter = study.parameters[*study.parameter_index(name)];
-    const auto slot = std::find_if(sampled.model->slots.begin(), sampled.model->slots.end(),
-                                   [label = name](const Slot& one) { return one.label == label; });
-    held.push_back({.coordinate = static_cast<int>(slot - sampled.model->slots.begin()),
+    const auto unknown = std::find_if(sampled.model->unknowns.begin(), sampled.model->unknowns.end(),
+                                      [label = name](const Unknown& one) { return one.label == label; });
+    held.push_back({.coordinate = static_cast<int>(unknown - sampled.model->unknowns.begin()),
                     .value = parameter.axis().to_unit(value)});
     found.held += fmt::format("{}{} = {:.4g}{}", found.held.empty() ? "" : ", ", name, parameter.unit.from_si(value),
                               behind_number(parameter.unit.symbol));

@@ -171,8 +171,8 @@ void chain_dimensions(Group& group, const Draws& draws) {
 }
 
 /// "zirconia-800: friction" is no name of a variable.
-std::string variable_name(const Slot& slot) {
-  std::string name = slot.label;
+std::string variable_name(const Unknown& unknown) {
+  std::string name = unknown.label;
   if (const auto colon = name.find(": "); colon != std::string::npos) name.replace(colon, 2, "__");
   return name;
 }
@@ -181,12 +181,12 @@ void write_unknowns(const File& file, const SampledCase& sampled) {
   Group group(file, "posterior");
   chain_dimensions(group, sampled.draws);
   for (int k = 0; k < sampled.model->dimension(); ++k) {
-    const Slot& slot = sampled.model->slots[k];
-    const data::Parameter& parameter = slot.prior.parameter();
+    const Unknown& unknown = sampled.model->unknowns[k];
+    const data::Parameter& parameter = unknown.prior.parameter();
     std::vector<double> values;
     for (const auto& chain : sampled.draws.chains)
       for (const double u : chain.x.col(k)) values.push_back(in_study_unit(parameter, u));
-    group.doubles(variable_name(slot), {"chain", "draw"}, values, parameter.unit.symbol);
+    group.doubles(variable_name(unknown), {"chain", "draw"}, values, parameter.unit.symbol);
   }
 }
 
@@ -274,18 +274,19 @@ void write_posterior(const std::string& path, const data::Study& study, const Sa
 
 std::string draws_csv(const SampledCase& sampled) {
   std::string units = "# units:", head = "chain,draw", rows;
-  for (const Slot& slot : sampled.model->slots) {
-    const std::string& unit = slot.prior.parameter().unit.symbol;
-    units += fmt::format("{} {} [{}]", head == "chain,draw" ? "" : ",", variable_name(slot), unit.empty() ? "1" : unit);
-    head += fmt::format(",{}", data::csv_field(variable_name(slot)));
+  for (const Unknown& unknown : sampled.model->unknowns) {
+    const std::string& unit = unknown.prior.parameter().unit.symbol;
+    units +=
+        fmt::format("{} {} [{}]", head == "chain,draw" ? "" : ",", variable_name(unknown), unit.empty() ? "1" : unit);
+    head += fmt::format(",{}", data::csv_field(variable_name(unknown)));
   }
   for (std::size_t c = 0; c < sampled.draws.chains.size(); ++c) {
     const auto& chain = sampled.draws.chains[c];
     for (Eigen::Index i = 0; i < chain.x.rows(); ++i) {
       rows += fmt::format("{},{}", c, i);
       for (int k = 0; k < sampled.model->dimension(); ++k) {
-        const Slot& slot = sampled.model->slots[k];
-        rows += fmt::format(",{:.10g}", in_study_unit(slot.prior.parameter(), chain.x(i, k)));
+        const Unknown& unknown = sampled.model->unknowns[k];
+        rows += fmt::format(",{:.10g}", in_study_unit(unknown.prior.parameter(), chain.x(i, k)));
       }
       rows += fmt::format(",{:.10g}\n", chain.log_density[i]);
     }

@@ -27,7 +27,7 @@ void add_diagnostics(CaseReport& report, const SampledCase& sampled) {
     parameter.rhat = sampled.draws.rhat[column];
     parameter.ess_bulk = sampled.draws.ess_bulk[column];
     parameter.ess_tail = sampled.draws.ess_tail[column];
-    const data::Parameter& source = sampled.model->slots[k].prior.parameter();
+    const data::Parameter& source = sampled.model->unknowns[k].prior.parameter();
     Eigen::MatrixXd values = sampled.draws.coordinate(static_cast<int>(k));
     for (double& value : values.reshaped()) value = in_study_unit(source, value);
     parameter.mcse = mean_mcse(values);
@@ -36,7 +36,7 @@ void add_diagnostics(CaseReport& report, const SampledCase& sampled) {
 
 void add_nuisances(CaseReport& report, const SampledCase& sampled) {
   for (int k = 0; k < sampled.model->dimension(); ++k)
-    if (sampled.model->slots[k].nuisance != Acts::none) report.nuisances.push_back(summary_of(sampled, k));
+    if (sampled.model->unknowns[k].nuisance != Acts::none) report.nuisances.push_back(summary_of(sampled, k));
 }
 
 /// Separate regions of the posterior, in the study's units. Where the sampler has missed one, it has not converged.
@@ -45,10 +45,10 @@ void add_modes(CaseReport& report, const CaseModel& model, const Identification&
     for (const Mode& mode : found.modes) {
       ModeReport made{.weight = mode.weight, .mean = {}, .sd = {}};
       for (int k = 0; k < model.own_count(); ++k) {
-        const Slot& slot = model.slots[k];
-        const data::Unit& unit = slot.prior.parameter().unit;
-        made.mean[slot.label] = in_study_unit(slot.prior.parameter(), mode.mean[k]);
-        made.sd[slot.label] = mode.sd[k] * std::abs(slot.slope(mode.mean[k])) / unit.factor;
+        const Unknown& unknown = model.unknowns[k];
+        const data::Unit& unit = unknown.prior.parameter().unit;
+        made.mean[unknown.label] = in_study_unit(unknown.prior.parameter(), mode.mean[k]);
+        made.sd[unknown.label] = mode.sd[k] * std::abs(unknown.slope(mode.mean[k])) / unit.factor;
       }
       report.modes.push_back(std::move(made));
     }
@@ -65,7 +65,7 @@ void add_draws(CaseReport& report, const CaseModel& model, const Eigen::MatrixXd
   const Eigen::Index own = model.own_count();
   Eigen::MatrixXd values = draws.leftCols(own);
   for (Eigen::Index k = 0; k < own; ++k) {
-    const data::Parameter& parameter = model.slots[k].prior.parameter();
+    const data::Parameter& parameter = model.unknowns[k].prior.parameter();
     for (Eigen::Index i = 0; i < values.rows(); ++i) values(i, k) = in_study_unit(parameter, values(i, k));
   }
   const Eigen::MatrixXd centred = values.rowwise() - values.colwise().mean();
@@ -136,7 +136,7 @@ void take_cut_verdicts(Identification& found, const SampledCase& sampled, const 
   for (const auto& source : sampled.cut_sources) {
     const Identification of_source = identify(*source->model, source->draws.pooled(), options.identify);
     for (std::size_t k = 0; k < found.parameters.size(); ++k) {
-      if (sampled.model->slots[k].cut_from != source->model->name) continue;
+      if (sampled.model->unknowns[k].cut_from != source->model->name) continue;
       for (const ParameterReport& known : of_source.parameters)
         if (known.name == found.parameters[k].name) {
           found.parameters[k] = known;
@@ -259,32 +259,32 @@ void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
                     "about the model); what it takes, the parameters need not explain",
                     report.name, 100.0 * largest));
   }
-  for (const auto& slot : sampled.model->slots)
-    if (slot.nuisance == Acts::none && slot.prior.kept_mass() < 0.99)
+  for (const auto& unknown : sampled.model->unknowns)
+    if (unknown.nuisance == Acts::none && unknown.prior.kept_mass() < 0.99)
       report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
-                                            slot.label, 100.0 * (1.0 - slot.prior.kept_mass())));
+                                            unknown.label, 100.0 * (1.0 - unknown.prior.kept_mass())));
 }
 
 }  // namespace
 
-NuisanceReport summary_of(const SampledCase& sampled, int unknown) {
-  const Slot& slot = sampled.model->slots[unknown];
-  const data::Unit& unit = slot.prior.parameter().unit;
-  Eigen::VectorXd values = sampled.draws.coordinate(unknown).reshaped();
-  for (double& value : values) value = in_study_unit(slot.prior.parameter(), value);
+NuisanceReport summary_of(const SampledCase& sampled, int k) {
+  const Unknown& unknown = sampled.model->unknowns[k];
+  const data::Unit& unit = unknown.prior.parameter().unit;
+  Eigen::VectorXd values = sampled.draws.coordinate(k).reshaped();
+  for (double& value : values) value = in_study_unit(unknown.prior.parameter(), value);
   const double mean = values.mean();
-  return {.name = slot.label,
+  return {.name = unknown.label,
           .unit = unit.symbol,
-          .prior_mean = unit.from_si(slot.prior.value_mean()),
-          .prior_sd = slot.prior.value_sd() / unit.factor,
+          .prior_mean = unit.from_si(unknown.prior.value_mean()),
+          .prior_sd = unknown.prior.value_sd() / unit.factor,
           .mean = mean,
           .sd = std::sqrt((values.array() - mean).square().sum() / static_cast<double>(values.size() - 1)),
           .q05 = quantile(values, 0.05),
           .q50 = quantile(values, 0.50),
           .q95 = quantile(values, 0.95),
-          .rhat = sampled.draws.rhat[unknown],
-          .ess_bulk = sampled.draws.ess_bulk[unknown],
-          .ess_tail = sampled.draws.ess_tail[unknown]};
+          .rhat = sampled.draws.rhat[k],
+          .ess_bulk = sampled.draws.ess_bulk[k],
+          .ess_tail = sampled.draws.ess_tail[k]};
 }
 
 CaseReport report_case(const data::Study& study, const SampledCase& sampled, const CalibrateOptions& options) {
@@ -304,8 +304,8 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.divergences = sampled.draws.divergences;
   report.sampler = sampled.draws.sampler;
   report.search = search_in_words(sampled.draws);
-  for (const auto& slot : model.slots)
-    if (!slot.cut_from.empty()) report.cuts.push_back(slot.label + " from " + slot.cut_from);
+  for (const auto& unknown : model.unknowns)
+    if (!unknown.cut_from.empty()) report.cuts.push_back(unknown.label + " from " + unknown.cut_from);
   report.log_evidence = sampled.draws.log_evidence;
   report.log_evidence_error = sampled.draws.log_evidence_error;
   if (sampled.draws.chains.empty()) {

@@ -15,14 +15,14 @@ namespace {
 /// Index of the unknown of this name in another case's model.
 int unknown_of(const CaseModel& model, const std::string& name) {
   for (int k = 0; k < model.dimension(); ++k)
-    if (model.slots[k].label == name) return k;
+    if (model.unknowns[k].label == name) return k;
   return -1;
 }
 
 /// The sampled case whose posterior an unknown has.
-const SampledCase& source_of(const SampledCase& sampled, const Slot& slot) {
+const SampledCase& source_of(const SampledCase& sampled, const Unknown& unknown) {
   const auto found = std::find_if(sampled.cut_sources.begin(), sampled.cut_sources.end(),
-                                  [&](const auto& source) { return source->model->name == slot.cut_from; });
+                                  [&](const auto& source) { return source->model->name == unknown.cut_from; });
   return **found;
 }
 
@@ -31,11 +31,11 @@ GivenDraws given_draws(const SampledCase& sampled) {
   GivenDraws given;
   const CaseModel& model = *sampled.model;
   for (int k = 0; k < model.dimension(); ++k)
-    if (!model.slots[k].cut_from.empty()) given.unknowns.push_back(k);
-  for (const int unknown : given.unknowns) {
-    const Slot& slot = model.slots[unknown];
-    const SampledCase& source = source_of(sampled, slot);
-    const Eigen::MatrixXd column = source.draws.coordinate(unknown_of(*source.model, slot.label));
+    if (!model.unknowns[k].cut_from.empty()) given.unknowns.push_back(k);
+  for (const int k : given.unknowns) {
+    const Unknown& unknown = model.unknowns[k];
+    const SampledCase& source = source_of(sampled, unknown);
+    const Eigen::MatrixXd column = source.draws.coordinate(unknown_of(*source.model, unknown.label));
     const Eigen::Index rows =
         given.chains.empty() ? column.rows() : std::min(column.rows(), given.chains.front().rows());
     given.chains.resize(static_cast<std::size_t>(column.cols()), Eigen::MatrixXd(rows, 0));
@@ -82,24 +82,25 @@ SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& e
   const data::CalibrationCase& item = study.cases.at(case_index);
   SampledCase sampled{.model = nullptr, .draws = {}, .sampler = options.sampler.value_or(item.sampler)};
   CaseModel model = build_case(study, emulators, case_index);
-  for (Slot& slot : model.slots) {
-    if (slot.cut_from.empty()) continue;
+  for (Unknown& unknown : model.unknowns) {
+    if (unknown.cut_from.empty()) continue;
     const auto known = std::find_if(sampled.cut_sources.begin(), sampled.cut_sources.end(),
-                                    [&](const auto& source) { return source->model->name == slot.cut_from; });
+                                    [&](const auto& source) { return source->model->name == unknown.cut_from; });
     if (known == sampled.cut_sources.end()) {
-      const auto from = std::find_if(study.cases.begin(), study.cases.end(),
-                                     [&](const data::CalibrationCase& other) { return other.name == slot.cut_from; });
+      const auto from = std::find_if(study.cases.begin(), study.cases.end(), [&](const data::CalibrationCase& other) {
+        return other.name == unknown.cut_from;
+      });
       sampled.cut_sources.push_back(std::make_shared<const SampledCase>(
           sample_case(study, emulators, static_cast<std::size_t>(from - study.cases.begin()), options)));
     }
-    const SampledCase& source = source_of(sampled, slot);
+    const SampledCase& source = source_of(sampled, unknown);
     if (source.draws.chains.empty()) {
       sampled.model = std::make_shared<const CaseModel>(std::move(model));
       sampled.draws.reason = fmt::format("case '{}', whose posterior it takes, has no draws", source.model->name);
       return sampled;
     }
-    const Eigen::VectorXd u = source.draws.pooled().col(unknown_of(*source.model, slot.label));
-    slot.cut = NormalLaw{.mean = u.mean(), .sd = std::sqrt((u.array() - u.mean()).square().mean())};
+    const Eigen::VectorXd u = source.draws.pooled().col(unknown_of(*source.model, unknown.label));
+    unknown.cut = NormalLaw{.mean = u.mean(), .sd = std::sqrt((u.array() - u.mean()).square().mean())};
   }
   sampled.model = std::make_shared<const CaseModel>(std::move(model));
   check_priors(study, *sampled.model);

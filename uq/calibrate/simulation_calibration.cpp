@@ -68,7 +68,7 @@ struct Replicate {
 Replicate replicate(const CaseModel& model, const SimulationOptions& options, int index) {
   data::RandomStream random(options.seed, data::Purpose::simulated_truth, static_cast<std::uint32_t>(index));
   Eigen::VectorXd truth(model.dimension());
-  for (Eigen::Index s = 0; s < truth.size(); ++s) truth[s] = model.slots[s].prior.draw(random);
+  for (Eigen::Index s = 0; s < truth.size(); ++s) truth[s] = model.unknowns[s].prior.draw(random);
   const StackedPrediction prediction = predict(model, truth);
   const Factor root = factor(prediction.total(), "simulated data");
   Eigen::VectorXd y(prediction.mean.size());
@@ -142,7 +142,7 @@ SimulationCalibration simulate_calibration(const CaseModel& model, const Simulat
                               .band_low = {},
                               .band_high = {},
                               .unknowns = {}};
-  for (int s = 0; s < model.dimension(); ++s) found.unknowns.push_back({.name = model.slots[s].label, .ranks = {}});
+  for (int s = 0; s < model.dimension(); ++s) found.unknowns.push_back({.name = model.unknowns[s].label, .ranks = {}});
   for (const Replicate& one : replicates) {
     if (!one.converged) {
       ++found.failed;

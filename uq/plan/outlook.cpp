@@ -27,7 +27,7 @@ Outlook::Outlook(const ExtendedCase& extended, const MatrixXd& draws, Given give
   values_.resize(draws.rows(), model.own_count());
   for (Index i = 0; i < draws.rows(); ++i)
     for (Index k = 0; k < values_.cols(); ++k) {
-      values_(i, k) = in_study_unit(model.slots[k].prior.parameter(), draws(i, k));
+      values_(i, k) = in_study_unit(model.unknowns[k].prior.parameter(), draws(i, k));
     }
   laws_.resize(static_cast<std::size_t>(draws.rows()));
   for_each_index(static_cast<int>(draws.rows()), threads, [&](int job) {
@@ -62,7 +62,7 @@ PriorDraws prior_draws(const CaseModel& model, int count, int readings, std::uin
   const MatrixXd cube = surrogate::scrambled_sobol(count, unknowns + readings, seed);
   PriorDraws draws{MatrixXd(count, unknowns), MatrixXd(count, readings)};
   for (Index i = 0; i < count; ++i) {
-    for (Index s = 0; s < unknowns; ++s) draws.u(i, s) = model.slots[s].prior.inverse_cdf(cube(i, s));
+    for (Index s = 0; s < unknowns; ++s) draws.u(i, s) = model.unknowns[s].prior.inverse_cdf(cube(i, s));
     for (Index r = 0; r < readings; ++r) draws.noise(i, r) = gsl_cdf_ugaussian_Pinv(cube(i, unknowns + r));
   }
   return draws;

@@ -130,7 +130,7 @@ void add_arrows(const PlanBasis& basis, PlanReport& report, const std::vector<st
       PlanArrow arrow{.output = basis.study.outputs[candidate.outputs.front()].name,
                       .parameter = basis.name_of(k),
                       .setting = named_controls(basis.study, candidate.settings.front())};
-      arrow.change = slopes(row, k) * model.slots[k].prior.sd() / std::sqrt(prediction.noise[row]);
+      arrow.change = slopes(row, k) * model.unknowns[k].prior.sd() / std::sqrt(prediction.noise[row]);
       report.arrows.push_back(std::move(arrow));
     }
   }

@@ -51,7 +51,7 @@ int parameter_index(const Study& study, std::size_t case_index, const CaseModel&
   }
   std::vector<std::string> names;
   for (int k = 0; k < model.own_count(); ++k) {
-    names.push_back(model.slots[k].label);
+    names.push_back(model.unknowns[k].label);
     if (names.back() == name) return k;
   }
   throw data::InputError(data::ExitStatus::bad_study,
@@ -62,7 +62,7 @@ int parameter_index(const Study& study, std::size_t case_index, const CaseModel&
 
 VectorXd prior_means(const CaseModel& model) {
   VectorXd means(model.dimension());
-  for (Index s = 0; s < means.size(); ++s) means[s] = model.slots[s].prior.mean();
+  for (Index s = 0; s < means.size(); ++s) means[s] = model.unknowns[s].prior.mean();
   return means;
 }
 
@@ -94,9 +94,9 @@ PlanBasis::PlanBasis(const Study& of_study, const std::vector<Emulator>& emulato
   look_out();
 }
 
-std::string PlanBasis::name_of(int parameter) const { return sampled.model->slots[parameter].label; }
+std::string PlanBasis::name_of(int parameter) const { return sampled.model->unknowns[parameter].label; }
 const data::Unit& PlanBasis::unit_of(int parameter) const {
-  return sampled.model->slots[parameter].prior.parameter().unit;
+  return sampled.model->unknowns[parameter].prior.parameter().unit;
 }
 void PlanBasis::tell(double share) const {
   if (options.progress) options.progress(share);

@@ -37,16 +37,16 @@ class Builder {
 
   CaseModel build() {
     stop_on_problems();
-    CaseModel model{.name = wanted_.name, .slots = {}, .groups = {}, .linked = {}, .observed_sets = wanted_.observe};
+    CaseModel model{.name = wanted_.name, .unknowns = {}, .groups = {}, .linked = {}, .observed_sets = wanted_.observe};
     for (const auto* item : links_.cases()) {
       if (item != &wanted_) model.linked.push_back(item->name);
-      for (const auto& name : item->free) add_slot(model, *item, name);
+      for (const auto& name : item->free) add_unknown(model, *item, name);
       add_nuisances(model, *item);
     }
     add_set_unknowns(model);
     stop_on_problems();
     for (const auto* item : links_.cases()) add_rows(model, *item);
-    check_slots_used(model);
+    check_unknowns_used(model);
     stop_on_problems();
     for (auto& group : model.groups) {
       find_coordinates(group, model.dimension());
@@ -68,13 +68,13 @@ class Builder {
   }
 
   /// An unknown that is not there yet.
-  void add_unknown(CaseModel& model, const Home& where, Slot slot) {
+  void add_unknown(CaseModel& model, const Home& where, Unknown unknown) {
     if (std::find(homes_.begin(), homes_.end(), where) != homes_.end()) return;
     homes_.push_back(where);
-    model.slots.push_back(std::move(slot));
+    model.unknowns.push_back(std::move(unknown));
   }
 
-  int slot_of(const Home& where) const {
+  int unknown_of(const Home& where) const {
     return static_cast<int>(std::find(homes_.begin(), homes_.end(), where) - homes_.begin());
   }
 
@@ -82,7 +82,7 @@ class Builder {
     return &item == &wanted_ ? name : item.name + ": " + name;
   }
 
-  void add_slot(CaseModel& model, const CalibrationCase& item, const std::string& name) {
+  void add_unknown(CaseModel& model, const CalibrationCase& item, const std::string& name) {
     const data::Parameter& parameter = study_.parameters[study_.parameter_index(name).value()];
     const data::Prior& prior = links_.prior_of(item, name);
     add_unknown(model, links_.home(item, name),
@@ -179,7 +179,7 @@ class Builder {
     if (group == model.groups.end()) {
       model.groups.push_back({.emulator = emulator,
                               .base = Eigen::MatrixXd(0, inputs),
-                              .slot = Eigen::MatrixXi(0, inputs),
+                              .unknown = Eigen::MatrixXi(0, inputs),
                               .observed = {},
                               .variance = {},
                               .origin = {},
@@ -190,7 +190,7 @@ class Builder {
     const auto rows = static_cast<Eigen::Index>(set.points.size());
     const Eigen::Index before = group->base.rows();
     group->base.conservativeResize(before + rows, inputs);
-    group->slot.conservativeResize(before + rows, inputs);
+    group->unknown.conservativeResize(before + rows, inputs);
     group->observed.conservativeResize(before + rows);
     group->variance.conservativeResize(before + rows);
     for (Eigen::Index k = 0; k < inputs; ++k) {
@@ -199,15 +199,15 @@ class Builder {
         for (Eigen::Index i = 0; i < rows; ++i)
           group->base(before + i, k) = study_.controls[input.index].axis().to_unit(
               set.points[static_cast<std::size_t>(i)].controls[input.index]);
-        group->slot.col(k).tail(rows).setConstant(-1);
+        group->unknown.col(k).tail(rows).setConstant(-1);
         for (const auto& error : set.setting_errors)
           if (rows > 0 && error.unknown && error.control == input.index)
-            group->slot.col(k).tail(rows).setConstant(slot_of(home_of(setting_unknown(study_, set, error))));
+            group->unknown.col(k).tail(rows).setConstant(unknown_of(home_of(setting_unknown(study_, set, error))));
         continue;
       }
       const Value value = value_of(item, set, input.index);
       group->base.col(k).tail(rows).setConstant(value.scaled);
-      group->slot.col(k).tail(rows).setConstant(value.slot);
+      group->unknown.col(k).tail(rows).setConstant(value.unknown);
     }
     add_problems(against_the_runs(study_, item, set, emulator));
     for (Eigen::Index i = 0; i < rows; ++i) {
@@ -218,20 +218,21 @@ class Builder {
     }
     std::vector<Acting> unknowns;
     for (const auto& nuisance : item.nuisances)
-      unknowns.push_back({nuisance, slot_of(links_.home(item, nuisance.parameter.name))});
-    for (const auto& nuisance : set_unknowns(study_, set)) unknowns.push_back({nuisance, slot_of(home_of(nuisance))});
+      unknowns.push_back({nuisance, unknown_of(links_.home(item, nuisance.parameter.name))});
+    for (const auto& nuisance : set_unknowns(study_, set))
+      unknowns.push_back({nuisance, unknown_of(home_of(nuisance))});
     add_problems(add_measurement(*group, study_, {set, set.outputs[column], before}, unknowns));
   }
 
   struct Value {
-    int slot = -1;
+    int unknown = -1;
     double scaled = 0.0;
   };
 
   Value value_of(const CalibrationCase& item, const data::ObservationSet& set, std::size_t parameter_index) {
     const data::Parameter& parameter = study_.parameters[parameter_index];
     if (std::find(item.free.begin(), item.free.end(), parameter.name) != item.free.end()) {
-      return {.slot = slot_of(links_.home(item, parameter.name)), .scaled = 0.0};
+      return {.unknown = unknown_of(links_.home(item, parameter.name)), .scaled = 0.0};
     }
     std::optional<double> value;
     if (const auto fixed = item.fixed.find(parameter.name); fixed != item.fixed.end()) value = fixed->second;
@@ -253,18 +254,18 @@ class Builder {
                           parameter.name, parameter.unit.from_si(*value), parameter.unit.symbol,
                           parameter.unit.from_si(parameter.low), parameter.unit.from_si(parameter.high)),
               "fix it inside the range, or train in a wider one");
-    return {.slot = -1, .scaled = scaled};
+    return {.unknown = -1, .scaled = scaled};
   }
 
-  void check_slots_used(const CaseModel& model) {
+  void check_unknowns_used(const CaseModel& model) {
     for (int s = 0; s < model.dimension(); ++s) {
-      bool used = model.slots[s].nuisance != Acts::none;
-      for (const auto& group : model.groups) used = used || (group.slot.array() == s).any();
+      bool used = model.unknowns[s].nuisance != Acts::none;
+      for (const auto& group : model.groups) used = used || (group.unknown.array() == s).any();
       if (used) continue;
       const CalibrationCase& owner = *homes_[s].owner;
       problem(owner.place,
               fmt::format("case '{}' frees {}, but no run of its materials varies it", owner.name,
-                          model.slots[s].prior.parameter().name),
+                          model.unknowns[s].prior.parameter().name),
               "vary it in training, or fix it");
     }
   }
@@ -273,7 +274,7 @@ class Builder {
   const std::vector<Emulator>& emulators_;
   const CalibrationCase& wanted_;
   LinkedCases links_;
-  std::vector<Home> homes_;  // of each slot
+  std::vector<Home> homes_;  // of each unknown
   std::set<std::size_t> used_sets_;
   std::vector<Problem> problems_;
 };

@@ -67,26 +67,26 @@ std::vector<data::Problem> add_measurement(RowGroup& group, const data::Study& s
       .first = rows.first, .count = group.base.rows() - rows.first, .factors = {}, .offsets = {}, .settings = {}};
   if (set.of_machine && study.scale && !study.scale->unknown) read.factor = study.scale->value;
   DiscrepancyUnknowns discrepancy;
-  for (const auto& [nuisance, slot] : unknowns) {
+  for (const auto& [nuisance, unknown] : unknowns) {
     if (nuisance.output.value_or(rows.output) != rows.output) continue;
     switch (nuisance.kind) {
       case data::NuisanceKind::offset:
-        read.offsets.push_back(slot);
+        read.offsets.push_back(unknown);
         break;
       case data::NuisanceKind::gain:
       case data::NuisanceKind::scale:
-        read.factors.push_back(slot);
+        read.factors.push_back(unknown);
         break;
       case data::NuisanceKind::noise_scale:
       case data::NuisanceKind::noise_sd:
-        read.noise = slot;
+        read.noise = unknown;
         read.noise_is_sd = nuisance.kind == data::NuisanceKind::noise_sd;
         break;
       case data::NuisanceKind::discrepancy_sd:
-        discrepancy.sd = slot;
+        discrepancy.sd = unknown;
         break;
       case data::NuisanceKind::discrepancy_length:
-        discrepancy.length = slot;
+        discrepancy.length = unknown;
         break;
       case data::NuisanceKind::setting:
         break;  // moves the row itself

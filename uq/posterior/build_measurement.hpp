@@ -18,7 +18,7 @@ struct SetRows {
 /// One of the model's unknowns that act on them, of the case or of the set.
 struct Acting {
   data::Nuisance nuisance;
-  int slot = -1;
+  int unknown = -1;
 };
 
 /// Adds to group.measurement; says what the study asks and the runs cannot tell.

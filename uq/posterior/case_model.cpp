@@ -8,7 +8,8 @@
 namespace uq {
 
 int CaseModel::own_count() const {
-  return static_cast<int>(std::count_if(slots.begin(), slots.end(), [](const Slot& slot) { return slot.own; }));
+  return static_cast<int>(
+      std::count_if(unknowns.begin(), unknowns.end(), [](const Unknown& unknown) { return unknown.own; }));
 }
 
 int CaseModel::row_count() const {
@@ -19,23 +20,23 @@ int CaseModel::row_count() const {
 
 Eigen::VectorXd CaseModel::lower() const {
   Eigen::VectorXd low(dimension());
-  for (int s = 0; s < dimension(); ++s) low[s] = slots[s].prior.low();
+  for (int s = 0; s < dimension(); ++s) low[s] = unknowns[s].prior.low();
   return low;
 }
 
 Eigen::VectorXd CaseModel::upper() const {
   Eigen::VectorXd high(dimension());
-  for (int s = 0; s < dimension(); ++s) high[s] = slots[s].prior.high();
+  for (int s = 0; s < dimension(); ++s) high[s] = unknowns[s].prior.high();
   return high;
 }
 
-void find_coordinates(RowGroup& group, int slots) {
+void find_coordinates(RowGroup& group, int unknowns) {
   group.uniform = true;
-  group.coordinate.assign(static_cast<std::size_t>(slots), std::nullopt);
-  for (Eigen::Index k = 0; k < group.slot.cols(); ++k) {
-    if (group.slot.rows() == 0) continue;
-    const int s = group.slot(0, k);
-    if ((group.slot.col(k).array() != s).any()) group.uniform = false;
+  group.coordinate.assign(static_cast<std::size_t>(unknowns), std::nullopt);
+  for (Eigen::Index k = 0; k < group.unknown.cols(); ++k) {
+    if (group.unknown.rows() == 0) continue;
+    const int s = group.unknown(0, k);
+    if ((group.unknown.col(k).array() != s).any()) group.uniform = false;
     if (s < 0) continue;
     if (group.coordinate[s]) group.uniform = false;
     group.coordinate[s] = static_cast<int>(k);

@@ -22,7 +22,7 @@
 #include "data/study.hpp"
 #include "uq/emulate/emulator.hpp"
 #include "uq/posterior/measurement.hpp"
-#include "uq/posterior/slot.hpp"
+#include "uq/posterior/unknown.hpp"
 
 namespace uq {
 
@@ -44,11 +44,11 @@ struct Repeats {
 struct RowGroup {
   Emulator emulator;
   Eigen::MatrixXd base;      ///< rows x inputs, unit cube; entries of unknowns are overwritten
-  Eigen::MatrixXi slot;      ///< rows x inputs, index of the unknown or -1
+  Eigen::MatrixXi unknown;   ///< rows x inputs, index of the unknown or -1
   Eigen::VectorXd observed;  ///< SI
   Eigen::VectorXd variance;  ///< SI^2, of the stated standard errors
   std::vector<RowOrigin> origin;
-  /// Per slot, the input it sets in every row; nothing where it sets none. Meaningful when `uniform`.
+  /// Per unknown, the input it sets in every row; nothing where it sets none. Meaningful when `uniform`.
   std::vector<std::optional<int>> coordinate;
   bool uniform = true;  ///< each unknown sets the same input in all rows, or none
   Measurement measurement = {};
@@ -58,13 +58,13 @@ struct RowGroup {
 
 struct CaseModel {
   std::string name;
-  std::vector<Slot> slots;  ///< the case's own parameters first, in its order, then its nuisances
+  std::vector<Unknown> unknowns;  ///< the case's own parameters first, in its order, then its nuisances
   std::vector<RowGroup> groups;
   std::vector<std::string> linked;                 ///< names of the other cases that are sampled with it
   std::vector<std::string> observed_sets;          ///< of the case itself
   std::shared_ptr<const CaseModel> distinct = {};  ///< rows of equal settings as one; none where all differ
 
-  int dimension() const { return static_cast<int>(slots.size()); }
+  int dimension() const { return static_cast<int>(unknowns.size()); }
   int own_count() const;  ///< parameters free in the case itself
   int row_count() const;
   Eigen::VectorXd lower() const;
@@ -77,7 +77,7 @@ struct CaseModel {
 CaseModel build_case(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index);
 
 /// Fills `coordinate` and `uniform`; called by build_case, needed for groups made by hand.
-void find_coordinates(RowGroup& group, int slots);
+void find_coordinates(RowGroup& group, int unknowns);
 
 /// The same model for other data: stacked values and variances in the order of the groups' rows.
 CaseModel with_data(const CaseModel& model, const Eigen::VectorXd& observed, const Eigen::VectorXd& variance);

@@ -51,8 +51,8 @@ DiscrepancyBand band_of(const data::Study& study, const CaseModel& model, const 
     const GroupLaw law = group_law(model, group, u);
     Eigen::MatrixXd covariance = law.covariance;
     covariance.diagonal() += law.noise;
-    const Slot& sd = model.slots[part.sd];
-    const Slot& length = model.slots[part.length];
+    const Unknown& sd = model.unknowns[part.sd];
+    const Unknown& length = model.unknowns[part.length];
     const double variance = std::pow(sd.value(u[part.sd]) * part.magnitude, 2);
     Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(group.observed.size(), band_points);
     cross.middleRows(part.first, part.count) =

@@ -40,8 +40,8 @@ Classes classes_of(const RowGroup& group) {
     std::vector<double> key = {static_cast<double>(set), static_cast<double>(discrepancy_of(group.measurement, i)),
                                static_cast<double>(group.origin[i].set)};
     for (Eigen::Index k = 0; k < group.base.cols(); ++k) {
-      key.push_back(group.slot(i, k));
-      key.push_back(group.slot(i, k) < 0 ? group.base(i, k) : 0.0);
+      key.push_back(group.unknown(i, k));
+      key.push_back(group.unknown(i, k) < 0 ? group.base(i, k) : 0.0);
     }
     bool alone = false;
     if (set >= 0) {
@@ -99,7 +99,7 @@ RowGroup pool_group(const RowGroup& group, const Classes& classes) {
   RowGroup pooled = group;
   pooled.distinct_row.clear();
   pooled.base = group.base(classes.first, Eigen::all);
-  pooled.slot = group.slot(classes.first, Eigen::all);
+  pooled.unknown = group.unknown(classes.first, Eigen::all);
   pooled.origin.clear();
   for (const Eigen::Index row : classes.first) pooled.origin.push_back(group.origin[row]);
   pooled.measurement = pooled_measurement(group.measurement, classes);

@@ -11,7 +11,7 @@ namespace uq {
 
 namespace {
 
-/// S^-1/2 J for the slots listed, each column times its prior's sd.
+/// S^-1/2 J for the unknowns listed, each column times its prior's sd.
 Eigen::MatrixXd whiten(const Eigen::MatrixXd& slopes, const std::vector<Eigen::Index>& chosen,
                        const Eigen::MatrixXd& covariance) {
   Eigen::MatrixXd whitened(slopes.rows(), static_cast<Eigen::Index>(chosen.size()));
@@ -29,10 +29,10 @@ FisherSpectrum fisher_spectrum(const CaseModel& full, const Eigen::VectorXd& u) 
   Eigen::MatrixXd slopes = sensitivity(model, u);
   std::vector<Eigen::Index> all, parameters;
   for (Eigen::Index s = 0; s < u.size(); ++s) {
-    const Slot& slot = model.slots[s];
-    slopes.col(s) *= slot.prior.sd();
+    const Unknown& unknown = model.unknowns[s];
+    slopes.col(s) *= unknown.prior.sd();
     all.push_back(s);
-    if (slot.nuisance == Acts::none) parameters.push_back(s);
+    if (unknown.nuisance == Acts::none) parameters.push_back(s);
   }
   const Eigen::MatrixXd every = whiten(slopes, all, covariance);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> known(every.transpose() * every);
@@ -41,7 +41,7 @@ FisherSpectrum fisher_spectrum(const CaseModel& full, const Eigen::VectorXd& u) 
   found.known_directions = static_cast<int>((known.eigenvalues().array() > 1.0).count());
   // The nuisances, integrated out under their priors, are part of what is uncertain of the data.
   for (Eigen::Index s = 0; s < u.size(); ++s)
-    if (model.slots[s].nuisance != Acts::none) covariance += slopes.col(s) * slopes.col(s).transpose();
+    if (model.unknowns[s].nuisance != Acts::none) covariance += slopes.col(s) * slopes.col(s).transpose();
   Eigen::MatrixXd unit = whiten(slopes, parameters, covariance);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(unit.transpose() * unit);
   found.eigenvalues = solver.eigenvalues().cwiseMax(0.0);

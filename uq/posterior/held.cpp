@@ -87,7 +87,7 @@ Eigen::MatrixXd with_held(const Eigen::MatrixXd& rest, const std::vector<Held>& 
 Target held_target(const std::shared_ptr<const CaseModel>& model, const std::vector<Held>& held) {
   const std::vector<int> left = unknowns_left(model->dimension(), held);
   const auto prior_of = [model, left](Eigen::Index k) -> const ScaledPrior& {
-    return model->slots[static_cast<std::size_t>(left[k])].prior;
+    return model->unknowns[static_cast<std::size_t>(left[k])].prior;
   };
   const auto log_prior = [prior_of](const Eigen::VectorXd& rest) {
     double sum = 0.0;

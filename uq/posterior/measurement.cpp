@@ -6,23 +6,23 @@
 namespace uq {
 namespace {
 
-double factor_of(const ReadSet& set, const std::vector<Slot>& slots, const Eigen::VectorXd& u) {
+double factor_of(const ReadSet& set, const std::vector<Unknown>& unknowns, const Eigen::VectorXd& u) {
   double factor = set.factor;
-  for (const int s : set.factors) factor *= slots[s].value(u[s]);
+  for (const int s : set.factors) factor *= unknowns[s].value(u[s]);
   return factor;
 }
 
-double offset_of(const ReadSet& set, const std::vector<Slot>& slots, const Eigen::VectorXd& u) {
+double offset_of(const ReadSet& set, const std::vector<Unknown>& unknowns, const Eigen::VectorXd& u) {
   double offset = 0.0;
-  for (const int s : set.offsets) offset += slots[s].value(u[s]);
+  for (const int s : set.offsets) offset += unknowns[s].value(u[s]);
   return offset;
 }
 
-Eigen::VectorXd factors_of(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& u,
-                           Eigen::Index rows) {
+Eigen::VectorXd factors_of(const Measurement& measurement, const std::vector<Unknown>& unknowns,
+                           const Eigen::VectorXd& u, Eigen::Index rows) {
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(rows);
   for (const ReadSet& set : measurement.sets)
-    factors.segment(set.first, set.count).setConstant(factor_of(set, slots, u));
+    factors.segment(set.first, set.count).setConstant(factor_of(set, unknowns, u));
   return factors;
 }
 
@@ -126,21 +126,21 @@ Eigen::MatrixXd discrepancy_correlation(const Eigen::MatrixXd& a, const Eigen::M
   return correlation;
 }
 
-Meter meter_at(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& u,
+Meter meter_at(const Measurement& measurement, const std::vector<Unknown>& unknowns, const Eigen::VectorXd& u,
                Eigen::Index row) {
   for (const ReadSet& set : measurement.sets) {
     if (row < set.first || row >= set.first + set.count) continue;
-    return {.factor = factor_of(set, slots, u), .offset = offset_of(set, slots, u)};
+    return {.factor = factor_of(set, unknowns, u), .offset = offset_of(set, unknowns, u)};
   }
   return {};
 }
 
-Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Slot>& slots,
+Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Unknown>& unknowns,
                          const Eigen::VectorXd& variance, const Eigen::VectorXd& u) {
   Eigen::VectorXd noise = variance;
   for (const ReadSet& set : measurement.sets) {
     if (set.noise < 0) continue;
-    const double k = slots[set.noise].value(u[set.noise]);
+    const double k = unknowns[set.noise].value(u[set.noise]);
     if (set.noise_is_sd) {
       noise.segment(set.first, set.count).setConstant(k * k);
     } else {
@@ -150,14 +150,14 @@ Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Slot>
   return noise;
 }
 
-GroupLaw law_of(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& variance,
+GroupLaw law_of(const Measurement& measurement, const std::vector<Unknown>& unknowns, const Eigen::VectorXd& variance,
                 const surrogate::Prediction& prediction, const Eigen::VectorXd& u) {
   const Eigen::Index rows = variance.size();
-  const auto value = [&](int s) { return slots[s].value(u[s]); };
-  const Eigen::VectorXd f = factors_of(measurement, slots, u, rows);
+  const auto value = [&](int s) { return unknowns[s].value(u[s]); };
+  const Eigen::VectorXd f = factors_of(measurement, unknowns, u, rows);
   GroupLaw law{.mean = f.cwiseProduct(prediction.mean.head(rows)),
                .covariance = (f * f.transpose()).cwiseProduct(prediction.covariance.topLeftCorner(rows, rows)),
-               .noise = noise_of(measurement, slots, variance, u)};
+               .noise = noise_of(measurement, unknowns, variance, u)};
   for (const ReadSet& set : measurement.sets) {
     if (set.common_relative > 0.0)
       add_pair(law.covariance, set, law.mean, law.mean, 0.5 * set.common_relative * set.common_relative, true);
@@ -173,31 +173,31 @@ GroupLaw law_of(const Measurement& measurement, const std::vector<Slot>& slots, 
         std::pow(value(part.sd) * part.magnitude, 2) *
         discrepancy_correlation(part.controls, part.controls, value(part.length));
   for (const ReadSet& set : measurement.sets)  // last: a relative error is of the meter's reading without its offset
-    law.mean.segment(set.first, set.count).array() += offset_of(set, slots, u);
+    law.mean.segment(set.first, set.count).array() += offset_of(set, unknowns, u);
   return law;
 }
 
-LawGradient law_gradient(const Measurement& measurement, const std::vector<Slot>& slots,
+LawGradient law_gradient(const Measurement& measurement, const std::vector<Unknown>& unknowns,
                          const Eigen::VectorXd& variance, const surrogate::PredictionGradient& prediction,
-                         const std::pair<std::vector<int>, Eigen::VectorXd>& unknowns_and_u) {
-  const auto& [unknowns, u] = unknowns_and_u;
+                         const std::pair<std::vector<int>, Eigen::VectorXd>& along_and_u) {
+  const auto& [along, u] = along_and_u;
   const Eigen::Index rows = variance.size(), extended = prediction.value.mean.size();
   const State state{.measurement = measurement,
-                    .factors = factors_of(measurement, slots, u, rows),
+                    .factors = factors_of(measurement, unknowns, u, rows),
                     .mean = prediction.value.mean,
                     .covariance = prediction.value.covariance.topLeftCorner(rows, rows)};
-  LawGradient found{.unknowns = unknowns, .mean = {}, .covariance = {}};
-  for (std::size_t k = 0; k < unknowns.size(); ++k)
+  LawGradient found{.along = along, .mean = {}, .covariance = {}};
+  for (std::size_t k = 0; k < along.size(); ++k)
     add_change(state,
                {.factors = Eigen::VectorXd::Zero(rows),
                 .mean = prediction.mean_gradient[k],
                 .covariance = prediction.covariance_gradient[k].topLeftCorner(rows, rows)},
                found);
 
-  for (int s = 0; s < static_cast<int>(slots.size()); ++s) {
-    const Slot& slot = slots[s];
-    if (slot.nuisance == Acts::none || contains(unknowns, s)) continue;
-    const double value = slot.value(u[s]), slope = slot.slope(u[s]);
+  for (int s = 0; s < static_cast<int>(unknowns.size()); ++s) {
+    const Unknown& unknown = unknowns[s];
+    if (unknown.nuisance == Acts::none || contains(along, s)) continue;
+    const double value = unknown.value(u[s]), slope = unknown.slope(u[s]);
     Eigen::VectorXd factors = Eigen::VectorXd::Zero(rows), offset = Eigen::VectorXd::Zero(rows);
     Eigen::VectorXd noise = Eigen::VectorXd::Zero(rows);
     for (const ReadSet& set : measurement.sets) {
@@ -211,7 +211,7 @@ LawGradient law_gradient(const Measurement& measurement, const std::vector<Slot>
         noise.segment(set.first, set.count) = 2.0 * value * slope * variance.segment(set.first, set.count);
       }
     }
-    found.unknowns.push_back(s);
+    found.along.push_back(s);
     add_change(
         state,
         {.factors = factors, .mean = Eigen::VectorXd::Zero(extended), .covariance = Eigen::MatrixXd::Zero(rows, rows)},
@@ -221,8 +221,8 @@ LawGradient law_gradient(const Measurement& measurement, const std::vector<Slot>
     for (const DiscrepancyRows& part : measurement.discrepancies) {
       if (part.sd != s && part.length != s) continue;
       const double square = part.magnitude * part.magnitude;
-      const double sd = slots[part.sd].value(u[part.sd]);
-      const double length = slots[part.length].value(u[part.length]);
+      const double sd = unknowns[part.sd].value(u[part.sd]);
+      const double length = unknowns[part.length].value(u[part.length]);
       Eigen::MatrixXd change(part.count, part.count);
       if (part.sd == s) {
         change = 2.0 * sd * slope * square * discrepancy_correlation(part.controls, part.controls, length);

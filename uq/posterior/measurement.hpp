@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "surrogate/gaussian_process.hpp"
-#include "uq/posterior/slot.hpp"
+#include "uq/posterior/unknown.hpp"
 
 namespace uq {
 
@@ -72,28 +72,29 @@ struct Meter {
   double factor = 1.0;
   double offset = 0.0;  ///< SI
 };
-Meter meter_at(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& u,
+Meter meter_at(const Measurement& measurement, const std::vector<Unknown>& unknowns, const Eigen::VectorXd& u,
                Eigen::Index row);
 
 /// Variance of each number's own error.
-Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Slot>& slots,
+Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Unknown>& unknowns,
                          const Eigen::VectorXd& variance, const Eigen::VectorXd& u);
 
 /// `variance`: of the stated standard errors, one per row; `prediction`: at the rows and their shifted copies.
-GroupLaw law_of(const Measurement& measurement, const std::vector<Slot>& slots, const Eigen::VectorXd& variance,
+GroupLaw law_of(const Measurement& measurement, const std::vector<Unknown>& unknowns, const Eigen::VectorXd& variance,
                 const surrogate::Prediction& prediction, const Eigen::VectorXd& u);
 
 /// Derivatives with respect to u of mean and of covariance, noise included.
 struct LawGradient {
-  std::vector<int> unknowns;
+  std::vector<int> along;  ///< indices of the unknowns
   std::vector<Eigen::VectorXd> mean;
   std::vector<Eigen::MatrixXd> covariance;
 };
 
-/// `unknowns`: those along which `prediction` has derivatives, in its order; the nuisances are added.
-LawGradient law_gradient(const Measurement& measurement, const std::vector<Slot>& slots,
+/// `along_and_u`: indices of the unknowns along which `prediction` has derivatives, in its order, and their values; the
+/// nuisances are added.
+LawGradient law_gradient(const Measurement& measurement, const std::vector<Unknown>& unknowns,
                          const Eigen::VectorXd& variance, const surrogate::PredictionGradient& prediction,
-                         const std::pair<std::vector<int>, Eigen::VectorXd>& unknowns_and_u);
+                         const std::pair<std::vector<int>, Eigen::VectorXd>& along_and_u);
 
 /// Matern 5/2 correlation at distances over lengths.
 Eigen::MatrixXd discrepancy_correlation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double length);

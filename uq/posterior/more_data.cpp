@@ -17,8 +17,8 @@ constexpr std::size_t rows_most = 120;  // of a set's points, in the model of wh
 /// machine's scale.
 data::Study without_new_unknowns(data::Study study, std::size_t case_index, const CaseModel& sampled) {
   const auto is_known = [&](const std::string& name) {
-    return std::any_of(sampled.slots.begin(), sampled.slots.end(),
-                       [&](const Slot& slot) { return slot.label == name; });
+    return std::any_of(sampled.unknowns.begin(), sampled.unknowns.end(),
+                       [&](const Unknown& unknown) { return unknown.label == name; });
   };
   std::optional<data::CommonError> scale;
   if (study.scale && study.scale->unknown && !is_known(study.scale->unknown->parameter.name)) {
@@ -80,7 +80,7 @@ void condense(data::ObservationSet& set) {
 CaseModel with_more_data(const data::Study& wider, const std::vector<Emulator>& emulators, std::size_t case_index,
                          const CaseModel& sampled) {
   CaseModel model = build_case(without_new_unknowns(wider, case_index, sampled), emulators, case_index);
-  model.slots = sampled.slots;
+  model.unknowns = sampled.unknowns;
   model.distinct.reset();
   for (RowGroup& group : model.groups)
     for (const RowGroup& other : sampled.groups)

@@ -16,7 +16,7 @@ constexpr Eigen::Index points_at_once = 32;  // predicted together
 void place_rows(const RowGroup& group, const Eigen::VectorXd& u, Eigen::MatrixXd& points, Eigen::Index first) {
   for (Eigen::Index k = 0; k < group.base.cols(); ++k)
     for (Eigen::Index i = 0; i < group.base.rows(); ++i) {
-      const int s = group.slot(i, k);
+      const int s = group.unknown(i, k);
       points(first + i, k) = s < 0 ? group.base(i, k) : u[s];
     }
   if (group.measurement.shifts() > 0) place_shifts(group.measurement, points, first, group.base.rows());
@@ -39,7 +39,7 @@ double log_row_density(const CaseModel& model, const RowGroup& group, const surr
     covariance.diagonal() += group.variance;
     return log_normal(group.observed - prediction.mean, covariance);
   }
-  GroupLaw law = law_of(group.measurement, model.slots, group.variance, prediction, u);
+  GroupLaw law = law_of(group.measurement, model.unknowns, group.variance, prediction, u);
   law.covariance.diagonal() += law.noise;
   return log_normal(group.observed - law.mean, law.covariance);
 }
@@ -51,11 +51,11 @@ struct Scatter {
 Scatter scatter_of(const CaseModel& model, const Repeats& repeats, const Eigen::VectorXd& u) {
   if (repeats.noise < 0)
     return {.log_density = repeats.log_constant - 0.5 * repeats.scatter, .chi_squared = repeats.scatter};
-  const Slot& slot = model.slots[repeats.noise];
-  const double k = slot.value(u[repeats.noise]), chi = repeats.scatter / (k * k);
+  const Unknown& unknown = model.unknowns[repeats.noise];
+  const double k = unknown.value(u[repeats.noise]), chi = repeats.scatter / (k * k);
   return {.log_density = repeats.log_constant - 0.5 * chi - repeats.extra * std::log(k),
           .chi_squared = chi,
-          .slope = (chi - repeats.extra) / k * slot.slope(u[repeats.noise])};
+          .slope = (chi - repeats.extra) / k * unknown.slope(u[repeats.noise])};
 }
 
 /// Adds the gradient of one group's log density to `sum`.
@@ -68,8 +68,8 @@ void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::Ve
     sum.value += density(u);
     constexpr double step = 1e-5;
     for (Eigen::Index s = 0; s < u.size(); ++s) {
-      const bool nuisance = model.slots[s].nuisance != Acts::none;
-      if (!nuisance && !(group.slot.array() == static_cast<int>(s)).any()) continue;
+      const bool nuisance = model.unknowns[s].nuisance != Acts::none;
+      if (!nuisance && !(group.unknown.array() == static_cast<int>(s)).any()) continue;
       Eigen::VectorXd up = u, down = u;
       up[s] += step;
       down[s] -= step;
@@ -84,7 +84,7 @@ void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::Ve
       unknowns.push_back(static_cast<int>(s));
     }
   const surrogate::PredictionGradient found = group.emulator.predict_with_gradient(rows_at(group, u), coordinates);
-  const GroupLaw law = law_of(group.measurement, model.slots, group.variance, found.value, u);
+  const GroupLaw law = law_of(group.measurement, model.unknowns, group.variance, found.value, u);
   Eigen::MatrixXd covariance = law.covariance;
   covariance.diagonal() += law.noise;
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
@@ -98,10 +98,10 @@ void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::Ve
   const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(rows, rows));
   sum.value += -0.5 * residual.dot(a) - factor.matrixLLT().diagonal().array().log().sum() -
                0.5 * static_cast<double>(rows) * std::log(2.0 * std::numbers::pi);
-  const LawGradient slopes = law_gradient(group.measurement, model.slots, group.variance, found, {unknowns, u});
-  for (std::size_t k = 0; k < slopes.unknowns.size(); ++k) {
+  const LawGradient slopes = law_gradient(group.measurement, model.unknowns, group.variance, found, {unknowns, u});
+  for (std::size_t k = 0; k < slopes.along.size(); ++k) {
     const Eigen::MatrixXd& slope = slopes.covariance[k];
-    sum.gradient[slopes.unknowns[k]] +=
+    sum.gradient[slopes.along[k]] +=
         a.dot(slopes.mean[k]) + 0.5 * (a.dot(slope * a) - inverse.cwiseProduct(slope).sum());
   }
 }
@@ -132,7 +132,7 @@ double log_group_density(const CaseModel& model, const RowGroup& group, const su
 }
 
 GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u) {
-  return law_of(group.measurement, model.slots, group.variance, group.emulator.predict(rows_at(group, u)), u);
+  return law_of(group.measurement, model.unknowns, group.variance, group.emulator.predict(rows_at(group, u)), u);
 }
 
 StackedPrediction stack(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u) {
@@ -150,7 +150,7 @@ StackedPrediction stack(const CaseModel& model, const std::vector<GroupLaw>& law
       stacked.mean.segment(first, count) = laws[g].mean;
       stacked.covariance.block(first, first, count, count) = laws[g].covariance;
     }
-    stacked.noise.segment(first, count) = noise_of(group.measurement, model.slots, group.variance, u);
+    stacked.noise.segment(first, count) = noise_of(group.measurement, model.unknowns, group.variance, u);
     first += count;
   }
   return stacked;
@@ -165,7 +165,7 @@ RowMoments moments(const CaseModel& model, const std::vector<GroupLaw>& laws, co
   Eigen::Index first = 0;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
     const RowGroup& group = model.groups[g];
-    const Eigen::VectorXd noise = noise_of(group.measurement, model.slots, group.variance, u);
+    const Eigen::VectorXd noise = noise_of(group.measurement, model.unknowns, group.variance, u);
     for (Eigen::Index i = 0; i < noise.size(); ++i) {
       const Eigen::Index at = model.distinct ? group.distinct_row[i] : i;
       found.mean[first + i] = laws[g].mean[at];
@@ -204,7 +204,7 @@ void for_each_law(const CaseModel& full, const Eigen::MatrixXd& points,
       std::vector<GroupLaw> laws;
       for (std::size_t g = 0; g < model.groups.size(); ++g) {
         const RowGroup& group = model.groups[g];
-        laws.push_back(law_of(group.measurement, model.slots, group.variance, found[g][i], part.row(i).transpose()));
+        laws.push_back(law_of(group.measurement, model.unknowns, group.variance, found[g][i], part.row(i).transpose()));
       }
       use(from + i, laws);
     }
@@ -213,13 +213,13 @@ void for_each_law(const CaseModel& full, const Eigen::MatrixXd& points,
 
 double log_prior(const CaseModel& model, const Eigen::VectorXd& u) {
   double sum = 0.0;
-  for (std::size_t s = 0; s < model.slots.size(); ++s) sum += model.slots[s].prior.log_density(u[s]);
+  for (std::size_t s = 0; s < model.unknowns.size(); ++s) sum += model.unknowns[s].prior.log_density(u[s]);
   return sum;
 }
 
 Evaluation log_prior_gradient(const CaseModel& model, const Eigen::VectorXd& u) {
   Evaluation found{.value = log_prior(model, u), .gradient = Eigen::VectorXd(u.size())};
-  for (std::size_t s = 0; s < model.slots.size(); ++s) found.gradient[s] = model.slots[s].prior.slope(u[s]);
+  for (std::size_t s = 0; s < model.unknowns.size(); ++s) found.gradient[s] = model.unknowns[s].prior.slope(u[s]);
   return found;
 }
 
@@ -292,16 +292,16 @@ double chi_squared(const CaseModel& model, const Eigen::VectorXd& u) {
 
 Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u) {
   Evaluation sum{.value = 0.0, .gradient = Eigen::VectorXd::Zero(u.size())};
-  for (std::size_t k = 0; k < model.slots.size(); ++k) {
-    const Slot& slot = model.slots[k];
+  for (std::size_t k = 0; k < model.unknowns.size(); ++k) {
+    const Unknown& unknown = model.unknowns[k];
     const auto s = static_cast<Eigen::Index>(k);
-    if (slot.nuisance != Acts::none) {
-      sum.value += slot.prior.log_density(u[s]);
-      sum.gradient[s] = slot.prior.slope(u[s]);
-    } else if (slot.cut) {
-      const double z = (u[s] - slot.cut->mean) / slot.cut->sd;
+    if (unknown.nuisance != Acts::none) {
+      sum.value += unknown.prior.log_density(u[s]);
+      sum.gradient[s] = unknown.prior.slope(u[s]);
+    } else if (unknown.cut) {
+      const double z = (u[s] - unknown.cut->mean) / unknown.cut->sd;
       sum.value -= 0.5 * z * z;
-      sum.gradient[s] = -z / slot.cut->sd;
+      sum.gradient[s] = -z / unknown.cut->sd;
     }
   }
   return sum;
@@ -311,7 +311,7 @@ Target posterior_target(const std::shared_ptr<const CaseModel>& model) {
   Target target{.dimension = model->dimension(), .lower = model->lower(), .upper = model->upper()};
   target.reference.draw = [model](data::RandomStream& random) {
     Eigen::VectorXd u(model->dimension());
-    for (Eigen::Index s = 0; s < u.size(); ++s) u[s] = model->slots[s].prior.draw(random);
+    for (Eigen::Index s = 0; s < u.size(); ++s) u[s] = model->unknowns[s].prior.draw(random);
     return u;
   };
   target.reference.log_density = [model](const Eigen::VectorXd& u) { return log_prior(*model, u); };

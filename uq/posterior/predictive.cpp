@@ -23,7 +23,7 @@ constexpr int predictive_draws = 500;
 /// Rows at which a set's curve is drawn: the set's first row, with one control spread over its range.
 struct CurveRows {
   Eigen::MatrixXd base;
-  Eigen::VectorXi slot;
+  Eigen::VectorXi unknown;
   Eigen::VectorXd x;  // SI
 };
 
@@ -40,7 +40,7 @@ CurveRows curve_rows(const data::Study& study, const RowGroup& group, std::size_
   const data::Axis shown{low, high, control.scale};
   CurveRows rows{
       .base = group.base.row(static_cast<Eigen::Index>(row)).replicate(points, 1),
-      .slot = group.slot.row(static_cast<Eigen::Index>(row)).transpose(),
+      .unknown = group.unknown.row(static_cast<Eigen::Index>(row)).transpose(),
       .x = Eigen::VectorXd::LinSpaced(points, 0.0, 1.0).unaryExpr([shown](double u) { return shown.from_unit(u); })};
   rows.base.col(static_cast<Eigen::Index>(control_column)) =
       rows.x.unaryExpr([axis = control.axis()](double x) { return axis.to_unit(x); });
@@ -65,11 +65,11 @@ std::vector<PredictiveCurve> curves_of(const data::Study& study, const CaseModel
       for (Eigen::Index i = 0; i < used.rows(); ++i) {
         Eigen::MatrixXd points = rows.base;
         for (Eigen::Index k = 0; k < points.cols(); ++k)
-          if (rows.slot[k] >= 0 && static_cast<std::size_t>(k) != control_column)
-            points.col(k).setConstant(used(i, rows.slot[k]));
+          if (rows.unknown[k] >= 0 && static_cast<std::size_t>(k) != control_column)
+            points.col(k).setConstant(used(i, rows.unknown[k]));
         const surrogate::Prediction prediction = group.emulator.predict(points);
         const Meter meter =
-            meter_at(group.measurement, model.slots, used.row(i).transpose(), static_cast<Eigen::Index>(row));
+            meter_at(group.measurement, model.unknowns, used.row(i).transpose(), static_cast<Eigen::Index>(row));
         for (Eigen::Index j = 0; j < rows.x.size(); ++j)
           values(i, j) =
               meter.offset +
@@ -139,7 +139,7 @@ Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws,
       Eigen::VectorXd shared(laws[g].mean.size());
       for (double& value : shared) value = random.normal();
       shared = laws[g].mean + semidefinite_root(laws[g].covariance, "replicate data") * shared;
-      const Eigen::VectorXd noise = noise_of(group.measurement, model.slots, group.variance, u);
+      const Eigen::VectorXd noise = noise_of(group.measurement, model.unknowns, group.variance, u);
       for (Eigen::Index row = 0; row < noise.size(); ++row) {
         const Eigen::Index at = model.distinct ? group.distinct_row[row] : row;
         made(i, first + row) = shared[at] + std::sqrt(noise[row]) * random.normal();
@@ -212,8 +212,8 @@ Eigen::VectorXd least_deviations(const CaseModel& model, const Eigen::MatrixXd& 
   constexpr double tail = 5e-5;
   Eigen::VectorXd low(model.dimension()), high(model.dimension());
   for (Eigen::Index s = 0; s < low.size(); ++s) {
-    low[s] = model.slots[s].prior.inverse_cdf(tail);
-    high[s] = model.slots[s].prior.inverse_cdf(1.0 - tail);
+    low[s] = model.unknowns[s].prior.inverse_cdf(tail);
+    high[s] = model.unknowns[s].prior.inverse_cdf(1.0 - tail);
   }
   const Eigen::VectorXd level = log_likelihoods(model, draws);
   std::vector<Eigen::Index> order(static_cast<std::size_t>(draws.rows()));
@@ -261,7 +261,7 @@ void check_priors(const data::Study& study, const CaseModel& model) {
   };
   const Reach prior = reach(400, [&] {
     Eigen::VectorXd u(d);
-    for (Eigen::Index s = 0; s < d; ++s) u[s] = model.slots[s].prior.draw(random);
+    for (Eigen::Index s = 0; s < d; ++s) u[s] = model.unknowns[s].prior.draw(random);
     return u;
   });
   // A value between the lowest and the highest prediction is within reach, however few draws came near it.
@@ -279,8 +279,8 @@ void check_priors(const data::Study& study, const CaseModel& model) {
     // Parameters anywhere in their ranges; a nuisance has no range but its prior's.
     Eigen::VectorXd u(d);
     for (Eigen::Index s = 0; s < d; ++s) {
-      const Slot& slot = model.slots[s];
-      u[s] = slot.nuisance == Acts::none ? random.uniform() : slot.prior.draw(random);
+      const Unknown& unknown = model.unknowns[s];
+      u[s] = unknown.nuisance == Acts::none ? random.uniform() : unknown.prior.draw(random);
     }
     return u;
   });
@@ -291,7 +291,7 @@ void check_priors(const data::Study& study, const CaseModel& model) {
     const data::ObservationSet& set = study.observations[from[i].set];
     const data::Unit& unit = study.outputs[from[i].output].unit;
     std::string names;
-    for (const auto& slot : model.slots) names += (names.empty() ? "" : ", ") + slot.label;
+    for (const auto& unknown : model.unknowns) names += (names.empty() ? "" : ", ") + unknown.label;
     problems.push_back({fmt::format("{}:{}", set.file, set.points[from[i].point].line),
                         fmt::format("case '{}': the priors of {} only allow {:.4g} to {:.4g} {}, but {:.4g} {} was "
                                     "measured; the parameters' ranges would allow it",

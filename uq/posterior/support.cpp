@@ -107,8 +107,8 @@ MatrixXd points_at(const Ground& ground, const VectorXd& u) {
   for (Index i = 0; i < points.rows(); ++i)
     for (Index k = 0; k < points.cols(); ++k) {
       const Index row = ground.rows[i];
-      const int slot = group.slot(row, k);
-      points(i, k) = slot < 0 ? group.base(row, k) : u[slot];
+      const int unknown = group.unknown(row, k);
+      points(i, k) = unknown < 0 ? group.base(row, k) : u[unknown];
     }
   return points;
 }

@@ -11,9 +11,9 @@ namespace uq {
 SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws,
                                const Eigen::VectorXd& log_likelihood) {
   SurrogateShare found;
-  for (const Slot& slot : model.slots)
-    if (slot.own) found.shares.push_back(1.0);
-  if (!found.shares.empty()) found.parameter = model.slots.front().label;
+  for (const Unknown& unknown : model.unknowns)
+    if (unknown.own) found.shares.push_back(1.0);
+  if (!found.shares.empty()) found.parameter = model.unknowns.front().label;
   if (draws.rows() < 2) return found;
   const Eigen::VectorXd log_weight = log_likelihoods(without_surrogate_error(model), draws) - log_likelihood;
   if (!std::isfinite(log_weight.maxCoeff())) return found;
@@ -25,7 +25,7 @@ SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& dr
   found.share = -1.0;
   std::size_t own = 0;
   for (Eigen::Index k = 0; k < draws.cols(); ++k) {
-    if (!model.slots[k].own) continue;
+    if (!model.unknowns[k].own) continue;
     const Eigen::ArrayXd u = draws.col(k).array();
     const double with = u.mean(), without = (weight.array() * u).sum();
     const double variance = std::max((u - with).square().mean(), 1e-300);
@@ -34,7 +34,7 @@ SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& dr
     found.shares[own++] = share;
     if (share > found.share) {
       found.share = share;
-      found.parameter = model.slots[k].label;
+      found.parameter = model.unknowns[k].label;
     }
   }
   return found;

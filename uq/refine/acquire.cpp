@@ -31,7 +31,7 @@ Eigen::MatrixXd unshifted_rows(const RowGroup& group, const Eigen::VectorXd& u) 
   Eigen::MatrixXd points = group.base;
   for (Index k = 0; k < points.cols(); ++k)
     for (Index i = 0; i < points.rows(); ++i)
-      if (group.slot(i, k) >= 0) points(i, k) = u[group.slot(i, k)];
+      if (group.unknown(i, k) >= 0) points(i, k) = u[group.unknown(i, k)];
   return points;
 }
 
@@ -99,7 +99,8 @@ ReferencePoints reference_points(const CaseModel& model, const Eigen::MatrixXd& 
   const Eigen::MatrixXd cube =
       surrogate::scrambled_sobol(static_cast<int>(from_prior), static_cast<int>(unknowns), options.seed);
   for (Index i = 0; i < from_prior; ++i)
-    for (Index k = 0; k < unknowns; ++k) reference.u(from_draws + i, k) = model.slots[k].prior.inverse_cdf(cube(i, k));
+    for (Index k = 0; k < unknowns; ++k)
+      reference.u(from_draws + i, k) = model.unknowns[k].prior.inverse_cdf(cube(i, k));
   const Eigen::VectorXd log_likelihood = log_likelihoods(model, reference.u);
   if (!std::isfinite(log_evidence))
     log_evidence = log_sum(log_likelihood.tail(from_prior)) - std::log(static_cast<double>(from_prior));
@@ -148,7 +149,8 @@ IntegratedVariance::IntegratedVariance(const CaseModel& model, const ReferencePo
       group.more.push_back(std::move(total));
       stacked.middleRows(j * count, count) = unshifted_rows(rows, u);
       for (Index i = 0; i < count; ++i)
-        factor[j * count + i] = rows.measurement.plain() ? 1.0 : meter_at(rows.measurement, model.slots, u, i).factor;
+        factor[j * count + i] =
+            rows.measurement.plain() ? 1.0 : meter_at(rows.measurement, model.unknowns, u, i).factor;
     }
     std::vector<RunPoint> members;
     for (std::size_t c = 0; c < candidates.size(); ++c)

@@ -31,7 +31,7 @@ int controls_of(const CaseModel& model) {
 
 Eigen::VectorXd prior_point(const CaseModel& model, const Eigen::VectorXd& cube) {
   Eigen::VectorXd u(model.dimension());
-  for (Index k = 0; k < u.size(); ++k) u[k] = model.slots[k].prior.inverse_cdf(cube[k]);
+  for (Index k = 0; k < u.size(); ++k) u[k] = model.unknowns[k].prior.inverse_cdf(cube[k]);
   return u;
 }
 
@@ -154,8 +154,8 @@ RunPoint run_at(const RowGroup& group, Index row, const Eigen::VectorXd& u) {
   RunPoint point{group.emulator.material, Eigen::VectorXd::Zero(parameters), Eigen::VectorXd::Zero(controls)};
   for (std::size_t k = 0; k < group.emulator.inputs.size(); ++k) {
     const EmulatorInput& input = group.emulator.inputs[k];
-    const int slot = group.slot(row, static_cast<Index>(k));
-    const double value = slot < 0 ? group.base(row, static_cast<Index>(k)) : u[slot];
+    const int unknown = group.unknown(row, static_cast<Index>(k));
+    const double value = unknown < 0 ? group.base(row, static_cast<Index>(k)) : u[unknown];
     (input.kind == InputKind::parameter ? point.parameters : point.controls)[input.index] = value;
   }
   return point;

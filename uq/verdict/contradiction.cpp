@@ -30,7 +30,7 @@ Eigen::MatrixXd starting_points(const data::Study& study, const CaseModel& model
   Eigen::MatrixXd starts(1 + starts_over_prior, model.dimension());
   starts.row(0) = first.transpose();
   for (Eigen::Index i = 1; i < starts.rows(); ++i)
-    for (Eigen::Index k = 0; k < starts.cols(); ++k) starts(i, k) = model.slots[k].prior.draw(random);
+    for (Eigen::Index k = 0; k < starts.cols(); ++k) starts(i, k) = model.unknowns[k].prior.draw(random);
   return starts;
 }
 

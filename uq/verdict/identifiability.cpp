@@ -17,28 +17,28 @@ namespace uq {
 namespace {
 
 /// Values of unknown k in the study's unit.
-Eigen::VectorXd shown(const Slot& slot, const Eigen::VectorXd& u) {
-  const data::Parameter& parameter = slot.prior.parameter();
+Eigen::VectorXd shown(const Unknown& unknown, const Eigen::VectorXd& u) {
+  const data::Parameter& parameter = unknown.prior.parameter();
   Eigen::VectorXd values(u.size());
   for (Eigen::Index i = 0; i < u.size(); ++i) values[i] = in_study_unit(parameter, u[i]);
   return values;
 }
 
-double shown(const Slot& slot, double u) { return in_study_unit(slot.prior.parameter(), u); }
+double shown(const Unknown& unknown, double u) { return in_study_unit(unknown.prior.parameter(), u); }
 
 /// The parts of the interval, with the draws nearest to each.
-std::vector<ValueRange> ranges_of(const Slot& slot, const Eigen::VectorXd& u, const Profile& profile) {
+std::vector<ValueRange> ranges_of(const Unknown& unknown, const Eigen::VectorXd& u, const Profile& profile) {
   std::vector<std::vector<double>> members(profile.parts.size());
   if (!members.empty())
-    for (const double draw : u) members[part_of(profile, draw)].push_back(shown(slot, draw));
+    for (const double draw : u) members[part_of(profile, draw)].push_back(shown(unknown, draw));
   std::vector<ValueRange> ranges;
   for (std::size_t i = 0; i < members.size(); ++i) {
     const ProfilePart& part = profile.parts[i];
-    ValueRange range{.low = shown(slot, part.low), .high = shown(slot, part.high)};
+    ValueRange range{.low = shown(unknown, part.low), .high = shown(unknown, part.high)};
     range.low_open = i == 0 && !profile.low;
     range.high_open = i + 1 == members.size() && !profile.high;
     range.weight = static_cast<double>(members[i].size()) / static_cast<double>(u.size());
-    range.mean = shown(slot, profile.u[part.best]);
+    range.mean = shown(unknown, profile.u[part.best]);
     if (members[i].size() > 1) {
       // A copy is aligned; sums over a map would depend on where its memory happens to lie.
       const Eigen::ArrayXd values =
@@ -51,47 +51,47 @@ std::vector<ValueRange> ranges_of(const Slot& slot, const Eigen::VectorXd& u, co
   return ranges;
 }
 
-ParameterReport describe_draws(const Slot& slot, const Eigen::VectorXd& u, const Profile& profile) {
-  const data::Parameter& parameter = slot.prior.parameter();
+ParameterReport describe_draws(const Unknown& unknown, const Eigen::VectorXd& u, const Profile& profile) {
+  const data::Parameter& parameter = unknown.prior.parameter();
   ParameterReport report;
-  report.name = slot.label;
+  report.name = unknown.label;
   report.unit = parameter.unit.symbol;
-  report.prior_low = shown(slot, slot.prior.low());
-  report.prior_high = shown(slot, slot.prior.high());
-  report.prior_mean = parameter.unit.from_si(slot.prior.value_mean());
-  report.prior_sd = slot.prior.value_sd() / parameter.unit.factor;
-  const Eigen::VectorXd values = shown(slot, u);
+  report.prior_low = shown(unknown, unknown.prior.low());
+  report.prior_high = shown(unknown, unknown.prior.high());
+  report.prior_mean = parameter.unit.from_si(unknown.prior.value_mean());
+  report.prior_sd = unknown.prior.value_sd() / parameter.unit.factor;
+  const Eigen::VectorXd values = shown(unknown, u);
   report.mean = values.mean();
   report.sd = std::sqrt((values.array() - report.mean).square().sum() / static_cast<double>(values.size() - 1));
   report.q05 = quantile(values, 0.05);
   report.q50 = quantile(values, 0.50);
   report.q95 = quantile(values, 0.95);
   report.contraction = 1.0 - std::pow(report.sd / report.prior_sd, 2);
-  if (profile.low) report.profile_low = shown(slot, *profile.low);
-  if (profile.high) report.profile_high = shown(slot, *profile.high);
+  if (profile.low) report.profile_low = shown(unknown, *profile.low);
+  if (profile.high) report.profile_high = shown(unknown, *profile.high);
   report.low_is_bound = !profile.low;
   report.high_is_bound = !profile.high;
-  report.intervals = ranges_of(slot, u, profile);
+  report.intervals = ranges_of(unknown, u, profile);
   for (const ProfileBarrier& barrier : profile.barriers)
-    report.holes.push_back({.low = shown(slot, barrier.low),
-                            .high = shown(slot, barrier.high),
+    report.holes.push_back({.low = shown(unknown, barrier.low),
+                            .high = shown(unknown, barrier.high),
                             .deviance = barrier.deviance,
                             .in_doubt = barrier.in_doubt});
-  const Eigen::VectorXd x = shown(slot, profile.u);
+  const Eigen::VectorXd x = shown(unknown, profile.u);
   report.profile_x.assign(x.begin(), x.end());
   report.profile_deviance.assign(profile.deviance.begin(), profile.deviance.end());
   return report;
 }
 
 /// What decides the word, but for influence.
-WordFacts facts_of(const ParameterReport& report, const Profile& profile, const Slot& slot) {
+WordFacts facts_of(const ParameterReport& report, const Profile& profile, const Unknown& unknown) {
   double within = 0.0;
   for (const ValueRange& part : report.intervals) within += part.weight * part.sd * part.sd;
   return {.influences = true,
           .parts = std::max(1, static_cast<int>(profile.parts.size())),
           .open_low = !profile.low,
           .open_high = !profile.high,
-          .physical_low = physical_low(slot) && !profile.low_pinned,
+          .physical_low = physical_low(unknown) && !profile.low_pinned,
           .contraction = report.contraction,
           .contraction_within =
               profile.parts.size() > 1 ? 1.0 - within / (report.prior_sd * report.prior_sd) : report.contraction};
@@ -167,24 +167,25 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
   std::vector<Verdict> words;
   for (std::size_t k = 0; k < all.profiles.size(); ++k) {
     const Profile& profile = all.profiles[k];
-    const Slot& slot = model.slots[k];
-    ParameterReport report = describe_draws(slot, draws.col(static_cast<Eigen::Index>(k)), profile);
-    report.map = shown(slot, mode[k]);
-    if (profile.low_pinned) report.low_pinned_by = model.slots[static_cast<std::size_t>(*profile.low_pinned)].label;
-    if (profile.high_pinned) report.high_pinned_by = model.slots[static_cast<std::size_t>(*profile.high_pinned)].label;
+    const Unknown& unknown = model.unknowns[k];
+    ParameterReport report = describe_draws(unknown, draws.col(static_cast<Eigen::Index>(k)), profile);
+    report.map = shown(unknown, mode[k]);
+    if (profile.low_pinned) report.low_pinned_by = model.unknowns[static_cast<std::size_t>(*profile.low_pinned)].label;
+    if (profile.high_pinned)
+      report.high_pinned_by = model.unknowns[static_cast<std::size_t>(*profile.high_pinned)].label;
     ParameterEvidence one{.name = report.name,
                           .unit = report.unit,
                           .mean = report.mean,
                           .sd = report.sd,
                           .q95 = report.q95,
-                          .facts = facts_of(report, profile, slot),
+                          .facts = facts_of(report, profile, unknown),
                           .parts = report.intervals,
                           .range_low = report.prior_low,
                           .range_high = report.prior_high,
                           .low_pinned_by = report.low_pinned_by,
                           .high_pinned_by = report.high_pinned_by};
     if (profile.conditional_on)
-      one.conditional_on = model.slots[static_cast<std::size_t>(*profile.conditional_on)].label;
+      one.conditional_on = model.unknowns[static_cast<std::size_t>(*profile.conditional_on)].label;
     if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
     one.unusable = !doubt_of(model).empty();
     one.surrogate_share = surrogate.shares[k];

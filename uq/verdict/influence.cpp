@@ -20,7 +20,7 @@ Eigen::MatrixXd inputs_at(const RowGroup& group, const Yardstick::Group& looked,
   for (Eigen::Index i = 0; i < points.rows(); ++i)
     for (Eigen::Index k = 0; k < points.cols(); ++k) {
       const Eigen::Index row = looked.rows[i];
-      const int s = group.slot(row, k);
+      const int s = group.unknown(row, k);
       points(i, k) = s < 0 ? group.base(row, k) : u[s];
     }
   return points;
@@ -34,7 +34,7 @@ Eigen::VectorXd means_at(const RowGroup& group, const Yardstick::Group& looked, 
 
 bool acts_on_emulators(const CaseModel& model, int unknown) {
   return std::any_of(model.groups.begin(), model.groups.end(),
-                     [&](const RowGroup& group) { return (group.slot.array() == unknown).any(); });
+                     [&](const RowGroup& group) { return (group.unknown.array() == unknown).any(); });
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ Yardstick make_yardstick(const CaseModel& model, const Eigen::VectorXd& best) {
     const surrogate::Prediction known = group.emulator.predict(inputs_at(group, looked, best));
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::Index row = looked.rows[i];
-      const double factor = meter_at(group.measurement, model.slots, best, row).factor;
+      const double factor = meter_at(group.measurement, model.unknowns, best, row).factor;
       const double variance = law.noise[row] + factor * factor * std::max(known.covariance(i, i), 0.0);
       looked.weight[i] = variance > 0.0 ? factor / std::sqrt(variance) : 0.0;
     }
@@ -116,7 +116,7 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
     Influence& influence = found[k];
     if (!acts_on_emulators(model, k)) {
       // A nuisance of the meter acts without the surrogate; a parameter that no emulator sees does nothing.
-      influence.some = influence.shown = model.slots[k].nuisance != Acts::none;
+      influence.some = influence.shown = model.unknowns[k].nuisance != Acts::none;
       continue;
     }
     double effect = 0.0, doubt = 0.0, ends_effect = 0.0, ends_doubt = 0.0;
@@ -126,7 +126,7 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
         const RowGroup& group = model.groups[g];
         const Yardstick::Group& looked = yardstick.groups[g];
         const auto n = static_cast<Eigen::Index>(looked.rows.size());
-        if (n == 0 || !(group.slot.array() == k).any()) continue;
+        if (n == 0 || !(group.unknown.array() == k).any()) continue;
         // All levels of the unknown, one below the other: about their own mean, so that what they share drops out.
         Eigen::MatrixXd points(levels * n, group.base.cols());
         for (Eigen::Index t = 0; t < levels; ++t) {

@@ -30,7 +30,7 @@ double log_mass(const CaseModel& model, const Eigen::VectorXd& u) {
   if (noise.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
   noise.matrixL().solveInPlace(slopes);
   Eigen::MatrixXd precision = slopes.transpose() * slopes;
-  for (Eigen::Index k = 0; k < u.size(); ++k) precision(k, k) += 1.0 / std::pow(model.slots[k].prior.sd(), 2);
+  for (Eigen::Index k = 0; k < u.size(); ++k) precision(k, k) += 1.0 / std::pow(model.unknowns[k].prior.sd(), 2);
   const Eigen::LLT<Eigen::MatrixXd> factor(precision);
   if (factor.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
   return log_likelihood(model, u) + log_prior(model, u) - factor.matrixLLT().diagonal().array().log().sum();
@@ -67,7 +67,7 @@ Parting most_parting(const CaseModel& model, const Mode& a, const Mode& b) {
           for (int which = 0; which < 2; ++which) {
             Eigen::VectorXd point = group.base.row(row).transpose();
             for (Eigen::Index c = 0; c < point.size(); ++c)
-              if (const int s = group.slot(row, c); s >= 0) point[c] = (which == 0 ? a : b).point[s];
+              if (const int s = group.unknown(row, c); s >= 0) point[c] = (which == 0 ? a : b).point[s];
             point[k] = t / (settings - 1.0);
             points.row(which * settings + t) = point.transpose();
           }
@@ -149,13 +149,13 @@ std::vector<std::string> unvisited(const CaseModel& model, const Profiles& all, 
     for (const double value : mass) sum += std::exp(value - largest);
     for (std::size_t i = 0; i < profile.parts.size(); ++i) {
       if (share[i] >= visited || std::exp(mass[i] - largest) / sum < noticed) continue;
-      const Slot& slot = model.slots[profile.unknown];
-      const data::Unit& unit = slot.prior.parameter().unit;
+      const Unknown& unknown = model.unknowns[profile.unknown];
+      const data::Unit& unit = unknown.prior.parameter().unit;
       const double width = (profile.parts[i].high - profile.parts[i].low) *
-                           std::abs(slot.slope(profile.u[profile.parts[i].best])) / unit.factor;
+                           std::abs(unknown.slope(profile.u[profile.parts[i].best])) / unit.factor;
       names.push_back(
-          slot.label + " near " +
-          with_error(in_study_unit(slot.prior.parameter(), profile.u[profile.parts[i].best]), 0.25 * width));
+          unknown.label + " near " +
+          with_error(in_study_unit(unknown.prior.parameter(), profile.u[profile.parts[i].best]), 0.25 * width));
     }
   }
   return names;

@@ -203,7 +203,7 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
   climb(model, box, guides, 0.5 * options.thresholds.profile_drop, found);
   found.influence = find_influence(model, found.best.x, guides.draws, options.thresholds);
   for (int k = 0; k < model.dimension(); ++k) {
-    if (!model.slots[k].own) continue;
+    if (!model.unknowns[k].own) continue;
     Profile profile = sweep(model, box, k, guides, found, options);
     Eigen::Index highest = 0;
     if (profile.deviance.maxCoeff(&highest) > found.best.value) {
@@ -217,9 +217,9 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
   return found;
 }
 
-bool physical_low(const Slot& slot) {
-  const data::Parameter& parameter = slot.prior.parameter();
-  return parameter.scale == data::Scale::linear && parameter.low == 0.0 && slot.prior.low() < 1e-12;
+bool physical_low(const Unknown& unknown) {
+  const data::Parameter& parameter = unknown.prior.parameter();
+  return parameter.scale == data::Scale::linear && parameter.low == 0.0 && unknown.prior.low() < 1e-12;
 }
 
 }  // namespace uq

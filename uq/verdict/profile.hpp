@@ -82,6 +82,6 @@ Differentiable profiled(const CaseModel& model);
 void finish_profile(const CaseModel& model, const Profiles& all, Profile& profile, const VerdictThresholds& thresholds);
 
 /// The low end of an unknown's support is a bound that nature sets, not the user: a linear range that begins at 0.
-bool physical_low(const Slot& slot);
+bool physical_low(const Unknown& unknown);
 
 }  // namespace uq

@@ -71,7 +71,7 @@ std::optional<int> pinned(const CaseModel& model, const Box& box, const Profiles
   for (int other = 0; other < model.dimension(); ++other) {
     if (other == profile.unknown || !all.influence[other].some) continue;
     const double width = box.upper[other] - box.lower[other];
-    const bool low = end.maximiser[other] - box.lower[other] < 1e-4 * width && !physical_low(model.slots[other]);
+    const bool low = end.maximiser[other] - box.lower[other] < 1e-4 * width && !physical_low(model.unknowns[other]);
     if (!low && box.upper[other] - end.maximiser[other] >= 1e-4 * width) continue;
     // The middle of where the path has it inside the interval.
     double least = box.upper[other], most = box.lower[other];

@@ -22,7 +22,7 @@ Eigen::MatrixXd information(const CaseModel& model, const Eigen::VectorXd& best)
   Eigen::MatrixXd slopes = sensitivity(model, best);
   factor(predict(model, best).total(), "the data at the best fit").llt.matrixL().solveInPlace(slopes);
   Eigen::MatrixXd found = slopes.transpose() * slopes;
-  for (Eigen::Index s = 0; s < best.size(); ++s) found(s, s) += 1.0 / std::pow(model.slots[s].prior.sd(), 2);
+  for (Eigen::Index s = 0; s < best.size(); ++s) found(s, s) += 1.0 / std::pow(model.unknowns[s].prior.sd(), 2);
   return found;
 }
 
@@ -39,7 +39,7 @@ std::vector<RangeEnd> range_ends(const CaseModel& model, const Eigen::VectorXd& 
       inside.push_back(s);
       continue;
     }
-    if (end == End::low_end && physical_low(model.slots[s])) continue;
+    if (end == End::low_end && physical_low(model.unknowns[s])) continue;
     if (gradient.size() == 0) gradient = profiled(model)(best).gradient;
     if (end == End::low_end ? gradient[s] < 0.0 : gradient[s] > 0.0) pulled.push_back(s);
   }

@@ -45,14 +45,14 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
       const bool low = u[s] - lower[s] <= slack, high = upper[s] - u[s] <= slack;
       if (!low && !high) free.push_back(s);
       // A bound at 0 that nature sets ends nothing (uq/verdict/profile.hpp).
-      if (s < model.own_count() && (high || (low && !physical_low(model.slots[s])))) point.at_end = true;
+      if (s < model.own_count() && (high || (low && !physical_low(model.unknowns[s])))) point.at_end = true;
     }
     point.slopes.resize(slopes.rows(), static_cast<Eigen::Index>(free.size()));
     point.precision.resize(point.slopes.cols());
     for (std::size_t k = 0; k < free.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
       point.slopes.col(column) = slopes.col(free[k]);
-      point.precision[column] = 1.0 / std::pow(model.slots[free[k]].prior.sd(), 2);
+      point.precision[column] = 1.0 / std::pow(model.unknowns[free[k]].prior.sd(), 2);
     }
     found.push_back(std::move(point));
   }

@@ -27,10 +27,10 @@ constexpr double tighter = 0.5;
 const double straight_fill = std::sqrt(2.0);
 
 /// Value of own parameter k at u, in the study's unit.
-double shown(const CaseModel& model, int k, double u) { return in_study_unit(model.slots[k].prior.parameter(), u); }
+double shown(const CaseModel& model, int k, double u) { return in_study_unit(model.unknowns[k].prior.parameter(), u); }
 
 double range_of(const CaseModel& model, int k) {
-  const data::Parameter& parameter = model.slots[k].prior.parameter();
+  const data::Parameter& parameter = model.unknowns[k].prior.parameter();
   return std::abs(parameter.unit.from_si(parameter.high) - parameter.unit.from_si(parameter.low));
 }
 
@@ -136,7 +136,7 @@ void add_equivalent_points(TradedPair& pair, const CaseModel& model, const Subse
   }
   for (const Eigen::Index i : chosen) {
     std::map<std::string, double> point;
-    for (int k = 0; k < model.own_count(); ++k) point[model.slots[k].label] = shown(model, k, along->path(i, k));
+    for (int k = 0; k < model.own_count(); ++k) point[model.unknowns[k].label] = shown(model, k, along->path(i, k));
     pair.equivalent.push_back(std::move(point));
     const Eigen::VectorXd u = along->path.row(i).transpose();
     pair.equivalent_u.emplace_back(u.begin(), u.end());
@@ -148,8 +148,8 @@ TradedPair describe(const CaseModel& model, const Found& found, const Eigen::Mat
   TradedPair pair;
   std::vector<CombinationColumn> columns;
   for (const int k : found.subset) {
-    const data::Parameter& parameter = model.slots[k].prior.parameter();
-    pair.parameters.push_back(model.slots[k].label);
+    const data::Parameter& parameter = model.unknowns[k].prior.parameter();
+    pair.parameters.push_back(model.unknowns[k].label);
     columns.push_back({pair.parameters.back(), parameter.unit.symbol, values.col(k).cwiseAbs().mean()});
   }
   // Of the members, the two that hang together most.

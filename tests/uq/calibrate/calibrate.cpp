@@ -307,7 +307,7 @@ TEST_CASE("the Bayes factor of a parameter held is that of the density ratio of 
     const Calibration found = calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false});
     const SampledCase& sampled = found.cases[0];
     int column = 0;
-    while (sampled.model->slots[static_cast<std::size_t>(column)].label != "cohesion") ++column;
+    while (sampled.model->unknowns[static_cast<std::size_t>(column)].label != "cohesion") ++column;
     const Eigen::MatrixXd draws = sampled.draws.coordinate(column);
     constexpr double half = 0.03;
     const double inside = static_cast<double>(((draws.array() - u).abs() < half).count());
@@ -345,11 +345,11 @@ TEST_CASE("the draws as a CSV are those of the posterior, row by row", "[uq]") {
   const data::Csv csv = data::parse_csv(draws_csv(sampled), "draws.csv");
   const auto& chains = sampled.draws.chains;
   REQUIRE(csv.rows.size() == chains.size() * static_cast<std::size_t>(chains[0].x.rows()));
-  const Slot& slot = sampled.model->slots[0];
-  const std::size_t column = csv.column(slot.label);
+  const Unknown& unknown = sampled.model->unknowns[0];
+  const std::size_t column = csv.column(unknown.label);
   const double last = csv.number(csv.rows.back(), column);
   const Eigen::Index row = chains.back().x.rows() - 1;
-  CHECK(last == Approx(slot.prior.parameter().unit.from_si(slot.value(chains.back().x(row, 0)))));
+  CHECK(last == Approx(unknown.prior.parameter().unit.from_si(unknown.value(chains.back().x(row, 0)))));
   CHECK(csv.number(csv.rows.back(), csv.column("lp")) == Approx(chains.back().log_density[row]));
 }
 

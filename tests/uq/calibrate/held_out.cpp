@@ -18,12 +18,12 @@ struct Count {
 
 /// The case of one run of a material: all its outputs at its speed, everything that its rows vary free.
 CaseModel case_of_run(const data::Study& study, const std::vector<FittedSurrogate>& fitted, std::size_t run) {
-  CaseModel model{.name = "held out", .slots = {}, .groups = {}, .linked = {}, .observed_sets = {}};
+  CaseModel model{.name = "held out", .unknowns = {}, .groups = {}, .linked = {}, .observed_sets = {}};
   const auto& inputs = fitted.front().rows.inputs;
   for (const EmulatorInput& input : inputs)
     if (input.kind == InputKind::parameter) {
       const data::Parameter& parameter = study.parameters[input.index];
-      model.slots.push_back({.label = parameter.name, .prior = ScaledPrior(parameter, parameter.prior), .cut = {}});
+      model.unknowns.push_back({.label = parameter.name, .prior = ScaledPrior(parameter, parameter.prior), .cut = {}});
     }
   const auto row = static_cast<Eigen::Index>(run);
   for (const FittedSurrogate& one : fitted) {
@@ -43,15 +43,15 @@ CaseModel case_of_run(const data::Study& study, const std::vector<FittedSurrogat
         surrogate::condition(rest, {.kernel = one.process->kernel(), .mean = one.process->mean()}, hyper));
     RowGroup group{.emulator = make_emulator(process, one.rows.material, one.rows.output, inputs),
                    .base = all.x.row(row),
-                   .slot = Eigen::MatrixXi::Constant(1, all.x.cols(), -1),
+                   .unknown = Eigen::MatrixXi::Constant(1, all.x.cols(), -1),
                    .observed = all.y.segment(row, 1),
                    .variance = all.noise_variance.segment(row, 1),
                    .origin = {{0, 0, one.rows.output}},
                    .coordinate = {}};
     group.variance.array() += hyper.nugget_sd * hyper.nugget_sd;  // another seed would scatter so much more
-    int slot = 0;
+    int unknown = 0;
     for (std::size_t k = 0; k < inputs.size(); ++k)
-      if (inputs[k].kind == InputKind::parameter) group.slot(0, static_cast<Eigen::Index>(k)) = slot++;
+      if (inputs[k].kind == InputKind::parameter) group.unknown(0, static_cast<Eigen::Index>(k)) = unknown++;
     find_coordinates(group, model.dimension());
     model.groups.push_back(std::move(group));
   }
@@ -79,15 +79,15 @@ TEST_CASE("runs left out of the surrogates, as data, have their own parameters i
           sample_mixture(posterior_target(model), {.draws = 400, .stop = {.ess_bulk = 600.0}, .seed = 1});
       if (!draws.converged) continue;
       const Eigen::MatrixXd all = draws.pooled();
-      int slot = 0;
+      int unknown = 0;
       for (std::size_t k = 0; k < fitted.front().rows.inputs.size(); ++k) {
         if (fitted.front().rows.inputs[k].kind != InputKind::parameter) continue;
         const double truth = fitted.front().rows.set.x(static_cast<Eigen::Index>(run), static_cast<Eigen::Index>(k));
-        const Eigen::VectorXd u = all.col(slot);
-        Count& count = counts[model->slots[static_cast<std::size_t>(slot)].label];
+        const Eigen::VectorXd u = all.col(unknown);
+        Count& count = counts[model->unknowns[static_cast<std::size_t>(unknown)].label];
         ++count.of;
         if (quantile(u, 0.05) <= truth && truth <= quantile(u, 0.95)) ++count.inside;
-        ++slot;
+        ++unknown;
       }
     }
   }

@@ -41,11 +41,11 @@ CaseModel repeated(int times) {
 void free_noise(CaseModel& model, bool is_sd) {
   const double low = is_sd ? 0.005 : 0.2, high = is_sd ? 0.2 : 5.0;
   const data::Parameter parameter = closed_form::parameter_of({"noise", low, high});
-  model.slots.push_back({.label = "noise",
-                         .prior = ScaledPrior(parameter, parameter.prior),
-                         .own = false,
-                         .nuisance = Acts::on_spread,
-                         .cut = {}});
+  model.unknowns.push_back({.label = "noise",
+                            .prior = ScaledPrior(parameter, parameter.prior),
+                            .own = false,
+                            .nuisance = Acts::on_spread,
+                            .cut = {}});
   RowGroup& group = model.groups[0];
   group.measurement.sets.push_back({.first = 0,
                                     .count = group.base.rows(),

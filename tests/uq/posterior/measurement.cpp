@@ -23,7 +23,7 @@ data::Prior normal_prior(double mean, double sd) {
   return {.kind = data::PriorKind::normal, .low = mean - 8.0 * sd, .high = mean + 8.0 * sd, .mean = mean, .sd = sd};
 }
 
-uq::Slot nuisance(const std::string& name, uq::Acts acts, double mean, double sd) {
+uq::Unknown nuisance(const std::string& name, uq::Acts acts, double mean, double sd) {
   data::Parameter parameter{.name = name, .target = name, .low = mean - 8.0 * sd, .high = mean + 8.0 * sd};
   return {.label = name,
           .prior = uq::ScaledPrior(parameter, normal_prior(mean, sd)),
@@ -79,7 +79,7 @@ void check_moments(const uq::CaseModel& model, const Exact& exact) {
   REQUIRE(draws.converged);
   for (int k = 0; k < 2; ++k) {
     Eigen::MatrixXd values = draws.coordinate(k);
-    for (double& value : values.reshaped()) value = model.slots[static_cast<std::size_t>(k)].value(value);
+    for (double& value : values.reshaped()) value = model.unknowns[static_cast<std::size_t>(k)].value(value);
     const double sd = std::sqrt(exact.covariance(k, k));
     CHECK(std::abs(values.mean() - exact.mean[k]) < 4.0 * uq::mean_mcse(values));
     CHECK(std::sqrt((values.array() - values.mean()).square().mean()) == Approx(sd).epsilon(0.03));
@@ -96,12 +96,12 @@ TEST_CASE("the gradient through gain, offset, noise, common errors, settings and
       make_case({{"a"}, {"b"}}, {}, five, Eigen::VectorXd::LinSpaced(5, 1.9, 2.4), Eigen::VectorXd::Constant(5, 0.05));
   uq::RowGroup& group = model.groups[0];
   group.emulator = process_of(group.emulator.inputs);
-  model.slots.push_back(nuisance("gain", uq::Acts::on_mean, 1.0, 0.05));
-  model.slots.push_back(nuisance("scale", uq::Acts::on_mean, 2.0, 0.1));
-  model.slots.push_back(nuisance("offset", uq::Acts::on_mean, 0.1, 0.05));
-  model.slots.push_back(nuisance("noise", uq::Acts::on_spread, 1.2, 0.1));
-  model.slots.push_back(nuisance("discrepancy_sd", uq::Acts::on_spread, 0.1, 0.01));
-  model.slots.push_back(nuisance("discrepancy_length", uq::Acts::on_spread, 0.4, 0.03));
+  model.unknowns.push_back(nuisance("gain", uq::Acts::on_mean, 1.0, 0.05));
+  model.unknowns.push_back(nuisance("scale", uq::Acts::on_mean, 2.0, 0.1));
+  model.unknowns.push_back(nuisance("offset", uq::Acts::on_mean, 0.1, 0.05));
+  model.unknowns.push_back(nuisance("noise", uq::Acts::on_spread, 1.2, 0.1));
+  model.unknowns.push_back(nuisance("discrepancy_sd", uq::Acts::on_spread, 0.1, 0.01));
+  model.unknowns.push_back(nuisance("discrepancy_length", uq::Acts::on_spread, 0.4, 0.03));
   uq::ReadSet first = all_rows(3), second = all_rows(2);
   second.first = 3;
   first.factors = {2, 3};
@@ -139,7 +139,7 @@ TEST_CASE("the gradient through gain, offset, noise, common errors, settings and
   matches(model, {0.3, 0.4, 0.5, 0.45, 0.6, 0.4, 0.5, 0.55});
   matches(model, {0.8, 0.2, 0.6, 0.5, 0.3, 0.7, 0.6, 0.4});
   // Also where no common shift exists.
-  model.groups[0].slot(0, 1) = -1;
+  model.groups[0].unknown(0, 1) = -1;
   model.groups[0].base(0, 1) = 0.5;
   uq::find_coordinates(model.groups[0], model.dimension());
   REQUIRE_FALSE(model.groups[0].uniform);
@@ -148,7 +148,7 @@ TEST_CASE("the gradient through gain, offset, noise, common errors, settings and
 
 TEST_CASE("an unknown offset with a normal prior widens the posterior as the closed form says", "[uq]") {
   uq::CaseModel model = line(line_data, 0.05);
-  model.slots.push_back(nuisance("offset", uq::Acts::on_mean, 0.2, 0.3));
+  model.unknowns.push_back(nuisance("offset", uq::Acts::on_mean, 0.2, 0.3));
   uq::ReadSet set = all_rows(5);
   set.offsets = {2};
   model.groups[0].measurement.sets = {set};
@@ -183,7 +183,7 @@ TEST_CASE("a control's error enters by the slope of the model: common to a set, 
 TEST_CASE("a relative common error is a gain that was integrated out: the same posterior to first order", "[uq]") {
   const uq::CaseModel plain = line(line_data, 0.05);
   uq::CaseModel with_gain = plain, with_covariance = plain;
-  with_gain.slots.push_back(nuisance("gain", uq::Acts::on_mean, 1.0, 0.03));
+  with_gain.unknowns.push_back(nuisance("gain", uq::Acts::on_mean, 1.0, 0.03));
   uq::ReadSet set = all_rows(5);
   set.factors = {2};
   with_gain.groups[0].measurement.sets = {set};
@@ -224,17 +224,17 @@ TEST_CASE("an unknown noise scale finds the scatter that the data have, and wide
     return std::pair{std::sqrt((slope.array() - slope.mean()).square().mean()), draws};
   };
   const double stated = sd_of_slope(model).first;
-  model.slots.push_back({.label = "noise",
-                         .prior = uq::ScaledPrior(parameter, prior),
-                         .own = false,
-                         .nuisance = uq::Acts::on_spread,
-                         .cut = {}});
+  model.unknowns.push_back({.label = "noise",
+                            .prior = uq::ScaledPrior(parameter, prior),
+                            .own = false,
+                            .nuisance = uq::Acts::on_spread,
+                            .cut = {}});
   uq::ReadSet set = all_rows(20);
   set.noise = 2;
   model.groups[0].measurement.sets = {set};
   const auto [widened, draws] = sd_of_slope(model);
   Eigen::VectorXd scale = draws.pooled().col(2);
-  for (double& value : scale) value = model.slots[2].value(value);
+  for (double& value : scale) value = model.unknowns[2].value(value);
   CHECK(uq::quantile(scale, 0.05) < 3.0);
   CHECK(uq::quantile(scale, 0.95) > 2.4);
   CHECK(widened / stated == Approx(scale.mean()).epsilon(0.1));
@@ -246,8 +246,8 @@ TEST_CASE(
   const Formula product = [](const Eigen::VectorXd& p, double x) { return p[0] * (1.0 + x); };
   for (const double sd : {0.02, 0.5}) {
     uq::CaseModel model = make_synthetic({{"a", 0.0, 4.0}}, product, five, Eigen::VectorXd::Constant(1, 1.0), 0.03, 1);
-    model.slots.push_back(nuisance("gain", uq::Acts::on_mean, 1.0, sd));
-    model.slots[1].prior = [&] {
+    model.unknowns.push_back(nuisance("gain", uq::Acts::on_mean, 1.0, sd));
+    model.unknowns[1].prior = [&] {
       data::Parameter parameter{
           .name = "gain", .target = "gain", .low = std::max(0.02, 1.0 - 6.0 * sd), .high = 1.0 + 6.0 * sd};
       data::Prior prior = normal_prior(1.0, sd);

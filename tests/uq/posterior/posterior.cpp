@@ -41,8 +41,8 @@ uq::CaseModel linear_gaussian() {
     x[i] = fact["X"][i][1];
     data[i] = y[static_cast<std::size_t>(i)];
   }
-  const std::vector<Unknown> unknowns = {{"a", m0[0] - 12.0 * sd0, m0[0] + 12.0 * sd0, normal_prior(m0[0], sd0)},
-                                         {"b", m0[1] - 12.0 * sd1, m0[1] + 12.0 * sd1, normal_prior(m0[1], sd1)}};
+  const std::vector<FreeParameter> unknowns = {{"a", m0[0] - 12.0 * sd0, m0[0] + 12.0 * sd0, normal_prior(m0[0], sd0)},
+                                               {"b", m0[1] - 12.0 * sd1, m0[1] + 12.0 * sd1, normal_prior(m0[1], sd1)}};
   const Formula line = [](const Eigen::VectorXd& p, double at) { return p[0] + p[1] * at; };
   return make_case(unknowns, line, x, data, Eigen::VectorXd::Constant(6, fact["sigma"]));
 }
@@ -59,7 +59,7 @@ TEST_CASE("the linear-Gaussian posterior and its evidence are those of the close
   CHECK(exact.log_evidence == Approx(fact["log_evidence"].get<double>()).margin(2e-4));
   CHECK(std::abs(draws.log_evidence - fact["log_evidence"].get<double>()) < 4.0 * draws.log_evidence_error);
   for (int k = 0; k < 2; ++k) {
-    const data::Parameter& parameter = model->slots[static_cast<std::size_t>(k)].prior.parameter();
+    const data::Parameter& parameter = model->unknowns[static_cast<std::size_t>(k)].prior.parameter();
     const double width = parameter.high - parameter.low;
     const double mean = fact["post_mean"][k], sd = std::sqrt(fact["post_cov"][k][k].get<double>());
     CHECK(parameter.axis().from_unit(exact.mean[k]) == Approx(mean).margin(1e-4 * sd));
@@ -104,7 +104,7 @@ TEST_CASE("the gradient of the posterior is that of central differences, with a 
   };
   gradient_matches(model);
   // Rows that take the second parameter from elsewhere: no common shift, so differences take over.
-  model.groups[0].slot(0, 1) = -1;
+  model.groups[0].unknown(0, 1) = -1;
   model.groups[0].base(0, 1) = 0.5;
   uq::find_coordinates(model.groups[0], 2);
   CHECK_FALSE(model.groups[0].uniform);

@@ -41,7 +41,7 @@ TEST_CASE("a curve against a control rises as the model does, though the control
   file.finish();
   const auto model = std::make_shared<const CaseModel>(build_case(study, formula(), 0));
   REQUIRE(model->dimension() == 2);
-  const Eigen::MatrixXd draws = Eigen::RowVector2d(0.5, model->slots[1].prior.mean()).replicate(3, 1);
+  const Eigen::MatrixXd draws = Eigen::RowVector2d(0.5, model->unknowns[1].prior.mean()).replicate(3, 1);
   for (const auto& curves :
        {predictive_curves(study, *model, draws, 1), mean_curves(study, *model, draws.row(0).transpose())}) {
     REQUIRE(curves.size() == 1);

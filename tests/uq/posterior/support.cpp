@@ -47,20 +47,20 @@ Scene scene_of(const Eigen::MatrixXd& runs, double variance = 1e-4) {
   emulator.runs = cloud;
   RowGroup group{.emulator = emulator,
                  .base = Eigen::MatrixXd::Zero(6, 3),
-                 .slot = Eigen::MatrixXi::Constant(6, 3, -1),
+                 .unknown = Eigen::MatrixXi::Constant(6, 3, -1),
                  .observed = Eigen::VectorXd::Ones(6),
                  .variance = Eigen::VectorXd::Constant(6, 0.01),
                  .origin = {},
                  .coordinate = {}};
   for (int i = 0; i < 6; ++i) {
     group.base(i, 2) = 0.1 + 0.16 * i;
-    group.slot(i, 0) = 0;
-    group.slot(i, 1) = 1;
+    group.unknown(i, 0) = 0;
+    group.unknown(i, 1) = 1;
     group.origin.push_back({.set = 0, .point = static_cast<std::size_t>(i), .output = 0});
   }
   scene.model.name = "case";
   for (const data::Parameter& parameter : scene.study.parameters)
-    scene.model.slots.push_back({.label = parameter.name, .prior = ScaledPrior(parameter, {}), .cut = {}});
+    scene.model.unknowns.push_back({.label = parameter.name, .prior = ScaledPrior(parameter, {}), .cut = {}});
   scene.model.groups.push_back(group);
   return scene;
 }

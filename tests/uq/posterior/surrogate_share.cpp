@@ -17,10 +17,10 @@ uq::CaseModel make_model(double surrogate_variance, double bias = 0.0) {
   data::Parameter parameter;
   parameter.name = "theta";
   uq::CaseModel model;
-  model.slots.push_back({.label = "theta", .prior = uq::ScaledPrior(parameter, parameter.prior), .cut = {}});
+  model.unknowns.push_back({.label = "theta", .prior = uq::ScaledPrior(parameter, parameter.prior), .cut = {}});
   uq::RowGroup group{.emulator = {},
                      .base = MatrixXd::Zero(1, 1),
-                     .slot = Eigen::MatrixXi::Zero(1, 1),
+                     .unknown = Eigen::MatrixXi::Zero(1, 1),
                      .observed = VectorXd::Constant(1, 0.5),
                      .variance = VectorXd::Constant(1, data_variance),
                      .origin = {{}},

@@ -33,16 +33,16 @@ uq::CaseModel make_model(const surrogate::GaussianProcess& process) {
   uq::CaseModel model;
   data::Parameter parameter;
   parameter.name = "theta";
-  model.slots.push_back({.label = "theta", .prior = uq::ScaledPrior(parameter, parameter.prior), .cut = {}});
+  model.unknowns.push_back({.label = "theta", .prior = uq::ScaledPrior(parameter, parameter.prior), .cut = {}});
   uq::RowGroup group{.emulator = uq::make_emulator(std::make_shared<const surrogate::GaussianProcess>(process), "", 0,
                                                    {{uq::InputKind::parameter, 0}, {uq::InputKind::control, 0}}),
                      .base = MatrixXd::Zero(2, 2),
-                     .slot = MatrixXd::Constant(2, 2, -1).cast<int>(),
+                     .unknown = MatrixXd::Constant(2, 2, -1).cast<int>(),
                      .observed = Eigen::Vector2d(0.8, 1.0),
                      .variance = VectorXd::Constant(2, error_variance),
                      .origin = {{}, {}},
                      .coordinate = {}};
-  group.slot.col(0).setZero();
+  group.unknown.col(0).setZero();
   group.base.col(1) = Eigen::Vector2d(0.25, 0.75);
   uq::find_coordinates(group, 1);
   model.groups.push_back(group);
@@ -164,7 +164,7 @@ TEST_CASE("a run without scatter at a point that has one tells nothing", "[acqui
   group.emulator = uq::make_emulator(std::make_shared<const surrogate::GaussianProcess>(process), "", 0,
                                      {{uq::InputKind::parameter, 0}});
   group.base = MatrixXd::Zero(2, 1);
-  group.slot = Eigen::MatrixXi::Zero(2, 1);
+  group.unknown = Eigen::MatrixXi::Zero(2, 1);
   uq::find_coordinates(group, 1);
   const uq::ReferencePoints reference{.u = VectorXd::LinSpaced(9, 0.1, 0.9), .log_weight = VectorXd::Zero(9)};
   const uq::IntegratedVariance integral(model, reference, {run(0.5, 0.0), run(0.3, 0.0)}, {uq::RunNoise{}});

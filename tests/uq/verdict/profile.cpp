@@ -14,7 +14,7 @@ using namespace closed_form;
 namespace {
 
 /// A function of the parameters as a sum of squares: row i is (f_i(p) - target_i)^2.
-uq::CaseModel sum_of_squares(const std::vector<Unknown>& unknowns,
+uq::CaseModel sum_of_squares(const std::vector<FreeParameter>& unknowns,
                              const std::vector<std::function<double(const Eigen::VectorXd&)>>& terms,
                              const Eigen::VectorXd& targets) {
   const auto rows = static_cast<Eigen::Index>(terms.size());
@@ -37,11 +37,11 @@ uq::Profiles profiles(const uq::CaseModel& model) {
 }
 
 double shown(const uq::CaseModel& model, const uq::Profile& profile, double u) {
-  return model.slots[static_cast<std::size_t>(profile.unknown)].value(u);
+  return model.unknowns[static_cast<std::size_t>(profile.unknown)].value(u);
 }
 
-std::vector<Unknown> box(int count, double half) {
-  std::vector<Unknown> unknowns;
+std::vector<FreeParameter> box(int count, double half) {
+  std::vector<FreeParameter> unknowns;
   for (int k = 0; k < count; ++k) unknowns.push_back({"x" + std::to_string(k + 1), -half, half});
   return unknowns;
 }

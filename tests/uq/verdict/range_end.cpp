@@ -47,7 +47,7 @@ TEST_CASE("how far a value would move beyond another's range is that of the line
   // With a held b has the error noise / |its column|; the true b is where the move leads.
   double square = 0.0;
   for (int i = 0; i < 6; ++i) square += std::pow(1.0 - 0.1 * i, 2);
-  const double held = model.slots[1].value(best.x[1]);
+  const double held = model.unknowns[1].value(best.x[1]);
   CHECK(ends[0].shift[1] == Approx((b - held) / (noise / std::sqrt(square))).epsilon(0.01));
 }
 

@@ -17,7 +17,7 @@ constexpr int sets = 200;
 constexpr double least = 0.95;
 
 /// Share of data sets, y = formula(truth) + sd * normal, whose last parameter gets this verdict.
-double share(Verdict verdict, const std::vector<Unknown>& unknowns, const Formula& formula,
+double share(Verdict verdict, const std::vector<FreeParameter>& unknowns, const Formula& formula,
              const Eigen::VectorXd& truth, const Eigen::VectorXd& x, const Eigen::VectorXd& sd) {
   int same = 0;
   for (std::uint32_t set = 0; set < sets; ++set) {

@@ -51,7 +51,7 @@ uq::CaseModel make_case(const Structure& structure, std::uint32_t seed) {
     observed[i] = structure.formula(structure.truth, z[i]) + sd[i] * random.normal() +
                   (structure.unmodelled ? structure.unmodelled(z[i]) * size : 0.0);
   }
-  std::vector<closed_form::Unknown> unknowns;
+  std::vector<closed_form::FreeParameter> unknowns;
   for (std::size_t k = 0; k < structure.ranges.size(); ++k)
     unknowns.push_back({name_of(k), structure.ranges[k].low, structure.ranges[k].high});
   uq::CaseModel model = closed_form::make_case(

@@ -16,7 +16,7 @@ struct NormalLaw {
   double mean = 0.0, sd = 1.0;
 };
 
-struct Slot {
+struct Unknown {
   std::string label;  ///< the parameter's name, with the case's in front for another case's own
   ScaledPrior prior;
   bool own = true;               ///< a parameter that is free in the case itself; else another's, or a nuisance
