@@ -129,9 +129,8 @@ std::optional<ClockTime> read_compact(std::string_view text) {
   const double fraction = rest.fraction();
   if (rest.front() == 'Z') rest.take('Z');
   if (!rest.at_end()) return {};
-  return ClockTime{
-      .seconds = date->seconds + 3600.0 * (time / 10000) + 60.0 * (time / 100 % 100) + time % 100 + fraction,
-      .dated = true};
+  return ClockTime{.seconds = date->seconds + (time / 10000 * 3600 + time / 100 % 100 * 60 + time % 100) + fraction,
+                   .dated = true};
 }
 
 /// The date at the front; the cursor stands behind it, or where it was.

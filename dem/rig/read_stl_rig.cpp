@@ -40,8 +40,8 @@ Vec3 read_direction(const Section& s, std::string_view key, Vec3 fallback) {
 }
 
 /// The length that a unit's 1 stands for [m].
-double read_unit(const Section& s, std::string_view key, std::optional<std::string> fallback) {
-  const std::string name = s.text(key, std::move(fallback));
+double read_unit(const Section& s, std::string_view key, const std::optional<std::string>& fallback) {
+  const std::string name = s.text(key, fallback);
   try {
     if (data::convertible(name, "m")) return data::parse_unit(name).factor;
   } catch (const std::invalid_argument&) {
