@@ -30,33 +30,38 @@ void thin(Adaptation& state, Eigen::Index count, data::RandomStream& random) {
                  static_cast<double>(count);
 }
 
-/// Points of equal weight, which moves made one from another: they count half.
+/// Points of equal weight.
 Adaptation of_points(const Eigen::MatrixXd& points) {
   Adaptation state;
   state.points = points;
   state.shares = Eigen::VectorXd::Constant(points.rows(), 1.0 / static_cast<double>(points.rows()));
-  state.draws = 0.5 * static_cast<double>(points.rows());
   return state;
 }
 
-/// Weighted draws join what is known, in proportion to how well they stand for the density (`trust`, of one draw); large
-/// weights are cut at sqrt(n) times the mean (E. L. Ionides, J. Comput. Graph. Stat. 17 (2008) 295), so that one of
-/// them cannot make a component of its own.
-void gather(Adaptation& state, const Proposals& made, const Weights& weights, double trust, Eigen::Index points_max,
-            data::RandomStream& random) {
+/// Of points that the populations' moves made one from another, each counts as half a draw.
+constexpr double half = 0.5;
+
+/// What a point known already and a weighted draw count as.
+struct Counts {
+  double point = 1.0, draw = 1.0;
+};
+
+/// Weighted draws join what is known, in proportion to how well they stand for the density; large weights are cut at
+/// sqrt(n) times the mean (E. L. Ionides, J. Comput. Graph. Stat. 17 (2008) 295), so that one of them cannot make a
+/// component of its own.
+void gather(Adaptation& state, const Proposals& made, const Weights& weights, const Counts& counts,
+            Eigen::Index points_max, data::RandomStream& random) {
   const double count = static_cast<double>(made.x.rows());
   const double cut = weights.values.mean() * std::sqrt(count);
   const Eigen::VectorXd cut_weights = weights.values.cwiseMin(cut);
-  const double before = state.draws, both = before + trust * count;
+  const double before = counts.point * static_cast<double>(state.points.rows()), trust = counts.draw * count;
   Eigen::MatrixXd all(state.points.rows() + made.x.rows(), made.x.cols());
   all << state.points, made.x;
   Eigen::VectorXd shares(all.rows());
-  shares << state.shares * (before / both), cut_weights * (trust * count / both / cut_weights.sum());
+  shares << state.shares * (before / (before + trust)), cut_weights * (trust / (before + trust) / cut_weights.sum());
   state.points = std::move(all);
   state.shares = std::move(shares);
   thin(state, points_max, random);
-  // Each counts as one now, whatever its weight: what was gathered gives way slowly to a refit's few draws.
-  state.draws = static_cast<double>(state.points.rows());
 }
 
 }  // namespace
@@ -71,14 +76,14 @@ Adaptation begin_proposal(const Eigen::MatrixXd& points, const Proposals& made, 
                           const ProposalOptions& options) {
   Adaptation state = of_points(points);
   const Weights weights = importance_weights(made);
-  if (weights.efficiency > 0.0) gather(state, made, weights, weights.efficiency, options.points_max, random);
+  if (weights.efficiency > 0.0)
+    gather(state, made, weights, {.point = half, .draw = weights.efficiency}, options.points_max, random);
   state.current = state.best = fit_mixture(state.points, state.shares, random, options.mixture);
   return state;
 }
 
 void adapt(const Target& target, Adaptation& state, data::RandomStream& random, const ProposalOptions& options) {
   int misses = 0;
-  state.draws = 0.5 * static_cast<double>(state.points.rows());  // of a proposal that nothing has tried yet
   for (int refit = 0;; ++refit) {
     const bool poor = state.efficiency < options.poor;
     const int count = options.refit_draws * (poor && refit > 3 ? 4 : 1);
@@ -95,7 +100,9 @@ void adapt(const Target& target, Adaptation& state, data::RandomStream& random, 
     const bool hard = state.efficiency < options.poor && misses < 4;
     if (state.efficiency > 0.85 || (refit > 1 && !better && !hard) || weights.efficiency == 0.0) break;
     if (refit >= (hard ? options.hard_refits_max : options.refits_max)) break;
-    gather(state, made, weights, std::max(weights.efficiency, 0.05), options.points_max, random);
+    // What was gathered gives way slowly to a refit's few draws, but for what the mixture was first fitted to.
+    gather(state, made, weights, {.point = refit == 0 ? half : 1.0, .draw = std::max(weights.efficiency, 0.05)},
+           options.points_max, random);
     state.current =
         with_kept(fit_mixture(state.points, state.shares, random, options.mixture, &state.current), state.kept);
   }

@@ -23,7 +23,6 @@ struct Adaptation {
   double log_evidence = nowhere;
   Eigen::MatrixXd points = {};  ///< gathered so far, with their shares
   Eigen::VectorXd shares = {};
-  double draws = 0.0;                       ///< independent ones that the points stand for
   std::vector<MixtureComponent> kept = {};  ///< modes that joined, which a fit to few points would lose again
   std::int64_t evaluations = 0;
 };
