@@ -94,18 +94,6 @@ double difference(const Eigen::MatrixXd& draws, const Quadrature& exact) {
   return largest;
 }
 
-/// Whether a mean or a variance of the draws is further from quadrature's than five of its standard errors. The error
-/// of a variance is that of the squares: a far mode of little mass makes it many times a normal's.
-bool beyond_its_error(const Draws& draws, const Quadrature& exact) {
-  for (int k = 0; k < draws.dimension(); ++k) {
-    const Eigen::MatrixXd values = draws.coordinate(k), squares = (values.array() - exact.mean[k]).square();
-    if (std::abs(values.mean() - exact.mean[k]) > 5.0 * mean_mcse(values) + 0.01 * exact.sd[k]) return true;
-    const double variance = exact.sd[k] * exact.sd[k];
-    if (std::abs(squares.mean() - variance) > 5.0 * mean_mcse(squares) + 0.02 * variance) return true;
-  }
-  return false;
-}
-
 void add_quadrature(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
                     const CalibrateOptions& options) {
   const Quadrature exact = integrate(
@@ -113,7 +101,7 @@ void add_quadrature(CaseReport& report, const SampledCase& sampled, const Eigen:
       {.tolerance = 1e-4, .evaluations_max = 60000, .threads = options.threads, .guides = thinned(draws, 1000)});
   if (!exact.resolved) return;
   report.grid_difference = difference(draws, exact);
-  if (beyond_its_error(sampled.draws, exact))
+  if (!agree(sampled.draws, exact))
     report.warnings.push_back(fmt::format("case {}: sampler and grid quadrature differ by {:.2g} posterior sd",
                                           report.name, *report.grid_difference));
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "uq/infer/diagnostics.hpp"
 #include "uq/infer/parallel.hpp"
 
 namespace uq {
@@ -179,7 +180,26 @@ Quadrature integrate(const Target& target, const QuadratureOptions& options) {
   result.sd = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   if (dimension == 2) result.correlation = covariance(0, 1) / (result.sd[0] * result.sd[1]);
   result.log_evidence = top + std::log(total);
+  result.fourth = Eigen::VectorXd::Zero(dimension);
+  for (const auto& cell : cells)
+    for (std::size_t i = 0; i < grid.points; ++i) {
+      const double share = grid.weight(cell, i) * std::exp(cell.log_density[i] - top) / total;
+      result.fourth += share * (grid.point(cell, i) - result.mean).array().pow(4).matrix();
+    }
   return result;
+}
+
+bool agree(const Draws& draws, const Quadrature& exact) {
+  constexpr double errors = 5.0;
+  for (int k = 0; k < draws.dimension(); ++k) {
+    const Eigen::MatrixXd values = draws.coordinate(k), squares = (values.array() - exact.mean[k]).square();
+    const double variance = exact.sd[k] * exact.sd[k];
+    if (std::abs(values.mean() - exact.mean[k]) > errors * mean_mcse(values) + 0.01 * exact.sd[k]) return false;
+    const double error = std::sqrt(std::max(exact.fourth[k] - variance * variance, 0.0) / mean_ess(values));
+    if (std::abs(squares.mean() - variance) > errors * std::max(mean_mcse(squares), error) + 0.02 * variance)
+      return false;
+  }
+  return true;
 }
 
 }  // namespace uq

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <cstdint>
 
+#include "uq/infer/draws.hpp"
 #include "uq/infer/log_density.hpp"
 
 namespace uq {
@@ -22,6 +23,7 @@ struct QuadratureOptions {
 
 struct Quadrature {
   Eigen::VectorXd mean, sd;
+  Eigen::VectorXd fourth;     ///< mean fourth power of the distance to the mean
   double correlation = 0.0;   ///< two dimensions
   double log_evidence = 0.0;  ///< log integral of the density
   std::int64_t evaluations = 0;
@@ -29,5 +31,10 @@ struct Quadrature {
 };
 
 Quadrature integrate(const Target& target, const QuadratureOptions& options = {});
+
+/// Whether every mean and variance of the draws is within five of its standard errors of the exact one. The error of a
+/// variance is the larger of what the draws say and of what the exact fourth moment and their effective number say: draws
+/// that miss a far place of a thousandth of the mass by chance do not know how far they may be off.
+bool agree(const Draws& draws, const Quadrature& exact);
 
 }  // namespace uq
