@@ -33,6 +33,29 @@ bool noise_dominated(const Validation& v, const ValidationThresholds& t) {
   return v.q2_attainable < 1.0 - t.noise_dominated;
 }
 
+/// Whether intervals that are off are off to the careful side: the held-out errors are smaller than expected.
+bool too_wide(const Validation& v) {
+  double distance = 0.0, degrees = 0.0;
+  for (const HeldOutFold& fold : v.folds) {
+    distance += fold.mahalanobis;
+    degrees += fold.degrees;
+  }
+  return v.coverage_held_out.observed[2] >= 0.95 && distance < degrees && !v.noise.understated();
+}
+
+/// What to do about intervals that are off.
+std::string remedy_of_intervals(const Validation& v, const TrainingSet& training) {
+  if (!too_wide(v))
+    return fmt::format(
+        "Look at the standardised errors above 2 (runs with a wrong standard error?); else add about {} runs, or try "
+        "the log scale of the output (surrogate.log_outputs) or another kernel (surrogate.kernel).",
+        v.more_runs);
+  if (training.noise_variance.maxCoeff() > 0.0)
+    return "State the runs' standard errors as small as they are (0 of an exact code), or leave the column out: their "
+           "scatter is estimated then.";
+  return "A smoother kernel may be nearer to the runs (surrogate.kernel).";
+}
+
 /// Mean squared held-out error when only about half of the runs train, for the learning curve; negative: not possible.
 double error_with_half(const TrainingSet& training, const HeldOutModel& model) {
   std::vector<int> even, odd;
@@ -131,8 +154,7 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
       "Held-out runs are predicted with Q2 {:.3f}, their own noise taken off; {:.0f} % of them lie in the 95 % "
       "interval",
       v.q2_function, 100.0 * coverage95);
-  const bool coverage_low = coverage95 < 0.95,
-             coverage_wrong = coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability;
+  const bool coverage_wrong = coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability;
   const bool distance_wrong = v.mahalanobis_probability < t.mahalanobis_probability;
   if (noise_dominated(v, t)) v.finding += fmt::format("; {:.0f} % of the runs' variance is their own noise", level);
   if (distance_wrong)
@@ -155,9 +177,9 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
     v.consequence = "It does not stand for the model: no verdict that rests on it means anything.";
   } else if (noise_dominated(v, t) && coverage95 >= t.coverage95_unusable) {
     v.consequence = "The runs hardly tell the inputs apart: this output will identify little.";
-  } else if ((coverage_wrong && coverage_low) || distance_wrong || noise_doubtful(v)) {
+  } else if ((coverage_wrong || distance_wrong || noise_doubtful(v)) && !too_wide(v)) {
     v.consequence = "Its intervals may be too narrow or too wide: posteriors that rest on it may be, too.";
-  } else if (coverage_wrong) {
+  } else if (coverage_wrong || distance_wrong || noise_doubtful(v)) {
     v.consequence = "Its intervals are wider than its errors: posteriors that rest on it are wider than need be.";
   } else if (unknown != v.levels.end()) {
     v.consequence = "What lies between the levels is assumed, not learnt: the posterior is as wide as that leaves it.";
@@ -179,11 +201,8 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
     v.more_runs = runs_wanted(v, training, model, t.q2_good);
     v.remedy = fmt::format("Add about {} runs, the first of them where the surrogate knows least.", v.more_runs);
   } else if (coverage_wrong || distance_wrong || noise_doubtful(v)) {
-    v.more_runs = std::max(8, v.runs / 4);
-    v.remedy = fmt::format(
-        "Look at the standardised errors above 2 (runs with a wrong standard error?); else add about {} runs, or try "
-        "the log scale of the output (surrogate.log_outputs) or another kernel (surrogate.kernel).",
-        v.more_runs);
+    v.more_runs = too_wide(v) ? 0 : std::max(8, v.runs / 4);
+    v.remedy = remedy_of_intervals(v, training);
   } else {
     v.more_runs = std::max(8, v.runs / 4);
     v.remedy = fmt::format("Use more starts, or add about {} runs.", v.more_runs);

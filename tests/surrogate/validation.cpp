@@ -62,6 +62,17 @@ TEST_CASE("standard errors that are far too small are seen where no nugget may e
   CHECK(v.verdict != SurrogateVerdict::good);
 }
 
+TEST_CASE("standard errors that are too large make intervals that are too wide, which is said, and no more runs") {
+  TrainingSet training = runs_of(smooth, 60, 2, 0.01, 5);
+  training.noise_variance *= 9.0;
+  const Validation v = validate(training, {}, fit(training));
+  CAPTURE(v.finding);
+  CHECK(v.verdict == SurrogateVerdict::caution);
+  CHECK(v.consequence.find("wider than its errors") != std::string::npos);
+  CHECK(v.remedy.find("State the runs' standard errors as small as they are") != std::string::npos);
+  CHECK(v.more_runs == 0);
+}
+
 TEST_CASE("an output that is all noise is not called good") {
   const TrainingSet training = runs_of([](const VectorXd&) { return 1.0; }, 40, 2, 0.1, 6);
   const Validation v = validate(training, {}, fit(training));
