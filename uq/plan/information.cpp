@@ -90,6 +90,16 @@ double extrapolated(const Densities& densities, Index left_out) {
          0.5 * mean_log(densities.halves, {blocks / 2, blocks, left_out});
 }
 
+/// By how much the extrapolation through all, halves and quarters is more than that through all and halves.
+double next_order(const Sums& sums) {
+  const auto parts = [&](Index count) {
+    double sum = 0.0;
+    for (Index k = 0; k < count; ++k) sum += mean_log(sums, {k * blocks / count, (k + 1) * blocks / count, -1});
+    return sum / static_cast<double>(count);
+  };
+  return (2.0 * parts(1) - 3.0 * parts(2) + parts(4)) / 3.0;
+}
+
 /// `value(b)`: an estimate without block b, all for b = -1.
 template <class Value>
 Estimate jackknife(const Value& value) {
@@ -297,6 +307,7 @@ Information information(const Ensemble& ensemble, const InformationOptions& opti
   Information found;
   const Densities density{marginal.density, marginal.density};
   found.total = widened(jackknife([&](Index b) { return -extrapolated(density, b); }), density);
+  found.total.remainder = -next_order(marginal.density);
   for (Index k = 0; k < p; ++k) {
     const std::vector<Densities> conditional = conditional_on(ensemble, laws, readings, own, k);
     // A narrower window has to earn its place: the largest of several noisy scores is too large.
@@ -329,10 +340,13 @@ Information combined(const std::vector<Information>& repeats) {
   const auto n = static_cast<double>(repeats.size());
   const double factor = gsl_cdf_tdist_Pinv(0.975, n - 1.0);
   const auto pooled = [&](const auto& member) {
-    double sum = 0.0, squares = 0.0;
-    for (const Information& one : repeats) sum += member(one).value;
-    for (const Information& one : repeats) squares += std::pow(member(one).value - sum / n, 2);
-    return Estimate{sum / n, factor * std::sqrt(squares / (n - 1.0) / n)};
+    double sum = 0.0, squares = 0.0, remainder = 0.0;
+    for (const Information& one : repeats) {
+      sum += member(one).value + member(one).remainder;
+      remainder += member(one).remainder / n;
+    }
+    for (const Information& one : repeats) squares += std::pow(member(one).value + member(one).remainder - sum / n, 2);
+    return Estimate{sum / n, std::hypot(factor * std::sqrt(squares / (n - 1.0) / n), remainder)};
   };
   Information found;
   found.total = pooled([](const Information& one) { return one.total; });

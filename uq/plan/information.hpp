@@ -22,7 +22,8 @@
 // the mean of those from either half of the draws is free of that term (M. Quenouille, Biometrika 43:353 (1956)), for
 // independent draws and for nets of quasi-random ones alike. A correction above a tenth of a nat is not small, and is
 // stated as the error. The error of independent draws is the delete-a-block jackknife's; that of quasi-random ones
-// comes from repeats with other scramblings (`combined`).
+// comes from repeats with other scramblings (`combined`). Repeats share the bias that is left, a term over n^2: the next
+// order, from quarters of the draws, takes it off, and what it took off joins the error.
 #include <Eigen/Dense>
 #include <cstdint>
 #include <vector>
@@ -42,6 +43,7 @@ struct Ensemble {
 /// A number with the half-width of its 95 % interval.
 struct Estimate {
   double value = 0.0, error = 0.0;
+  double remainder = 0.0;  ///< by which the next order of the extrapolation differs; of the total alone
 };
 
 struct InformationAbout {
