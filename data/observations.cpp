@@ -136,7 +136,7 @@ const Nuisance* noise_instead(const Study& study, const ObservationSet& set, std
   };
   for (const CalibrationCase& item : study.cases)
     if (reads(item.observe) && !stands_in(item)) return nullptr;
-  for (const Prediction& wanted : study.predictions)
+  for (const UnusedData& wanted : study.unused_data)
     if (reads(wanted.observe) && !stands_in(study.cases.at(wanted.case_index))) return nullptr;
   return instead;
 }

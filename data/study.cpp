@@ -249,7 +249,7 @@ Study read_study(const StudyFile& file) {
   ObservationFiles files = read_observation_sets(root, study);
   check_meters(root, study);
   read_cases(root, study);
-  read_predictions(root, study);
+  read_unused_data(root, study);
   replace_missing_errors(study, files);
   for (const Section& section : root.array("calibrate")) check_file_name(section, section.text("name"));
 

@@ -181,7 +181,7 @@ struct CalibrationCase {
 };
 
 /// Observation sets that a case does not use, held against what it predicts of them.
-struct Prediction {
+struct UnusedData {
   std::string name;
   std::size_t case_index = 0;  ///< into Study::cases
   std::vector<std::string> observe;
@@ -209,7 +209,7 @@ struct Study {
   std::optional<RigScale> scale;  ///< [rig] scale
   std::vector<ObservationSet> observations;
   std::vector<CalibrationCase> cases;
-  std::vector<Prediction> predictions;
+  std::vector<UnusedData> unused_data;
 
   std::optional<std::size_t> parameter_index(std::string_view parameter_name) const;
   std::optional<std::size_t> control_index(std::string_view control_name) const;

@@ -175,7 +175,7 @@ std::set<std::string> informing(const CalibrationCase& item, const Study& study)
 }
 
 /// What is predicted must not have been used, and must be read by what the case knows.
-void check_prediction(const Section& section, const Prediction& wanted, const Study& study) {
+void check_unused_data(const Section& section, const UnusedData& wanted, const Study& study) {
   const CalibrationCase& item = study.cases[wanted.case_index];
   const std::set<std::string> used = informing(item, study);
   for (const std::string& name : wanted.observe) {
@@ -246,24 +246,24 @@ void read_cases(const Section& root, Study& study) {
   }
 }
 
-void read_predictions(const Section& root, Study& study) {
+void read_unused_data(const Section& root, Study& study) {
   std::vector<std::string> cases, observations;
   for (const CalibrationCase& item : study.cases) cases.push_back(item.name);
   for (const ObservationSet& set : study.observations) observations.push_back(set.name);
   for (const Section& section : root.array("predict")) {
-    Prediction wanted{
+    UnusedData wanted{
         .name = section.text("name"), .observe = section.texts("observe", true), .place = section.place()};
     check_names(section, "observe", wanted.observe, {"the name of an [[observe]]", observations});
     const std::string of = cases.size() == 1 ? section.text("case", cases.front()) : section.text("case");
     check_names(section, "case", {of}, {"the name of a [[calibrate]]", cases});
     const auto found = std::find(cases.begin(), cases.end(), of);
-    for (const Prediction& other : study.predictions)
+    for (const UnusedData& other : study.unused_data)
       if (other.name == wanted.name)
         section.problem("name", fmt::format("'{}' is taken", wanted.name), "give each prediction its own name");
     if (found == cases.end()) continue;
     wanted.case_index = static_cast<std::size_t>(found - cases.begin());
-    check_prediction(section, wanted, study);
-    study.predictions.push_back(std::move(wanted));
+    check_unused_data(section, wanted, study);
+    study.unused_data.push_back(std::move(wanted));
   }
 }
 

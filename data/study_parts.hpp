@@ -47,6 +47,6 @@ std::vector<Nuisance> read_nuisances(const Section& section, const Study& study)
 std::string material_of(const Section& section, const Study& study);
 
 void read_cases(const Section& root, Study& study);
-void read_predictions(const Section& root, Study& study);
+void read_unused_data(const Section& root, Study& study);
 
 }  // namespace data

@@ -121,16 +121,16 @@ std::optional<ClockTime> read_compact(std::string_view text) {
   };
   if (text.size() < 15 || (text[8] != 'T' && text[8] != ' ' && text[8] != '_')) return {};
   const int day = digits(0, 8), time = digits(9, 6);
-  if (day < 19000000 || day >= 22000000 || time < 0 || time / 100 % 100 > 59 || time % 100 > 60 || time / 10000 > 24)
-    return {};
+  const int hours = time / 10000, minutes = time / 100 % 100, seconds = time % 100;
+  if (day < 19000000 || day >= 22000000 || time < 0 || minutes > 59 || seconds > 60 || hours > 24) return {};
   const auto date = days(day / 10000, day / 100 % 100, day % 100);
   if (!date) return {};
   Cursor rest(text.substr(15));
   const double fraction = rest.fraction();
   if (rest.front() == 'Z') rest.take('Z');
   if (!rest.at_end()) return {};
-  return ClockTime{.seconds = date->seconds + (time / 10000 * 3600 + time / 100 % 100 * 60 + time % 100) + fraction,
-                   .dated = true};
+  const int of_day = hours * 3600 + minutes * 60 + seconds;
+  return ClockTime{.seconds = date->seconds + of_day + fraction, .dated = true};
 }
 
 /// The date at the front; the cursor stands behind it, or where it was.

@@ -87,9 +87,8 @@ TEST_CASE("a run that all others contradict is named by fit, sample and calibrat
   runs[22].torque *= 10.0;
   write_study(folder, runs);
   for (const char* command : {"fit", "sample"}) {
-    const auto outcome = folder.demcal({command, "study", "--out", "out"});
-    CHECK(outcome.status == 2);
-    CHECK_THAT(outcome.err, Contains("runs.csv:24 (") && Contains("leave it out: [training] leave_out"));
+    CHECK_THAT(folder.says({command, "study", "--out", "out"}, 2),
+               Contains("runs.csv:24 (") && Contains("leave it out: [training] leave_out"));
   }
   const nlohmann::json report = report_of(folder, 2);
   CHECK_THAT(report["warnings"][0].get<std::string>(), Contains("runs.csv:24"));
@@ -135,9 +134,7 @@ TEST_CASE("what the study, its runs and its measurements contradict is refused b
   for (Run& run : runs) run.speed = 150.0;
   write_study(folder, runs);
   for (const char* command : {"check", "fit", "sample", "calibrate"}) {
-    const auto outcome = folder.demcal({command, "study", "--out", "out"});
-    CHECK(outcome.status == 78);
-    CHECK_THAT(outcome.err, Contains("every run of this material has 150 rpm"));
+    CHECK_THAT(folder.says({command, "study", "--out", "out"}, 78), Contains("every run of this material has 150 rpm"));
   }
 }
 
@@ -168,7 +165,6 @@ TEST_CASE("design for another code's runs gives further points, as many as are a
 TEST_CASE("training at the posterior needs a posterior") {
   const Folder folder;
   folder.study("quick");
-  const auto outcome = folder.demcal({"train", "study", "--out", "out", "--at-posterior", "3"});
-  CHECK(outcome.status == 66);
-  CHECK_THAT(outcome.err, Contains("next-runs.csv") && Contains("run demcal calibrate first"));
+  CHECK_THAT(folder.says({"train", "study", "--out", "out", "--at-posterior", "3"}, 66),
+             Contains("next-runs.csv") && Contains("run demcal calibrate first"));
 }

@@ -1,15 +1,16 @@
 // The commands as a user starts them.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "tests/cli/program.hpp"
+#include "tests/cli/table.hpp"
 
 using Catch::Contains;
 using test::Folder;
+using test::number;
+using test::read_rows;
+using test::Row;
 namespace fs = std::filesystem;
 
 namespace {
@@ -22,36 +23,6 @@ nlohmann::json simulate(const Folder& folder, const std::vector<std::string>& mo
   REQUIRE((outcome.status == 0 || outcome.status == 2));
   fs::remove_all(folder.path / "run");
   return nlohmann::json::parse(outcome.out);
-}
-
-struct Row {
-  std::map<std::string, std::string> field;
-  double number(const std::string& name) const { return std::stod(field.at(name)); }
-};
-
-std::vector<Row> read_rows(const fs::path& path) {
-  std::vector<Row> rows;
-  std::vector<std::string> head;
-  std::istringstream text([&] {
-    std::ifstream file(path);
-    std::ostringstream all;
-    all << file.rdbuf();
-    return all.str();
-  }());
-  for (std::string line; std::getline(text, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::vector<std::string> fields;
-    std::istringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(cell);
-    if (head.empty()) {
-      head = fields;
-      continue;
-    }
-    Row row;
-    for (std::size_t i = 0; i < head.size(); ++i) row.field[head[i]] = i < fields.size() ? fields[i] : "";
-    rows.push_back(row);
-  }
-  return rows;
 }
 
 }  // namespace
@@ -98,28 +69,10 @@ TEST_CASE("a new study passes its own check") {
 
 TEST_CASE("training runs are interrupted, go on where they were, and give the table of an uninterrupted campaign",
           "[slow]") {
-  const std::string study = DEMCAL_SOURCE_DIR "/data/quick";
-  const Folder whole, halted;
-  const std::vector<std::string> arguments{"train",  study,
-                                           "--runs", "3",
-                                           "--set",  "rig.fill=200",
-                                           "--set",  "run.longest=\"0.4 s\"",
-                                           "--set",  "run.start_up_turns=0.25",
-                                           "--set",  "training.unsteady=\"use\""};
-  CHECK(whole.demcal(arguments).status == 0);
-  CHECK(halted.demcal(arguments, "quick-results/runs").status == 75);
-  const auto rest = halted.demcal(arguments);
-  INFO(rest.err);
-  CHECK(rest.status == 0);
-  const auto by_point = [](const Folder& folder) {
-    std::map<std::string, std::string> torque;
-    for (const Row& row : read_rows(folder.path / "quick-results" / "training.csv"))
-      torque[row.field.at("friction") + " " + row.field.at("hamaker") + " " + row.field.at("rpm")] =
-          row.field.at("torque");
-    return torque;
-  };
-  CHECK(by_point(whole).size() == 3);
-  CHECK(by_point(halted) == by_point(whole));
+  test::check_interruption_changes_nothing(
+      test::with_settings({"--runs", "3"}, {"rig.fill=200", "run.longest=\"0.4 s\"", "run.start_up_turns=0.25",
+                                            "training.unsteady=\"use\""}),
+      {"friction", "hamaker", "rpm"}, 3);
 }
 
 TEST_CASE("shipped rows of the steady flow and an observed point come out again", "[slow]") {
@@ -128,37 +81,35 @@ TEST_CASE("shipped rows of the steady flow and an observed point come out again"
   // The quickest run without attraction and the quickest with it. Rows from before runs were tested have no state.
   std::vector<Row> quickest(2);
   for (const Row& row : read_rows(study / "training.csv")) {
-    if (row.field.count("state") == 0 || row.field.at("state") != "steady") continue;
-    Row& best = quickest[row.number("hamaker") > 0.0 ? 1 : 0];
-    if (best.field.empty() || row.number("cpu_seconds") < best.number("cpu_seconds")) best = row;
+    if (row.count("state") == 0 || row.at("state") != "steady") continue;
+    Row& best = quickest[number(row, "hamaker") > 0.0 ? 1 : 0];
+    if (best.empty() || number(row, "cpu_seconds") < number(best, "cpu_seconds")) best = row;
   }
   for (const Row& row : quickest) {
-    REQUIRE_FALSE(row.field.empty());
-    const nlohmann::json run = simulate(
-        folder,
-        {"--material", row.field.at("material"), "--at",
-         "friction=" + row.field.at("friction") + ",hamaker=" + row.field.at("hamaker") + ",rpm=" + row.field.at("rpm"),
-         "--seed", row.field.at("seed")});
-    CHECK(run["settings"] == row.field.at("settings"));
+    REQUIRE_FALSE(row.empty());
+    const nlohmann::json run =
+        simulate(folder, {"--material", row.at("material"), "--at",
+                          "friction=" + row.at("friction") + ",hamaker=" + row.at("hamaker") + ",rpm=" + row.at("rpm"),
+                          "--seed", row.at("seed")});
+    CHECK(run["settings"] == row.at("settings"));
     const double torque = run["outputs"]["torque"]["mean"];
-    CHECK(torque == row.number("torque"));
+    CHECK(torque == number(row, "torque"));
   }
   // An observed point is the same DEM plus noise: within three of its standard errors, run and noise together.
   const std::vector<Row> observed = read_rows(study / "observed" / "noise-3" / "zirconia-800.csv");
   const Row& point = observed.back();
-  const nlohmann::json run = simulate(
-      folder,
-      {"--material", "zirconia-800", "--at", "friction=0.4,hamaker=0,rpm=" + point.field.at("rpm"), "--seed", "40911"});
+  const nlohmann::json run = simulate(folder, {"--material", "zirconia-800", "--at",
+                                               "friction=0.4,hamaker=0,rpm=" + point.at("rpm"), "--seed", "40911"});
   CHECK(run["state"] == "steady");
-  CHECK(std::abs(run["outputs"]["torque"]["mean"].get<double>() - point.number("torque")) <
-        3.0 * point.number("torque_se"));
+  CHECK(std::abs(run["outputs"]["torque"]["mean"].get<double>() - number(point, "torque")) <
+        3.0 * number(point, "torque_se"));
 }
 
 TEST_CASE("a run with another instruction set is recorded as such and gives the same") {
   const Folder folder;
-  std::vector<std::string> few{"--set", "run.start_up=\"0.004 s\"", "--set", "run.shortest=\"0.008 s\"",
-                               "--set", "run.shortest_turns=0",     "--set", "run.start_up_turns=0",
-                               "--set", "run.longest=\"0.01 s\"",   "--set", "run.window=\"0.6 ms\""};
+  std::vector<std::string> few =
+      test::with_settings({}, {"run.start_up=\"0.004 s\"", "run.shortest=\"0.008 s\"", "run.shortest_turns=0",
+                               "run.start_up_turns=0", "run.longest=\"0.01 s\"", "run.window=\"0.6 ms\""});
   nlohmann::json widest = simulate(folder, few);
   few.insert(few.end(), {"--isa", "x86-64"});
   nlohmann::json least = simulate(folder, few);

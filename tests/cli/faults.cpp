@@ -51,9 +51,8 @@ TEST_CASE("observe replaces neither a log nor anything else that demcal did not 
     INFO(victim);
     folder.write("log.csv", log_text());
     folder.write(victim, "mine\n");
-    const auto outcome = folder.demcal({"observe", "log.csv", "--out", "bench.csv"});
-    CHECK(outcome.status == 73);
-    CHECK_THAT(outcome.err, Contains(victim) && Contains("was not written by demcal"));
+    CHECK_THAT(folder.says({"observe", "log.csv", "--out", "bench.csv"}, 73),
+               Contains(victim) && Contains("was not written by demcal"));
     CHECK(folder.read(victim) == "mine\n");
     fs::remove(folder.path / victim);
   }
@@ -105,9 +104,7 @@ TEST_CASE("a new study takes no measurement's place, and its name passes its own
   CHECK(folder.demcal({"new", "m"}).status == 73);
   CHECK(folder.read("m/bench.csv") == "rpm,torque,torque_se\n50,1,0.1\n");
   CHECK_FALSE(fs::exists(folder.path / "m/study.toml"));
-  const auto empty = folder.demcal({"new", ""});
-  CHECK(empty.status == 64);
-  CHECK_THAT(empty.err, Contains("FOLDER: is empty"));
+  CHECK_THAT(folder.says({"new", ""}, 64), Contains("FOLDER: is empty"));
   for (const std::string name : {"Mischer \xc3\x9f 2", "a b", "O'Brien", "back\\slash", "\"quoted\""}) {
     INFO(name);
     CHECK(folder.demcal({"new", name}).status == 0);
@@ -234,9 +231,8 @@ TEST_CASE("a results folder is one calibration's at a time, and the second is to
   make_study(folder);
   const data::FolderLock lock((folder.path / "other-code-results").string(), "results", "demcal calibrate");
   for (const char* command : {"calibrate", "fit", "sample"}) {
-    const auto outcome = folder.demcal({command, "study"});
-    CHECK(outcome.status == 73);
-    CHECK_THAT(outcome.err, Contains(fmt::format("is in use by process {}", getpid())) && Contains("demcal calibrate"));
+    CHECK_THAT(folder.says({command, "study"}, 73),
+               Contains(fmt::format("is in use by process {}", getpid())) && Contains("demcal calibrate"));
   }
   const data::FolderLock training((folder.path / "quick-results").string(), "training", "demcal train");
   CHECK(folder.demcal({"train", DEMCAL_SOURCE_DIR "/data/quick"}).status == 73);

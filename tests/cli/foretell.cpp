@@ -7,6 +7,7 @@
 
 using Catch::Contains;
 using test::Folder;
+using test::with_settings;
 namespace fs = std::filesystem;
 
 namespace {
@@ -15,9 +16,7 @@ const std::string cases = DEMCAL_SOURCE_DIR "/tests/cli/cases/";
 const std::string quick = DEMCAL_SOURCE_DIR "/data/quick";
 
 test::Outcome check(const Folder& folder, const std::string& study, const std::vector<std::string>& set = {}) {
-  std::vector<std::string> words{"check", study};
-  for (const std::string& one : set) words.insert(words.end(), {"--set", one});
-  return folder.demcal(words);
+  return folder.demcal(with_settings({"check", study}, set));
 }
 
 }  // namespace
@@ -104,25 +103,19 @@ TEST_CASE("a problem of the whole case stands at its key's line, and a value tha
   const Folder folder;
   folder.study("quick");
   folder.replace("study/study.toml", "stiffness = \"300 N/m\"", "stiffness = \"0.01 N/m\"");
-  const auto soft = folder.demcal({"check", "study"});
-  CHECK(soft.status == 78);
-  CHECK_THAT(soft.err, Contains("study.toml:23: contact.stiffness: lets"));
+  CHECK_THAT(folder.says({"check", "study"}, 78), Contains("study.toml:23: contact.stiffness: lets"));
   folder.replace("study/study.toml", "fill = 480", "fill = \"50 %\"");
-  const auto fill = folder.demcal({"check", "study"});
-  CHECK(fill.status == 78);
-  CHECK_THAT(fill.err, Contains("rig.fill") && !Contains("is zero") && !Contains("contact.stiffness"));
+  CHECK_THAT(folder.says({"check", "study"}, 78),
+             Contains("rig.fill") && !Contains("is zero") && !Contains("contact.stiffness"));
 }
 
 TEST_CASE("simulate says where the study has no runs, keeps another point's file, and goes back to it") {
   const Folder folder;
-  const std::vector<std::string> few{"--set", "run.start_up=\"0.004 s\"",      "--set", "run.shortest=\"0.008 s\"",
-                                     "--set", "run.shortest_turns=0",          "--set", "run.start_up_turns=0",
-                                     "--set", "run.longest=\"0.012 s\"",       "--set", "run.window=\"0.5 ms\"",
-                                     "--set", "run.sample_interval=\"0.1 ms\""};
+  const std::vector<std::string> brief{
+      "run.start_up=\"0.004 s\"", "run.shortest=\"0.008 s\"", "run.shortest_turns=0",          "run.start_up_turns=0",
+      "run.longest=\"0.012 s\"",  "run.window=\"0.5 ms\"",    "run.sample_interval=\"0.1 ms\""};
   const auto simulate = [&](const std::string& at) {
-    std::vector<std::string> words{"simulate", quick, "--out", "out", "--json", "--at", at};
-    words.insert(words.end(), few.begin(), few.end());
-    const auto outcome = folder.demcal(words);
+    const auto outcome = folder.demcal(with_settings({"simulate", quick, "--out", "out", "--json", "--at", at}, brief));
     INFO(outcome.err);
     REQUIRE((outcome.status == 0 || outcome.status == 2));
     return std::pair{nlohmann::json::parse(outcome.out), outcome.err};
@@ -146,19 +139,11 @@ TEST_CASE("a torque that is exactly 0 is said, with status 2") {
   const Folder folder;
   // The mixer turns over powder that it reaches only with its lowest sphere's width: for so short a time it touches
   // none.
-  const auto outcome = folder.demcal({"simulate", quick,
-                                      "--set",    "rig.fill=130",
-                                      "--set",    "run.settle=\"0.02 s\"",
-                                      "--set",    "run.start_up=\"1 ms\"",
-                                      "--set",    "run.shortest=\"2 ms\"",
-                                      "--set",    "run.shortest_turns=0",
-                                      "--set",    "run.start_up_turns=0",
-                                      "--set",    "run.longest=\"4 ms\"",
-                                      "--set",    "run.window=\"0.3 ms\"",
-                                      "--set",    "run.sample_interval=\"0.1 ms\""});
-  INFO(outcome.err);
-  CHECK(outcome.status == 2);
-  CHECK_THAT(outcome.err, Contains("warning: the torque is exactly 0: no sphere ever touched mixer"));
+  const std::vector<std::string> words = with_settings(
+      {"simulate", quick}, {"rig.fill=130", "run.settle=\"0.02 s\"", "run.start_up=\"1 ms\"", "run.shortest=\"2 ms\"",
+                            "run.shortest_turns=0", "run.start_up_turns=0", "run.longest=\"4 ms\"",
+                            "run.window=\"0.3 ms\"", "run.sample_interval=\"0.1 ms\""});
+  CHECK_THAT(folder.says(words, 2), Contains("warning: the torque is exactly 0: no sphere ever touched mixer"));
 }
 
 TEST_CASE("runs that would be too short are foretold once: amid the ranges, or at the slow end alone") {

@@ -61,9 +61,7 @@ TEST_CASE("help on a key says type, unit, range, default and an example, also fo
 
 TEST_CASE("help on what does not exist names what was meant") {
   const Folder folder;
-  const auto outcome = folder.demcal({"help", "contact.frictoin"});
-  CHECK(outcome.status == 64);
-  CHECK_THAT(outcome.err, Contains("did you mean 'contact.friction'?"));
+  CHECK_THAT(folder.says({"help", "contact.frictoin"}, 64), Contains("did you mean 'contact.friction'?"));
   CHECK_THAT(folder.demcal({"help", "calibrat"}).err, Contains("did you mean 'calibrate'?"));
 }
 

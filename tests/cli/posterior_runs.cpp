@@ -3,40 +3,19 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "tests/cli/program.hpp"
+#include "tests/cli/table.hpp"
 
 namespace fs = std::filesystem;
 
 namespace {
 
 using test::Folder;
-
-struct Csv {
-  std::vector<std::string> columns;
-  std::vector<std::map<std::string, std::string>> rows;
-};
-
-Csv read_csv(const fs::path& path) {
-  std::ifstream file(path);
-  Csv csv;
-  for (std::string line; std::getline(file, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::vector<std::string> fields;
-    std::stringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(cell);
-    if (csv.columns.empty()) {
-      csv.columns = fields;
-      continue;
-    }
-    csv.rows.emplace_back();
-    for (std::size_t i = 0; i < fields.size(); ++i) csv.rows.back()[csv.columns[i]] = fields[i];
-  }
-  return csv;
-}
+using test::number;
+using test::read_rows;
+using test::Row;
 
 /// mN m, of the table's header; `wrong` multiplies it above 150 rpm.
 double torque(double friction, double cohesion, double speed, double wrong) {
@@ -46,26 +25,25 @@ double torque(double friction, double cohesion, double speed, double wrong) {
 
 /// Makes the listed runs and adds them to the study's table; how many.
 std::size_t run_listed(const fs::path& list, const fs::path& table, double wrong = 1.0) {
-  const Csv csv = read_csv(list);
+  const std::vector<Row> rows = read_rows(list);
   std::ofstream file(table, std::ios::app);
-  for (const auto& row : csv.rows) {
-    const double value =
-        torque(std::stod(row.at("friction")), std::stod(row.at("cohesion")), std::stod(row.at("speed")), wrong);
+  for (const Row& row : rows) {
+    const double value = torque(number(row, "friction"), number(row, "cohesion"), number(row, "speed"), wrong);
     file << row.at("friction") << "," << row.at("cohesion") << "," << row.at("speed") << "," << value << ","
          << 0.01 * value << "\n";
   }
-  return csv.rows.size();
+  return rows.size();
 }
 
 /// A copy of data/other-code with the first `runs` rows of its table.
 fs::path few_runs(const Folder& folder, std::size_t runs) {
   const fs::path study = folder.study("other-code");
-  const Csv all = read_csv(study / "runs.csv");
+  const std::vector<Row> all = read_rows(study / "runs.csv");
   std::ofstream file(study / "runs.csv");
   file << "friction,cohesion,speed,torque,torque_se\n";
   for (std::size_t i = 0; i < runs; ++i)
-    file << all.rows[i].at("friction") << "," << all.rows[i].at("cohesion") << "," << all.rows[i].at("speed") << ","
-         << all.rows[i].at("torque") << "," << all.rows[i].at("torque_se") << "\n";
+    file << all[i].at("friction") << "," << all[i].at("cohesion") << "," << all[i].at("speed") << ","
+         << all[i].at("torque") << "," << all[i].at("torque_se") << "\n";
   return study;
 }
 
@@ -118,30 +96,8 @@ TEST_CASE("a posterior is confirmed by another code's runs, or is not and says w
 }
 
 TEST_CASE("training around the posterior is interrupted, goes on, and makes the runs of one that was not", "[slow]") {
-  const std::string study = DEMCAL_SOURCE_DIR "/data/quick";
-  const Folder whole, halted;
-  const std::vector<std::string> arguments{"train",   study,
-                                           "--until", "posterior",
-                                           "--runs",  "18",
-                                           "--jobs",  "2",
-                                           "--set",   "run.longest=\"0.4 s\"",
-                                           "--set",   "run.start_up_turns=0.25",
-                                           "--set",   "training.unsteady=\"use\"",
-                                           "--set",   "run.shortest=\"0.1 s\""};
-  const auto all = whole.demcal(arguments);
-  INFO(all.err);
-  CHECK(all.status == 0);
-  CHECK(halted.demcal(arguments, "quick-results/runs").status == 75);
-  const auto rest = halted.demcal(arguments);
-  INFO(rest.err);
-  CHECK(rest.status == 0);
-  const auto by_point = [](const Folder& folder) {
-    std::map<std::string, std::string> found;
-    for (const auto& row : read_csv(folder.path / "quick-results" / "training.csv").rows)
-      found[row.at("friction") + " " + row.at("hamaker") + " " + row.at("rpm") + " " + row.at("seed")] =
-          row.at("torque");
-    return found;
-  };
-  CHECK(by_point(whole).size() == 18);
-  CHECK(by_point(halted) == by_point(whole));
+  test::check_interruption_changes_nothing(test::with_settings({"--until", "posterior", "--runs", "18", "--jobs", "2"},
+                                                               {"run.longest=\"0.4 s\"", "run.start_up_turns=0.25",
+                                                                "training.unsteady=\"use\"", "run.shortest=\"0.1 s\""}),
+                                           {"friction", "hamaker", "rpm", "seed"}, 18);
 }

@@ -55,9 +55,7 @@ TEST_CASE("data that the calibration does not predict are a warning") {
 TEST_CASE("what informs the case is no prediction, and what is not there is named") {
   const Folder folder;
   make_study(folder, "speed,torque,torque_se\n75,9.62,0.29\n", "bench");
-  const auto outcome = folder.demcal({"check", "study"});
-  CHECK(outcome.status == 78);
-  CHECK_THAT(outcome.err, Contains("'bench' informs the case 'powder' itself"));
+  CHECK_THAT(folder.says({"check", "study"}, 78), Contains("'bench' informs the case 'powder' itself"));
   const Folder other;
   make_study(other, "speed,torque,torque_se\n75,9.62,0.29\n", "latr");
   const auto unknown = other.demcal({"check", "study"});

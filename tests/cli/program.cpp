@@ -24,6 +24,11 @@ std::string content(const fs::path& file) {
 
 }  // namespace
 
+std::vector<std::string> with_settings(std::vector<std::string> words, const std::vector<std::string>& settings) {
+  for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
+  return words;
+}
+
 Folder::Folder() { REQUIRE(fs::is_empty(path)); }
 
 fs::path Folder::study(const std::string& name) const {
@@ -46,6 +51,14 @@ Outcome Folder::demcal(const std::vector<std::string>& arguments, const std::str
   std::vector<std::string> words{DEMCAL_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return start(std::move(words), stop_when);
+}
+
+std::string Folder::says(const std::vector<std::string>& arguments, int status) const {
+  const Outcome outcome = demcal(arguments);
+  CAPTURE(arguments);
+  INFO(outcome.err);
+  CHECK(outcome.status == status);
+  return outcome.err;
 }
 
 Outcome Folder::shell(const std::string& command) const {

@@ -13,6 +13,9 @@ struct Outcome {
   std::string out, err;
 };
 
+/// The words, each setting behind a --set.
+std::vector<std::string> with_settings(std::vector<std::string> words, const std::vector<std::string>& settings);
+
 /// An empty folder that goes with the object.
 class Folder {
   TemporaryFolder temporary_;
@@ -30,6 +33,8 @@ class Folder {
 
   /// The program, started in this folder. `stop_when` (a file) ends it by SIGINT as soon as the file exists.
   Outcome demcal(const std::vector<std::string>& arguments, const std::string& stop_when = "") const;
+  /// What the program says on stderr; checks that it ends with this status.
+  std::string says(const std::vector<std::string>& arguments, int status) const;
   /// A shell's command line, started in this folder, with the program as "$demcal".
   Outcome shell(const std::string& command) const;
 

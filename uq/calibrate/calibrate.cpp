@@ -233,7 +233,7 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
     CaseReport& made = report.cases.back();
     made.without = std::move(without);
     put_suspicions_first(made, findings);
-    for (const data::Prediction& wanted : study.predictions) {
+    for (const data::UnusedData& wanted : study.unused_data) {
       if (wanted.case_index != index || made.unusable || sampled.draws.chains.empty()) continue;
       made.predictions.push_back(predict_unused(study, emulators, wanted, *sampled.model, sampled.draws.pooled()));
       if (made.predictions.back().predicts) continue;

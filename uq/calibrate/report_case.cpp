@@ -186,18 +186,19 @@ void say_doubt(CaseReport& report, DoubtOf of, Words& words, const data::Study& 
   report.traded.clear();
   if (of == DoubtOf::surrogate) {
     words.consequence = "What the surrogate gives for the parameters is not the model's, and is not shown.";
-    words.remedy = "See the surrogate's remedy above; then calibrate again.";
+    words.remedies = {"See the surrogate's remedy above; then calibrate again."};
   } else if (of == DoubtOf::support) {
     words.consequence = "The values are extrapolated, and no results.";
-    words.remedy =
+    words.remedies = {
         fmt::format("Run {} of the posterior's points ({}), and calibrate again.", report.support.next_runs.size(),
-                    own_engine ? "demcal train STUDY --at-posterior N" : "next-runs.csv beside the report");
+                    own_engine ? "demcal train STUDY --at-posterior N" : "next-runs.csv beside the report")};
   } else if (of == DoubtOf::draws) {
     words.consequence = "The values are those of draws that do not agree yet, and no results.";
-    words.remedy = "Fix what the data say nothing of, or try the other sampler (--sampler nuts, --sampler mixture).";
+    words.remedies = {
+        "Fix what the data say nothing of, or try the other sampler (--sampler nuts, --sampler mixture)."};
   } else {
     words.consequence = "The values with and without those runs are both shown; neither is a result yet.";
-    words.remedy = "Correct the runs or leave them out ([training] leave_out), and calibrate again.";
+    words.remedies = {"Correct the runs or leave them out ([training] leave_out), and calibrate again."};
   }
 }
 
@@ -226,8 +227,7 @@ void add_poor_fit(Words& words, const FitCheck& check) {
       " The fit is poor: chi2 {:.1f} for {} degrees of freedom, as far off as {:.1g} % of the model's own data.",
       check.chi2, check.dof, 100.0 * check.best_fit_p);
   words.consequence += " The errors do not cover a model that is off, nor readings that scatter more than is stated.";
-  const std::string look = "Look first at what the residuals have in common.";
-  words.remedy = words.remedy == none_needed ? look : look + " " + words.remedy;
+  words.remedies.insert(words.remedies.begin(), "Look first at what the residuals have in common.");
 }
 
 void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
@@ -353,25 +353,26 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
         describe_contradiction(fits_alone(study, model, found.best_fit.x), options.identify.thresholds.best_fit_p);
     if (!sets.finding.empty()) {
       words.finding += " " + sets.finding;
-      words.remedy = sets.remedy + " " + words.remedy;
+      words.remedies.insert(words.remedies.begin(), sets.remedy);
     }
     for (const RowGroup& group : model.groups)
       if (const std::string hint = scale_hint(study, group.emulator.control_range);
-          !hint.empty() && words.remedy.find(hint) == std::string::npos)
-        words.remedy += " " + hint;
+          !hint.empty() && shown_remedy(words).find(hint) == std::string::npos)
+        words.remedies.push_back(hint);
   }
   if (doubt.of != DoubtOf::nothing) say_doubt(report, doubt.of, words, study);
   if (lone) {
     report.lone_reading = line_of(study, lone->origin);
     words.finding += fmt::format(" {} contradicts all others, which fit without it (p {:.2g}).",
                                  reading_in_words(study, lone->origin), lone->p_without);
-    words.remedy = "Check that reading, its unit and its decimal point first; where it is wrong, take its line out.";
+    words.remedies = {
+        "Check that reading, its unit and its decimal point first; where it is wrong, take its line out."};
   }
   if (found.fits && report.doubt.empty() && found.check.best_fit_p < judged.thresholds.poor_fit_p)
     add_poor_fit(words, found.check);
   report.finding = words.finding;
   report.consequence = words.consequence;
-  report.remedy = words.remedy;
+  report.remedy = shown_remedy(words);
   add_warnings(report, doubt.of, sampled);
   return report;
 }

@@ -22,7 +22,7 @@ bool is_observed(const data::Study& study, const TrainingRows& rows) {
     return std::any_of(users.begin(), users.end(),
                        [&](const auto& one) { return std::any_of(one.observe.begin(), one.observe.end(), measures); });
   };
-  return some(study.cases) || some(study.predictions);
+  return some(study.cases) || some(study.unused_data);
 }
 
 FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const SurrogateOptions& options) {

@@ -1,5 +1,5 @@
 #pragma once
-// A finding out of report.json: the visitor of fields.hpp that reads. A key that the file lacks leaves the field at its
+// A finding out of report.json: the visitor of field_list.hpp that reads. A key that the file lacks leaves the field at its
 // default.
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a finding becomes in report.json: the visitor of fields.hpp that writes. A number is a number, a list a list, a
+// What a finding becomes in report.json: the visitor of field_list.hpp that writes. A number is a number, a list a list, a
 // struct a table. JSON has no infinities, and no NaN.
 #include <cmath>
 #include <map>
@@ -64,7 +64,7 @@ inline Json save(const Texts& values) {
   return object;
 }
 
-/// Writes the fields of one finding (fields.hpp says what each call means).
+/// Writes the fields of one finding (field_list.hpp says what each call means).
 class Writer {
  public:
   template <class T>

@@ -1,7 +1,7 @@
 #pragma once
 // Measurements that could be made next, for one case of a study: those of [plan], or the usual ones: every observed
 // setting again, the observed outputs over the range of every control, and every other output of the run table.
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,20 +39,7 @@ std::vector<Candidate> candidates_of(const data::Study& study, const std::vector
                                      std::size_t case_index, const data::PlanSection& plan,
                                      const CandidateOptions& options = {});
 
-/// The case's model with one row more per point and output of the candidates.
-struct ExtendedCase {
-  CaseModel model;
-  std::vector<Eigen::Index> measured;              ///< rows of the data, pooled and thinned where there are many
-  std::vector<std::vector<Eigen::Index>> planned;  ///< per candidate, its rows
-  Eigen::VectorXd absolute, relative;              ///< errors of each row's reading; 0 of the measured
-  Eigen::VectorXd reference;  ///< SI, mean at which the model's variances of planned rows were taken
-
-  /// The rows' noise variances where their means are `mean`: an error in per cent is that of the reading itself.
-  Eigen::VectorXd noise_at(const Eigen::VectorXd& mean, const Eigen::VectorXd& noise) const;
-};
-
-/// `sampled`: the case as it was sampled. The planned rows' variances are those of a reading at `u`.
-ExtendedCase extend(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
-                    const CaseModel& sampled, const std::vector<Candidate>& candidates, const Eigen::VectorXd& u);
+/// The sets that a case observes, as indices into Study::observations.
+std::vector<std::size_t> own_sets(const data::Study& study, std::size_t case_index);
 
 }  // namespace uq::plan

@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "uq/plan/candidates.hpp"
+#include "uq/plan/extended_case.hpp"
 #include "uq/plan/information.hpp"
 #include "uq/posterior/more_data.hpp"
 

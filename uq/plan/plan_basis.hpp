@@ -9,6 +9,7 @@
 #include "data/plan.hpp"
 #include "data/study.hpp"
 #include "uq/plan/candidates.hpp"
+#include "uq/plan/extended_case.hpp"
 #include "uq/plan/forecast.hpp"
 #include "uq/plan/information.hpp"
 #include "uq/plan/outlook.hpp"

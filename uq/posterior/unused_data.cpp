@@ -101,7 +101,7 @@ std::string sentence_of(const PredictionReport& report) {
 }  // namespace
 
 PredictionReport predict_unused(const data::Study& study, const std::vector<Emulator>& emulators,
-                                const data::Prediction& wanted, const CaseModel& sampled, const MatrixXd& draws) {
+                                const data::UnusedData& wanted, const CaseModel& sampled, const MatrixXd& draws) {
   data::Study wider = study;
   for (data::ObservationSet& set : wider.observations)
     if (std::find(wanted.observe.begin(), wanted.observe.end(), set.name) == wanted.observe.end()) condense(set);

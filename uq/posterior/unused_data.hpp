@@ -15,6 +15,6 @@ namespace uq {
 
 /// `draws`: rows in u, of the sampled case. Throws data::InputError where the rows lie outside the runs.
 PredictionReport predict_unused(const data::Study& study, const std::vector<Emulator>& emulators,
-                                const data::Prediction& wanted, const CaseModel& sampled, const Eigen::MatrixXd& draws);
+                                const data::UnusedData& wanted, const CaseModel& sampled, const Eigen::MatrixXd& draws);
 
 }  // namespace uq

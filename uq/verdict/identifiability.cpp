@@ -227,9 +227,8 @@ Words summarise(const Identification& found, const std::string& parted_by) {
                                    "freedom, posterior predictive p {:.2g}.",
                                    found.check.chi2, found.check.dof, found.check.predictive_p),
             .consequence = "The parameters' values and errors mean nothing here; none is called identified.",
-            .remedy =
-                "Check the data's errors and units and the rig's settings (fill, geometry, speed); then free what "
-                "was fixed, or widen the ranges."};
+            .remedies = {"Check the data's errors and units and the rig's settings (fill, geometry, speed); then free "
+                         "what was fixed, or widen the ranges."}};
   return words_of({.parameters = found.parameters,
                    .traded = found.traded,
                    .parted_by = parted_by,

@@ -1,10 +1,11 @@
 #include "uq/verdict/verdict_words.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "uq/findings/listed.hpp"
 
@@ -175,8 +176,8 @@ std::string partners(const CaseFacts& facts, const Names& names) {
   return together.empty() ? std::string() : listed(together);
 }
 
-std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
-  if (sorted.known.size() == facts.parameters.size()) return none_needed;
+std::vector<std::string> find_remedies(const CaseFacts& facts, const Sorted& sorted) {
+  if (sorted.known.size() == facts.parameters.size()) return {};
   std::vector<Remedy> remedies;
   if (!sorted.several.empty())
     remedies.push_back({static_cast<double>(sorted.several.size()),
@@ -254,9 +255,9 @@ std::string find_remedy(const CaseFacts& facts, const Sorted& sorted) {
                                            "is larger than the measurement's.",
                                            listed(hidden_ones), one_or(hidden_ones, "acts", "act"))});
   }
-  std::string text;
-  for (const Remedy& remedy : remedies) text += (text.empty() ? "" : " ") + remedy.text;
-  return text;
+  std::vector<std::string> sentences;
+  for (Remedy& remedy : remedies) sentences.push_back(std::move(remedy.text));
+  return sentences;
 }
 
 }  // namespace
@@ -316,11 +317,15 @@ WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason
   return {.measurement = 1.0 - surrogate, .surrogate = surrogate, .structure = 0.0, .range = 0.0};
 }
 
+std::string shown_remedy(const Words& words) {
+  return words.remedies.empty() ? "None needed." : fmt::format("{}", fmt::join(words.remedies, " "));
+}
+
 Words words_of(const CaseFacts& facts) {
   const Sorted sorted = sort_parameters(facts.parameters);
   return {.finding = find_finding(facts, sorted),
           .consequence = find_consequence(facts, sorted),
-          .remedy = find_remedy(facts, sorted)};
+          .remedies = find_remedies(facts, sorted)};
 }
 
 }  // namespace uq

@@ -33,13 +33,14 @@ std::string because(Reason reason, const ParameterEvidence& parameter);
 /// What the shares of a width are, given the reason.
 WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason> reason);
 
-/// The remedy of a case in which all is known.
-inline constexpr const char* none_needed = "None needed.";
-
 /// The case's verdicts in one finding, what follows from it, and what to do.
 struct Words {
-  std::string finding, consequence, remedy;
+  std::string finding, consequence;
+  std::vector<std::string> remedies;  ///< sentences, the first to be done first; none where all is known
 };
+
+/// The remedies as they are shown; of none, that none is needed.
+std::string shown_remedy(const Words& words);
 
 /// What the words of a case that fits hang on.
 struct CaseFacts {

@@ -12,25 +12,13 @@
 #include "dem/run/run.hpp"
 #include "tests/dem/same_bits.hpp"
 #include "tests/dem/scene.hpp"
+#include "tests/dem/small_rigs.hpp"
 
 using Catch::Contains;
+using scene::small_drum;
+using scene::Turning;
 
 namespace {
-
-/// 20 mm wide and 6 mm long, two fifths full of a few hundred spheres of three sizes, at 60 rpm.
-dem::Case small_drum(dem::EndPlates end_plates = dem::EndPlates::turning) {
-  dem::Case c;
-  c.rig.drum = dem::Drum{.radius = 10e-3, .length = 6e-3, .end_plates = end_plates};
-  c.rig.level = 0.4;
-  c.rig.angular_velocity = 2.0 * M_PI;
-  c.material.density = 2500.0;
-  c.material.sizes = {{1.1e-3, 1.0 / 3.0}, {1.2e-3, 1.0 / 3.0}, {1.3e-3, 1.0 / 3.0}};
-  c.contact.stiffness = 200.0;
-  c.contact.friction = 0.5;
-  c.run.settle = 0.05;
-  c.run.steps_per_contact = 15.0;
-  return c;
-}
 
 dem::Case short_run(dem::Case c) {
   c.run.settle = 0.02;
@@ -49,14 +37,11 @@ struct Balance {
   double weight = 0.0;               ///< N m, of the powder about the axis
 };
 Balance balance(const dem::Case& c, double start_up, double measured) {
-  dem::BuiltRig rig = dem::build_rig(c, 2);
-  const dem::Sensor sensor = rig.sensor;
-  const double dt = dem::derive(c).time_step;
-  const auto rest = static_cast<std::uint64_t>(std::llround(c.run.settle / dt));
-  dem::Simulation s(dem::make_setup(c, dem::derive(c), std::move(rig), rest, 1));
-  while (s.time() < c.run.settle + start_up) s.step();
+  Turning turning(c, 2, start_up);
+  dem::Simulation& s = turning.simulation;
+  const dem::Sensor& sensor = turning.sensor;
   Balance mean;
-  const auto steps = static_cast<int>(measured / dt);
+  const auto steps = static_cast<int>(measured / turning.time_step);
   for (int k = 0; k < steps; ++k) {
     s.step();
     mean.shell += dot(sensor.driven[0].torque_axis, s.sums().body[dem::shell].torque) / steps;
@@ -106,7 +91,7 @@ TEST_CASE("a half-full drum at rest settles to the centroid of a half disc", "[s
   dem::Case c = small_drum();
   c.rig.drum->end_plates = dem::EndPlates::none;
   c.rig.level = 0.5;
-  c.material.sizes = {{0.66e-3, 1.0 / 3.0}, {0.72e-3, 1.0 / 3.0}, {0.78e-3, 1.0 / 3.0}};
+  c.material.sizes = scene::thirds(0.66e-3, 0.72e-3, 0.78e-3);
   c.contact.friction = 0.1;  // so that they pack well: the solid fraction is then 0.6 within a few hundredths
   dem::Simulation s(scene::rig(c, 1, scene::at_rest));
   while (s.time() < 0.15) s.step();
@@ -117,14 +102,8 @@ TEST_CASE("a half-full drum at rest settles to the centroid of a half disc", "[s
 }
 
 TEST_CASE("in steady flow the drum's torque is the weight times the centre's distance from the axis", "[slow]") {
-  dem::Case c = small_drum();
+  dem::Case c = scene::steady(small_drum(), 2.5);
   c.rig.angular_velocity *= GENERATE(1.0, -1.0);
-  c.run.start_up = 0.5;
-  c.run.start_up_turns = 0.5;
-  c.run.shortest = 1.0;
-  c.run.shortest_turns = 1.0;
-  c.run.longest = 2.5;
-  c.run.standard_error = 0.05;
   const dem::RunResult result = dem::run(c, 1);
   INFO(result.reason);
   REQUIRE(result.status == dem::RunStatus::done);

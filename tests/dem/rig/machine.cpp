@@ -16,6 +16,7 @@
 #include "dem/run/mixing.hpp"
 #include "dem/run/run.hpp"
 #include "tests/dem/scene.hpp"
+#include "tests/dem/small_rigs.hpp"
 
 using Catch::Contains;
 
@@ -29,7 +30,7 @@ dem::Case small_machine() {
   c.rig.level = 0.6;
   c.rig.angular_velocity = 10.0 * M_PI;
   c.material.density = 2500.0;
-  c.material.sizes = {{1.1e-3, 1.0 / 3.0}, {1.2e-3, 1.0 / 3.0}, {1.3e-3, 1.0 / 3.0}};
+  c.material.sizes = scene::thirds(1.1e-3, 1.2e-3, 1.3e-3);
   c.contact.stiffness = 400.0;
   c.run.settle = 0.05;
   c.run.steps_per_contact = 15.0;
@@ -80,12 +81,10 @@ struct Flow {
   double first = 0.0, second = 0.0;  ///< N m
 };
 Flow turn(const dem::Case& c, double start_up, double measured) {
-  dem::BuiltRig rig = dem::build_rig(c, 3);
-  const dem::Sensor sensor = rig.sensor;
-  const double dt = dem::derive(c).time_step;
-  const auto rest = static_cast<std::uint64_t>(std::llround(c.run.settle / dt));
-  dem::Simulation s(dem::make_setup(c, dem::derive(c), std::move(rig), rest, 1));
-  while (s.time() < c.run.settle + start_up) s.step();
+  scene::Turning turning(c, 3, start_up);
+  dem::Simulation& s = turning.simulation;
+  const dem::Sensor& sensor = turning.sensor;
+  const double dt = turning.time_step;
   Flow mean;
   Crossings crossings(c.rig, s.state().particles());
   crossings.look(s.state());

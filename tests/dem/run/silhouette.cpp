@@ -9,6 +9,7 @@
 #include "dem/run/outputs.hpp"
 #include "dem/run/run.hpp"
 #include "dem/run/silhouette.hpp"
+#include "tests/dem/small_rigs.hpp"
 
 using Catch::Contains;
 
@@ -56,17 +57,12 @@ std::vector<dem::PositionRow> kinked(double mean, double half) {
   });
 }
 
-dem::Case small_drum() {
-  dem::Case c;
-  c.rig.drum = dem::Drum{.radius = 10e-3, .length = 6e-3, .end_plates = dem::EndPlates::none};
+/// Open at its ends, with spheres that are lighter.
+dem::Case open_drum() {
+  dem::Case c = scene::small_drum(dem::EndPlates::none);
   c.rig.level = 0.45;
-  c.rig.angular_velocity = 2.0 * M_PI;
   c.material.density = 1500.0;
-  c.material.sizes = {{1.08e-3, 1.0 / 3.0}, {1.2e-3, 1.0 / 3.0}, {1.32e-3, 1.0 / 3.0}};
-  c.contact.stiffness = 200.0;
-  c.contact.friction = 0.5;
-  c.run.settle = 0.05;
-  c.run.steps_per_contact = 15.0;
+  c.material.sizes = scene::thirds(1.08e-3, 1.2e-3, 1.32e-3);
   return c;
 }
 
@@ -148,7 +144,7 @@ TEST_CASE("there is no picture along a vertical axis, nor across a periodic one"
   CHECK_FALSE(dem::no_output_because(stirred_about({0.0, 0.0, 1.0}), "silhouette_x").empty());
   CHECK(dem::no_output_because(stirred_about({0.0, 0.0, 1.0}), "centre_z").empty());
   CHECK(dem::no_output_because(stirred_about({1.0, 0.0, 0.0}), "silhouette_x").empty());
-  CHECK(dem::no_output_because(small_drum(), "silhouette_x").empty());
+  CHECK(dem::no_output_because(open_drum(), "silhouette_x").empty());
   CHECK(dem::no_output_because(dem::Case{}, "upper_angle").empty());
   CHECK_FALSE(dem::has_output("silhouette_y"));
 }
@@ -164,14 +160,8 @@ TEST_CASE("there are 256 cells along the longer side at most, and a sphere small
 }
 
 TEST_CASE("a drum at work: its silhouette leans as its mass does, and the surface of the picture rises", "[slow]") {
-  dem::Case c = small_drum();
+  dem::Case c = scene::steady(open_drum(), 2.0);
   c.rig.angular_velocity *= GENERATE(1.0, -1.0);
-  c.run.start_up = 0.5;
-  c.run.start_up_turns = 0.5;
-  c.run.shortest = 1.0;
-  c.run.shortest_turns = 1.0;
-  c.run.longest = 2.0;
-  c.run.standard_error = 0.05;
   const dem::RunResult result = dem::run(c, 1);
   REQUIRE(result.status == dem::RunStatus::done);
   const auto of = [&](const char* name) { return dem::output(result, name); };

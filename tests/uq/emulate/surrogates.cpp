@@ -25,6 +25,6 @@ TEST_CASE("an output that is only to be predicted has a surrogate, one that nobo
   };
   CHECK(names() == std::vector<std::string>{"torque"});
   study.observations.push_back({.name = "later", .outputs = {1}});
-  study.predictions = {{.name = "later", .case_index = 0, .observe = {"later"}}};
+  study.unused_data = {{.name = "later", .case_index = 0, .observe = {"later"}}};
   CHECK(names() == std::vector<std::string>{"torque", "angle"});
 }

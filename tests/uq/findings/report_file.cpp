@@ -134,7 +134,7 @@ data::ExitStatus status_of_loading(const std::string& path, std::string& message
 
 }  // namespace
 
-TEST_CASE("every field of the results is saved (one added to results.hpp belongs into fields.hpp)") {
+TEST_CASE("every field of the results is saved (one added to results.hpp belongs into the list of its fields)") {
   CHECK(size_of_visited<SurrogateReport>() == sizeof(SurrogateReport));
   CHECK(size_of_visited<ParameterReport>() == sizeof(ParameterReport));
   CHECK(size_of_visited<ValueRange>() == sizeof(ValueRange));

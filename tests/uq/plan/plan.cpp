@@ -125,32 +125,42 @@ TEST_CASE("a reading of the same meter shares its common error, whatever else th
     }
 }
 
-TEST_CASE("a candidate that names a meter of the observations has its common error", "[plan]") {
+TEST_CASE(
+    "a candidate that names a meter of the observations has its common error, however many outputs the case reads",
+    "[plan]") {
   // a normal; torque known with noise e; the angle, 3 a at b = 1/2, read by a camera with a common error c.
   const double c = 0.2, e = 0.1, s = 0.1, slope = 5.0 + 0.3 * 0.5, of_angle = 3.0;
-  data::Study study = formula::study({0.5}, {formula::torque(0.5, 0.5, 0.5)}, e);
-  study.cases[0].free = {"a"};
-  study.cases[0].fixed = {{"b", 0.5}};
-  for (data::Parameter& one : study.parameters)
-    one.prior = {.kind = data::PriorKind::normal, .low = 0.0, .high = 1.0, .mean = 0.5, .sd = s};
-  study.observations.push_back(
-      {.name = "elsewhere", .outputs = {1}, .meter = "camera", .common_errors = {{1, {.absolute = c}}}});
-  const data::PlanSection section{.about = {},
-                                  .cost_unit = {},
-                                  .candidates = {{.name = "picture",
-                                                  .material = {},
-                                                  .outputs = {1},
-                                                  .settings = {{0.5}},
-                                                  .error = data::Spread{.absolute = e},
-                                                  .common_error = {},
-                                                  .meter = "camera",
-                                                  .place = {}}}};
-  const PlanReport plan = plan_of(study, formula::emulators(), section, {.about = "a", .draws = 1000});
-  const double known = 1.0 / (1.0 / (s * s) + slope * slope / (e * e));
-  const double truth = 0.5 * std::log(1.0 + of_angle * of_angle * known / (c * c + e * e));
-  const auto& about = named(plan, "picture").parameters[0];
-  CAPTURE(about.information, about.information_error, truth);
-  CHECK(std::abs(about.information - truth) <= about.information_error + 0.002);
+  for (const bool two_outputs : {false, true}) {
+    data::Study study = formula::study({0.5}, {formula::torque(0.5, 0.5, 0.5)}, e);
+    study.cases[0].free = {"a"};
+    study.cases[0].fixed = {{"b", 0.5}};
+    for (data::Parameter& one : study.parameters)
+      one.prior = {.kind = data::PriorKind::normal, .low = 0.0, .high = 1.0, .mean = 0.5, .sd = s};
+    if (two_outputs) {  // a second one that tells nothing
+      data::ObservationSet& bench = study.observations[0];
+      bench.outputs = {0, 1};
+      bench.points[0].values.push_back(formula::angle(0.5, 0.5, 0.5));
+      bench.points[0].standard_errors.push_back(1e3);
+    }
+    study.observations.push_back(
+        {.name = "elsewhere", .outputs = {1}, .meter = "camera", .common_errors = {{1, {.absolute = c}}}});
+    const data::PlanSection section{.about = {},
+                                    .cost_unit = {},
+                                    .candidates = {{.name = "picture",
+                                                    .material = {},
+                                                    .outputs = {1},
+                                                    .settings = {{0.5}},
+                                                    .error = data::Spread{.absolute = e},
+                                                    .common_error = {},
+                                                    .meter = "camera",
+                                                    .place = {}}}};
+    const PlanReport plan = plan_of(study, formula::emulators(), section, {.about = "a", .draws = 1000});
+    const double known = 1.0 / (1.0 / (s * s) + slope * slope / (e * e));
+    const double truth = 0.5 * std::log(1.0 + of_angle * of_angle * known / (c * c + e * e));
+    const auto& about = named(plan, "picture").parameters[0];
+    CAPTURE(two_outputs, about.information, about.information_error, truth);
+    CHECK(std::abs(about.information - truth) <= about.information_error + 0.002);
+  }
 }
 
 TEST_CASE("the readings needed for a word have a range, and are no fewer than the width asks for", "[plan]") {

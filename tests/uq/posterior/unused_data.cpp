@@ -26,7 +26,7 @@ data::Study made(double a, double b, double shared, data::RandomStream& random) 
   data::ObservationSet later{.name = "later", .file = "later.csv", .outputs = {0}};
   for (const double x : unused) later.points.push_back({.controls = {x}, .values = {read(x)}, .standard_errors = {sd}});
   study.observations.push_back(later);
-  study.predictions = {{.name = "later", .case_index = 0, .observe = {"later"}}};
+  study.unused_data = {{.name = "later", .case_index = 0, .observe = {"later"}}};
   return study;
 }
 
@@ -63,7 +63,7 @@ MatrixXd posterior(const data::Study& study, double shared, int count) {
 
 PredictionReport predicted(const data::Study& study, double shared) {
   const auto emulators = formula::emulators(shared);
-  return predict_unused(study, emulators, study.predictions.front(), build_case(study, emulators, 0),
+  return predict_unused(study, emulators, study.unused_data.front(), build_case(study, emulators, 0),
                         posterior(study, shared, 400));
 }
 

@@ -60,7 +60,7 @@ TEST_CASE("a value that another's range decides is not identified, and says whos
   CHECK_THAT(b.sentence, Catch::Contains("the range of a"));
   const uq::Words words = uq::summarise(found, "");
   CHECK_THAT(words.consequence, Catch::Contains("depends on where the range of a ends"));
-  CHECK_THAT(words.remedy, Catch::Contains("Widen the range of a"));
+  CHECK_THAT(uq::shown_remedy(words), Catch::Contains("Widen the range of a"));
 }
 
 TEST_CASE("a best fit inside all ranges leaves the words as they are", "[uq]") {

@@ -115,7 +115,10 @@ Outcome run(const Structure& structure, std::uint32_t seed) {
       if (std::none_of(structure.together.begin(), structure.together.end(),
                        [&](const Together& wanted) { return wanted.members == set.parameters; }))
         miss("also " + set.combination);
-  if (words.remedy.find("None needed") != std::string::npos && words.remedy.size() > 13) miss("contradicting remedy");
+  const bool all_known =
+      std::all_of(found.parameters.begin(), found.parameters.end(),
+                  [](const uq::ParameterReport& one) { return one.verdict == uq::Verdict::identified; });
+  if (found.fits && words.remedies.empty() != all_known) miss("contradicting remedy");
   if (std::getenv("DEMCAL_VERDICTS_ALOUD")) {
     fmt::print("--- {} seed {}: {}\n", structure.what, seed, outcome.right ? "right" : outcome.missed);
     for (const auto& parameter : found.parameters) {
@@ -124,7 +127,7 @@ Outcome run(const Structure& structure, std::uint32_t seed) {
         fmt::print("      {} {:.2f}", uq::to_text(word.verdict), word.probability);
       fmt::print("\n");
     }
-    fmt::print("    {}\n    {}\n    {}\n", words.finding, words.consequence, words.remedy);
+    fmt::print("    {}\n    {}\n    {}\n", words.finding, words.consequence, uq::shown_remedy(words));
   }
   return outcome;
 }

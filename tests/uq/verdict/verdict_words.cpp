@@ -72,9 +72,11 @@ std::vector<ParameterReport> all_parameters(const std::string& name) {
 void check_words(const std::vector<ParameterReport>& parameters, const Words& words) {
   const bool all_known = std::all_of(parameters.begin(), parameters.end(),
                                      [](const ParameterReport& p) { return p.verdict == Verdict::identified; });
-  CHECK(has(words.remedy, "None needed") == all_known);
-  if (all_known) CHECK(words.remedy == "None needed.");
-  CHECK_FALSE(words.remedy.empty());
+  const std::string remedy = shown_remedy(words);
+  CHECK(words.remedies.empty() == all_known);
+  CHECK(has(remedy, "None needed") == all_known);
+  if (all_known) CHECK(remedy == "None needed.");
+  CHECK_FALSE(remedy.empty());
   CHECK_FALSE(words.consequence.empty());
   bool practical = false, structural = false;
   for (const ParameterReport& p : parameters) {
@@ -88,8 +90,8 @@ void check_words(const std::vector<ParameterReport>& parameters, const Words& wo
     if (p.reason == Reason::no_influence) CHECK_FALSE(has(p.sentence, "would not help"));
   }
   // A smaller error is asked for only where it can help.
-  if (!practical) CHECK_FALSE(has(words.remedy, "educe the measurement error"));
-  if (!structural) CHECK_FALSE(has(words.remedy, "will not part them"));
+  if (!practical) CHECK_FALSE(has(remedy, "educe the measurement error"));
+  if (!structural) CHECK_FALSE(has(remedy, "will not part them"));
   if (has(words.consequence, "little better than the prior"))
     CHECK(std::any_of(parameters.begin(), parameters.end(),
                       [](const ParameterReport& p) { return p.contraction < 0.5; }));
@@ -118,7 +120,7 @@ TEST_CASE("no combination of two parameters' facts has words that contradict eac
       second.name = "b";
       INFO(first.sentence << " | " << second.sentence);
       const Words words = words_of({.parameters = {first, second}, .traded = {}, .parted_by = {}});
-      INFO(words.finding << " | " << words.consequence << " | " << words.remedy);
+      INFO(words.finding << " | " << words.consequence << " | " << shown_remedy(words));
       check_words({first, second}, words);
     }
 }
@@ -129,9 +131,9 @@ TEST_CASE("the first remedy is that of the largest share: training runs where th
   const ParameterReport parameter = judged("a", {.contraction = 0.3, .contraction_within = 0.3}, more);
   CHECK(parameter.reason == uq::Reason::surrogate);
   const Words words = words_of({.parameters = {parameter}, .traded = {}, .parted_by = {}});
-  CHECK(words.remedy.rfind("Make more training runs", 0) == 0);
-  CHECK(has(words.remedy, "up to 80 % of the posterior variance is the surrogate's"));
-  CHECK_FALSE(has(words.remedy, "Reduce the measurement error"));
+  CHECK(words.remedies.front().rfind("Make more training runs", 0) == 0);
+  CHECK(has(shown_remedy(words), "up to 80 % of the posterior variance is the surrogate's"));
+  CHECK_FALSE(has(shown_remedy(words), "Reduce the measurement error"));
 }
 
 TEST_CASE("of traded parameters another quantity is advised, too, where the surrogate leaves open why", "[uq]") {
@@ -144,8 +146,8 @@ TEST_CASE("of traded parameters another quantity is advised, too, where the surr
   TradedPair pair;
   pair.parameters = {"a", "b"};
   const Words words = words_of({.parameters = both, .traded = {pair}, .parted_by = {}});
-  CHECK(words.remedy.rfind("Make more training runs", 0) == 0);
-  CHECK(has(words.remedy, "Or measure a quantity that responds differently to a and b, or fix one"));
+  CHECK(words.remedies.front().rfind("Make more training runs", 0) == 0);
+  CHECK(has(shown_remedy(words), "Or measure a quantity that responds differently to a and b, or fix one"));
 }
 
 TEST_CASE("a parameter without influence is told neither structural nor hidden by noise, and gets one remedy", "[uq]") {
@@ -154,8 +156,8 @@ TEST_CASE("a parameter without influence is told neither structural nor hidden b
   CHECK(silent.reason == uq::Reason::no_influence);
   const Words words = words_of({.parameters = {known, silent}, .traded = {}, .parted_by = {}});
   CHECK(words.finding == "The data determine a. They say nothing of b.");
-  CHECK(has(words.remedy, "that b moves"));
-  CHECK_FALSE(has(words.remedy, "measurement error"));
+  CHECK(has(shown_remedy(words), "that b moves"));
+  CHECK_FALSE(has(shown_remedy(words), "measurement error"));
 }
 
 TEST_CASE("separate values are never averaged: the consequence says so, the remedy is what parts them", "[uq]") {
@@ -164,7 +166,7 @@ TEST_CASE("separate values are never averaged: the consequence says so, the reme
   CHECK(has(two.sentence, "two separate values"));
   const Words words =
       words_of({.parameters = {two}, .traded = {}, .parted_by = "measure torque at speed 50 rpm, where they part"});
-  CHECK(words.remedy == "Measure torque at speed 50 rpm, where they part.");
+  CHECK(shown_remedy(words) == "Measure torque at speed 50 rpm, where they part.");
   CHECK(has(words.consequence, "their mean fits nothing"));
 }
 
