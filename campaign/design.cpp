@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -154,7 +155,14 @@ Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& tab
   std::set<std::string> known;
   for (const data::RunRow& row : table.rows) known.insert(data::row_key(row));
   Campaign campaign;
-  for (const Point& point : read_points(workspace, path))
+  const std::vector<Point> listed = read_points(workspace, path), left = read_design(workspace);
+  const auto is_listed = [&](const Point& point) {
+    return std::any_of(listed.begin(), listed.end(),
+                       [&](const Point& one) { return point_key(workspace, one) == point_key(workspace, point); });
+  };
+  // What an interrupted call left of the list is done first, and then no further points.
+  campaign.continues = !left.empty() && std::all_of(left.begin(), left.end(), is_listed);
+  for (const Point& point : campaign.continues ? left : listed)
     if (static_cast<int>(campaign.points.size()) < runs && known.insert(point_key(workspace, point)).second)
       campaign.points.push_back(point);
   return campaign;

@@ -9,6 +9,14 @@
 #include "dem/run/looks.hpp"
 
 namespace campaign {
+namespace {
+
+double machine_memory() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
 Foretold foretell(const Workspace& workspace, const Point& point) {
   dem::PreparedCase prepared = dem::prepare(case_at(workspace, point));
   dem::Forecast forecast = dem::forecast(prepared, workspace.study.seed);
@@ -29,7 +37,7 @@ Cost cost_of(const dem::PreparedCase& prepared) {
   cost.steps = (c.run.settle + c.run.longest) / derived.time_step;
   cost.seconds = cost.steps * spheres / cost.effort.rate;
   cost.bytes = 2.0 * spheres * cost.effort.bytes_per_sphere;  // the state, and the last good one
-  const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double machine = machine_memory();
   if (cost.bytes > 0.8 * machine)
     cost.warnings.push_back(fmt::format("a run needs about {:.2g} GB of memory, and this machine has {:.2g} GB",
                                         1e-9 * cost.bytes, 1e-9 * machine));
@@ -39,6 +47,32 @@ Cost cost_of(const dem::PreparedCase& prepared) {
                     "or larger spheres, or a softer contact.stiffness, shorten it)",
                     duration_text(cost.seconds), derived.spheres, cost.steps, derived.time_step));
   return cost;
+}
+
+std::optional<data::Problem> too_large(const Cost& cost, std::int64_t spheres, int jobs, double machine) {
+  const double bytes = jobs * cost.bytes;
+  if (bytes <= machine) return {};
+  return data::Problem{
+      "[rig] fill",
+      fmt::format(
+          "makes {} spheres of {:.0f} bytes each, so that {} need about {:.2g} GB of memory, and this machine has "
+          "{:.2g} GB",
+          spheres, cost.bytes / static_cast<double>(spheres),
+          jobs == 1 ? "the state of a run and its last good one" : fmt::format("{} runs at a time", jobs), 1e-9 * bytes,
+          1e-9 * machine),
+      cost.bytes <= machine
+          ? fmt::format("--jobs {} at most, or fewer or larger spheres", static_cast<int>(machine / cost.bytes))
+          : "fewer or larger spheres, or a larger machine"};
+}
+
+void require_memory(const Workspace& workspace, const Foretold& told, int jobs) {
+  constexpr std::int64_t surely_fits = 100000;  // some 80 MB
+  const auto spheres = static_cast<std::int64_t>(told.prepared.derived().spheres);
+  if (spheres * jobs <= surely_fits) return;
+  std::optional<data::Problem> problem = too_large(cost_of(told.prepared), spheres, jobs, machine_memory());
+  if (!problem) return;
+  problem->place = workspace.study.file + ": " + problem->place;
+  throw data::InputError(data::ExitStatus::bad_study, *problem);
 }
 
 std::string duration_text(double seconds) {

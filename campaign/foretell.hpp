@@ -1,7 +1,9 @@
 #pragma once
 // What the runs of a study will be, said before any is made: by `check` of each material, and by `simulate` and `train`
 // before they start.
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,12 @@ struct Cost {
   std::vector<std::string> warnings;  ///< beyond this machine's memory, or a day
 };
 Cost cost_of(const dem::PreparedCase& prepared);
+
+/// Throws data::InputError (78) where so many runs at a time need more memory than this machine has.
+void require_memory(const Workspace& workspace, const Foretold& told, int jobs);
+
+/// What is wrong with a run of so many spheres in a machine of so many bytes; nothing where it fits.
+std::optional<data::Problem> too_large(const Cost& cost, std::int64_t spheres, int jobs, double machine);
 
 /// "2 min", "5.3 h".
 std::string duration_text(double seconds);

@@ -48,7 +48,7 @@ void work(const Workspace& workspace, const std::vector<PlannedRun>& runs, const
 
 BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                       const BatchOptions& options) {
-  foretell_materials(workspace, runs);
+  foretell_materials(workspace, runs, static_cast<int>(std::min<std::size_t>(runs.size(), options.jobs)));
   Shared shared{.ledger = Ledger(std::move(table), runs.size())};
   write_tables(workspace, shared.ledger.result.table, options.kept);
   std::stop_source stop;
@@ -61,10 +61,13 @@ BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>&
   return std::move(shared.ledger.result);
 }
 
-void foretell_materials(const Workspace& workspace, const std::vector<PlannedRun>& runs) {
+void foretell_materials(const Workspace& workspace, const std::vector<PlannedRun>& runs, int here) {
   std::set<std::string> materials;
   for (const PlannedRun& run : runs) materials.insert(run.point.material);
-  for (const std::string& material : materials) foretell(workspace, parse_point(workspace, material, {}));
+  for (const std::string& material : materials) {
+    const Foretold told = foretell(workspace, parse_point(workspace, material, {}));
+    if (here > 0) require_memory(workspace, told, here);
+  }
 }
 
 Workspace with_seed(const Workspace& workspace, std::uint64_t seed) {

@@ -22,8 +22,9 @@ struct BatchOptions {
 BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                       const BatchOptions& options);
 
-/// Throws InputError (78) where the rig makes the runs of a material nonsense.
-void foretell_materials(const Workspace& workspace, const std::vector<PlannedRun>& runs);
+/// Throws InputError (78) where the rig makes the runs of a material nonsense, or so many at a time here need more memory
+/// than this machine has; 0: they are made elsewhere.
+void foretell_materials(const Workspace& workspace, const std::vector<PlannedRun>& runs, int here);
 
 /// The same study under another seed.
 Workspace with_seed(const Workspace& workspace, std::uint64_t seed);

@@ -390,7 +390,7 @@ class Follower {
 SlurmResult run_on_slurm(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                          const BatchOptions& batch, const SlurmOptions& options) {
   SlurmCommands(options.start).require_programs();
-  foretell_materials(workspace, runs);
+  foretell_materials(workspace, runs, 0);
   return Follower(workspace, runs, std::move(table), batch, options).follow();
 }
 

@@ -13,6 +13,7 @@
 #include "data/error.hpp"
 #include "data/folder_lock.hpp"
 #include "data/hash.hpp"
+#include "data/origin.hpp"
 
 namespace campaign {
 namespace {
@@ -56,7 +57,7 @@ std::string slurm_folder(const std::string& out) { return (fs::path(out) / "slur
 
 SlurmRecord load_slurm_record(const std::string& out, const std::string& study) {
   const std::string path = record_path(out);
-  if (fs::exists(path)) {
+  if (data::origin_of(path) != data::Origin::changed && fs::exists(path)) {
     try {
       const nlohmann::json json = nlohmann::json::parse(data::read_file(path));
       if (json.at("format") == format) return from_json(json);

@@ -9,6 +9,7 @@
 #include "campaign/placeholder.hpp"
 #include "campaign/point.hpp"
 #include "campaign/training_table.hpp"
+#include "data/origin.hpp"
 #include "data/run_table_files.hpp"
 
 namespace campaign {
@@ -75,7 +76,10 @@ StudyRows study_rows(const Workspace& workspace) {
   };
   if (!study.training.table.empty()) add(study.training.table, data::read_table(study.training.table, study));
   const std::string own = (fs::path(workspace.out) / "training.h5").string();
-  if (fs::exists(own)) add(own, read_own_table(workspace, result.notes));
+  const std::string copy = (fs::path(workspace.out) / "training.csv").string();
+  const data::Origin of_copy = data::origin_of(copy);
+  if (fs::exists(own) || of_copy == data::Origin::ours || of_copy == data::Origin::changed)
+    add(own, read_own_table(workspace, result.notes));
   result.table = result.all;
   leave_out_unsteady(workspace, result);
   if (!study.training.low.empty()) {

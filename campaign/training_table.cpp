@@ -20,14 +20,20 @@ data::TableRead read_own_table(const Workspace& workspace, std::vector<std::stri
   const std::string copy = (fs::path(workspace.out) / "training.csv").string();
   const data::Origin origin = data::origin_of(table);
   const bool damaged = origin == data::Origin::changed || origin == data::Origin::unmarked;
+  const std::string runs = data::shown_path((fs::path(workspace.out) / "runs").string());
   const bool has_copy = data::origin_of(copy) == data::Origin::ours;
+  if (origin == data::Origin::absent) {
+    data::require_unchanged(copy, "move it away; demcal train makes the table again from the runs in " + runs);
+    notes.push_back(
+        fmt::format("{} is not there; its rows are read from training.csv beside it", data::shown_path(table)));
+    return data::read_table(copy, workspace.study);
+  }
   if (!damaged || (origin == data::Origin::unmarked && !has_copy)) return data::read_table(table, workspace.study);
   if (!has_copy)
     throw data::InputError(
         data::ExitStatus::bad_data,
         {data::shown_path(table), "is damaged, and training.csv beside it is not as demcal wrote it either",
-         "move both away; demcal train makes the table again from the runs in " +
-             data::shown_path((fs::path(workspace.out) / "runs").string())});
+         "move both away; demcal train makes the table again from the runs in " + runs});
   notes.push_back(
       fmt::format("{} is damaged; its rows are read from training.csv beside it, and demcal train writes it again",
                   data::shown_path(table)));

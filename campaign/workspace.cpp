@@ -10,6 +10,7 @@
 
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
+#include "data/origin.hpp"
 #include "dem/reading/read_case.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/run/run.hpp"
@@ -105,6 +106,11 @@ Workspace open_workspace(const StudyOptions& options) {
       !table.empty() && fs::path(table).extension() == ".csv" && fs::exists(table))
     if (const std::string how = data::read_csv(table).took_line(); !how.empty()) workspace.notes.push_back(how);
   workspace.out = options.out.empty() ? default_out(study) : fs::absolute(options.out).lexically_normal().string();
+  for (const char* list : {"design.csv", "next-runs.csv", "verify-runs.csv", "posterior-runs.csv"})
+    if (const std::string path = (fs::path(workspace.out) / list).string();
+        data::origin_of(path) == data::Origin::changed)
+      workspace.notes.push_back(fmt::format("{}: was changed since demcal wrote it; its points are taken as they stand",
+                                            data::shown_path(path)));
   return workspace;
 }
 

@@ -12,6 +12,7 @@
 #include "data/terminal.hpp"
 #include "dem/bed/derived.hpp"
 #include "uq/calibrate/data_check.hpp"
+#include "uq/calibrate/effort.hpp"
 #include "uq/emulate/surrogate_file.hpp"
 #include "uq/findings/report_file.hpp"
 #include "uq/findings/wording.hpp"
@@ -87,6 +88,7 @@ uq::SurrogateOptions surrogate_options(const Common& common, const Workspace& wo
   uq::SurrogateOptions options = *workspace.surrogates;
   options.fit.seed = workspace.study.seed;
   options.low = rows.low;
+  for (const std::string& note : uq::effort_notes(workspace.study, rows.table, options)) say(common, "note: " + note);
   uq::SavedSurrogates saved = uq::load_surrogates(surrogate_path(workspace), workspace.study, rows.table, options);
   if (!saved.stale.empty()) say(common, fmt::format("{} is fitted again: {}", surrogate_path(workspace), saved.stale));
   options.known = std::move(saved.fitted);

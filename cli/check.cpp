@@ -8,6 +8,7 @@
 #include "cli/command.hpp"
 #include "dem/rig/rig.hpp"
 #include "uq/calibrate/data_check.hpp"
+#include "uq/calibrate/effort.hpp"
 #include "uq/emulate/surrogates.hpp"
 #include "uq/plan/candidates.hpp"
 
@@ -64,6 +65,9 @@ Action add_check(CLI::App& program) {
     for (const data::Problem& problem : data::outside_training_range(study))
       warnings.push_back(data::describe({problem}));
     for (std::string& warning : refused_later(workspace, rows)) warnings.push_back(std::move(warning));
+    uq::SurrogateOptions surrogates = *workspace.surrogates;
+    surrogates.low = rows.low;
+    for (const std::string& note : uq::effort_notes(study, rows.table, surrogates)) say(*common, "note: " + note);
     nlohmann::json materials = nlohmann::json::array();
     const std::vector<Point> missing =
         workspace.cases.empty() ? std::vector<Point>{} : plan_campaign(workspace, rows.all, 0).points;

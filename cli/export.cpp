@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/point_options.hpp"
 #include "data/atomic_file.hpp"
+#include "data/origin.hpp"
 #include "data/provenance.hpp"
 #include "data/run_table.hpp"
 #include "dem/exchange/liggghts.hpp"
@@ -68,6 +69,7 @@ data::ExitStatus write(const ExportOptions& options, const Workspace& workspace)
 /// The point that the folder was written for. Throws InputError (65, 66) where it was for another study.
 Point point_of(const ExportOptions& options, Workspace& workspace) {
   const std::string path = (fs::path(options.folder) / record).string();
+  data::require_unchanged(path, "write the folder again: demcal export STUDY FOLDER --to liggghts");
   const nlohmann::json json = nlohmann::json::parse(data::read_file(path), nullptr, false);
   const auto wrong = [&](const std::string& what) {
     return data::InputError(data::ExitStatus::bad_data,
@@ -110,6 +112,7 @@ data::ExitStatus collect(const ExportOptions& options, Workspace workspace) {
 
   const auto held = hold_out(workspace, Writes::training, "export");
   const std::string path = (fs::path(workspace.out) / "liggghts.csv").string();
+  data::require_unchanged(path, "move it away, and collect its folders again");
   data::RunTable table = data::empty_table(workspace.study);
   table.rows.push_back(row);
   if (fs::exists(path)) table = data::merge(table, data::read_table(path, workspace.study).table);

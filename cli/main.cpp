@@ -11,6 +11,7 @@
 
 #include "cli/command.hpp"
 #include "cli/misspelt.hpp"
+#include "cli/out_of_memory.hpp"
 #include "data/provenance.hpp"
 #include "data/terminal.hpp"
 
@@ -77,24 +78,20 @@ int refused(const std::filesystem::filesystem_error& error) {
                  "cannot be used: " + error.code().message(), "check the path, its links and its rights");
 }
 
-int out_of_memory() {
-  return refused(data::ExitStatus::bad_data, "", "this needs more memory than the system gives",
-                 "use fewer rows, spheres or a smaller box, fewer --jobs, or a larger machine");
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   data::guard_streams();
+  cli::guard_memory();
   try {
     return run(argc, argv);
   } catch (const data::InputError& error) {
     data::tell(error.what());
     return status(error.status);
-  } catch (const std::bad_alloc&) {
-    return out_of_memory();
+  } catch (const std::bad_alloc&) {  // of a library
+    cli::out_of_memory();
   } catch (const std::length_error&) {  // a vector longer than any memory
-    return out_of_memory();
+    cli::out_of_memory();
   } catch (const std::filesystem::filesystem_error& error) {
     return refused(error);
   } catch (const std::system_error& error) {

@@ -166,6 +166,7 @@ Action add_simulate(CLI::App& program) {
     const Point point = point_of(workspace, options->point);
     std::vector<std::string> notes = outside_ranges(workspace, point);
     const Foretold told = foretell(workspace, point);
+    require_memory(workspace, told, 1);
     for (const std::string& warning : told.forecast.warnings) notes.push_back(warning);
     for (const std::string& warning : dem::rig_warnings(told.prepared.given())) notes.push_back(warning);
     const auto held = hold_out(workspace, Writes::run, "simulate");

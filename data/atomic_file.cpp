@@ -70,7 +70,7 @@ InputError renamed(const InputError& error, const std::string& temporary, const 
   for (Problem& problem : problems) {
     if (const std::size_t at = problem.place.find(temporary); at != std::string::npos)
       problem.place.replace(at, temporary.size(), path);
-    else if (error.status == ExitStatus::cannot_write)
+    else if (error.status == ExitStatus::cannot_write && !problem.place.starts_with(path))
       problem.place = problem.place.empty() ? path : path + ": " + problem.place;
   }
   return {error.status, std::move(problems)};
@@ -89,9 +89,9 @@ bool is_hdf5(const std::string& path) {
 void write_through(const std::string& path, const std::function<void(const std::string& temporary)>& write) {
   static std::atomic<unsigned> serial{0};
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error && !fs::is_directory(folder, error)) cannot_write(folder.string(), error ? error.value() : ENOTDIR);
+  std::error_code made, error;
+  fs::create_directories(folder, made);
+  if (made && !fs::is_directory(folder, error)) cannot_write(folder.string(), made.value());
   if (fs::is_directory(path, error)) cannot_write(path, EISDIR);
   if (::access(folder.c_str(), W_OK | X_OK) != 0) cannot_write(path, errno);
   remove_left_over(folder);

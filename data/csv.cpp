@@ -73,8 +73,11 @@ double Csv::number(const CsvRow& row, std::size_t column) const {
           place(row, column), fmt::format("'{}' is a number with an error", field),
           fmt::format("write the error into a column of its own, {}_se, if it is the standard error of the mean",
                       columns.at(column)));
-    refuse_data(place(row, column), fmt::format("'{}' is not a number", field),
-                "write a plain number with a decimal point");
+    refuse_data(
+        place(row, column), fmt::format("'{}' is not a number", field),
+        field.find(':') == std::string::npos
+            ? "write a plain number with a decimal point"
+            : "write a plain number with a decimal point, or a time as 2024-05-03 14:02:00, with +02:00 for its zone");
   }
   return value;
 }

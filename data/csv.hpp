@@ -33,8 +33,9 @@ struct Csv {
   std::vector<std::string> units;     ///< "" where none is given
   int header_line = 0;
   std::vector<CsvRow> rows;
-  std::string no_time;            ///< why there is no column of times, where the file's form has one
-  std::vector<std::string> took;  ///< how the table was read, where it is not plain CSV: "separated by semicolons"
+  std::string no_time;  ///< why there is no column of times, where the file's form has one
+  std::vector<std::string>
+      took;  ///< how the table was read, where it is not plain CSV or not as demcal wrote it: "separated by semicolons"
 
   /// By name, with or without its unit; with Capitals::any, where none is spelled so, "Speed" for speed. Throws
   /// InputError (65) where two columns have the name and differ.

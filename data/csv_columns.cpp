@@ -68,9 +68,25 @@ FoundChange unit_change(const std::string& from, const std::string& to) {
   return {};
 }
 
+/// A heading of several lines in quotes, as spreadsheets wrap them, is one line.
+std::string in_one_line(std::string_view heading) {
+  std::string line;
+  for (const char c : heading) {
+    const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
+    if (!blank)
+      line += c;
+    else if (!line.empty() && line.back() != ' ')
+      line += ' ';
+  }
+  if (line.ends_with(' ')) line.pop_back();
+  return line;
+}
+
 }  // namespace
 
 void read_columns(Csv& csv) {
+  for (std::string& heading : csv.headings)
+    if (heading.find_first_of("\n\r") != std::string::npos) heading = in_one_line(heading);
   CsvColumns columns = columns_of(csv.headings, std::move(csv.units), csv.comments);
   csv.columns = std::move(columns.names);
   csv.units = std::move(columns.units);

@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
@@ -11,10 +14,36 @@
 #include "data/error.hpp"
 #include "data/lvm.hpp"
 #include "data/number_text.hpp"
+#include "data/origin.hpp"
 #include "data/text_encoding.hpp"
 
 namespace data {
 namespace {
+
+/// Files that are no tables of text, by how they begin.
+void refuse_other_kinds(std::string_view bytes, const std::string& file) {
+  using std::string_view_literals::operator""sv;
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kinds{
+      {{"PK\x03\x04"sv, "a spreadsheet (.xlsx, .ods) or a zip archive"},
+       {"\xd0\xcf\x11\xe0"sv, "a spreadsheet of an older kind (.xls)"},
+       {"\x1f\x8b"sv, "compressed (gzip)"},
+       {"\x89HDF"sv, "an HDF5 or MATLAB file"},
+       {"MATLAB 5.0"sv, "a MATLAB file"},
+       {"TDSm"sv, "a LabVIEW TDMS file"},
+       {"MDF "sv, "an MDF measurement (.mf4, .dat)"},
+       {"%PDF"sv, "a PDF"},
+       {"<?xml"sv, "XML"},
+       {"<html"sv, "a web page"},
+       {"<!DOCTYPE"sv, "a web page"},
+       {"<table"sv, "a web page"},
+       {"{\rtf"sv, "a word processor's file"},
+       {"{\""sv, "JSON"},
+       {"[{"sv, "JSON"}}};
+  const std::size_t mark = bytes.starts_with("\xef\xbb\xbf"sv) ? 3 : 0;
+  for (const auto& [beginning, what] : kinds)
+    if (bytes.substr(mark).starts_with(beginning))
+      refuse_data(file, fmt::format("is {}, not a table of text", what), "save or export the table as CSV");
+}
 
 /// Zeros at the end are what a logger left that lost power; the line before them may have lost its end.
 std::string without_zero_tail(std::string text, CsvTable& table) {
@@ -99,6 +128,9 @@ void read_rows(CsvTable& table) {
 Csv parse_csv(const std::string& bytes, const std::string& file) {
   CsvTable table;
   table.csv.file = file;
+  refuse_other_kinds(bytes, file);
+  if (origin_of_bytes(bytes) == Origin::changed)
+    table.csv.took.push_back("it stands, though changed since demcal wrote it");
   DecodedText decoded = decode_text(bytes, file);
   if (!decoded.took.empty()) table.csv.took.push_back(decoded.took);
   const std::string text = without_zero_tail(std::move(decoded.text), table);

@@ -120,6 +120,7 @@ struct Hdf5Group::Handle {
   std::string inside;  ///< "/columns"
 
   std::string place(const std::string& name) const {
+    if (inside == "/" && name.empty()) return path;
     return fmt::format("{}: {}{}{}", path, inside, inside == "/" || name.empty() ? "" : "/", name);
   }
   [[noreturn]] void bad_data(const std::string& name, const std::string& what) const {

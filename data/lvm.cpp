@@ -86,6 +86,7 @@ struct PacketReader {
 Tags read_tags(PacketReader& reader) {
   Tags tags;
   const int first = reader.lines.line();
+  const Fields beginning = reader.fields;
   do {
     if (reader.fields.front() == header_end) return tags;
     if (reader.fields.front() == "***Start_Special***") {
@@ -95,6 +96,12 @@ Tags read_tags(PacketReader& reader) {
       tags[reader.fields.front()] = reader.fields;
     }
   } while (reader.next());
+  const DecimalMark other = reader.mark == DecimalMark::comma ? DecimalMark::point : DecimalMark::comma;
+  if (!beginning.front().empty() && plain_number(beginning.front(), other))
+    fail(reader.csv.file, first,
+         fmt::format("'{}' is no number with a decimal {}, which Decimal_Separator in the header states",
+                     beginning.front(), other == DecimalMark::point ? "comma" : "point"),
+         "correct that line of the header");
   fail(reader.csv.file, first, fmt::format("a header that begins here has no {}", header_end),
        "the file may have been cut off; export it again");
 }

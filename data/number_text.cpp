@@ -81,7 +81,7 @@ std::optional<std::string> plain_number(std::string_view given, DecimalMark mark
   if (given.empty() || given.size() > 64) return {};
   std::string text(given);
   replace_all(text, "\xe2\x88\x92", "-");  // U+2212
-  for (const std::string_view gap : {"\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x89", "\xe2\x80\x99", "'"}) {
+  for (const std::string_view gap : {"\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x89", "\xe2\x80\x99", " ", "'"}) {
     std::string marked = text;
     replace_all(marked, gap, "'");
     const std::size_t end = std::min(marked.find_first_of(".,eE"), marked.size());
@@ -120,10 +120,12 @@ bool is_missing(std::string_view given) {
     if (text.find_first_not_of(signs) == std::string_view::npos) return true;  // also when it is empty
   std::string lower = lower_case(text);
   if (lower.front() == '-' || lower.front() == '+') lower.erase(0, 1);
-  static constexpr std::array known{
-      "nan",     "n/a",    "na",     "#n/a",     "#na",          "#nv",          "#value!", "#wert!",  "#div/0!",
-      "#num!",   "#zahl!", "#ref!",  "null",     "#null!",       "none",         "(null)",  "missing", "1.#qnan",
-      "1.#snan", "1.#ind", "1.#inf", "nan(ind)", "\xe2\x80\x93", "\xe2\x80\x94", "."};
+  static constexpr std::array known{"nan",         "n/a",          "na",           "#n/a",    "#na",     "#nv",
+                                    "#value!",     "#wert!",       "#div/0!",      "#num!",   "#zahl!",  "#ref!",
+                                    "null",        "#null!",       "none",         "(null)",  "missing", "1.#qnan",
+                                    "nil",         "<na>",         "no data",      "nodata",  "bad",     "bad input",
+                                    "i/o timeout", "#name?",       "#calc!",       "1.#snan", "1.#ind",  "1.#inf",
+                                    "nan(ind)",    "\xe2\x80\x93", "\xe2\x80\x94", "."};
   if (std::find(known.begin(), known.end(), lower) != known.end()) return true;
   return lower.starts_with("1.#") || lower.starts_with("1,#");
 }

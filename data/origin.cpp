@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "data/atomic_file.hpp"
@@ -94,13 +95,15 @@ struct Descriptor {
   }
 };
 
+/// Throws std::system_error: a file that cannot be read at the moment must not pass for a damaged one.
 std::string read_part(int file, std::size_t from, std::size_t count) {
   std::string part(count, '\0');
   std::size_t got = 0;
   while (got < count) {
     const ssize_t now = ::pread(file, part.data() + got, count - got, static_cast<off_t>(from + got));
     if (now < 0 && errno == EINTR) continue;
-    if (now <= 0) break;
+    if (now < 0) throw std::system_error(errno, std::generic_category());
+    if (now == 0) break;
     got += static_cast<std::size_t>(now);
   }
   part.resize(got);
@@ -136,7 +139,12 @@ Origin origin_of(const std::string& path) {
   if (!S_ISREG(at.st_mode)) return Origin::foreign;
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.number < 0) return Origin::foreign;
-  return origin_of_file(file.number, static_cast<std::size_t>(at.st_size));
+  try {
+    return origin_of_file(file.number, static_cast<std::size_t>(at.st_size));
+  } catch (const std::system_error& error) {
+    throw InputError(ExitStatus::missing_input, Problem{shown_path(path), "cannot be read: " + error.code().message(),
+                                                        "check the disk; nothing of it is replaced"});
+  }
 }
 
 Origin origin_of_bytes(std::string_view bytes) {
@@ -178,8 +186,12 @@ int append_mark(const std::string& path) {
   const std::string blank = "\n" + blank_mark() + "\n";
   constexpr std::size_t step = std::size_t{1} << 20;
   Hasher hasher;
-  for (std::size_t from = 0; from < size; from += step)
-    hasher.add(read_part(file.number, from, std::min(step, size - from)));
+  try {
+    for (std::size_t from = 0; from < size; from += step)
+      hasher.add(read_part(file.number, from, std::min(step, size - from)));
+  } catch (const std::system_error& error) {
+    return error.code().value();
+  }
   hasher.add(blank);
   const std::string mark = "\n" + std::string(words) + hasher.text() + "\n";
   errno = 0;

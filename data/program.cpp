@@ -1,6 +1,7 @@
 #include "data/program.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstring>
 #include <string_view>
 
 extern char** environ;
@@ -16,14 +18,19 @@ extern char** environ;
 namespace data {
 namespace {
 
-/// Everything that comes out of a pipe until its last writer has closed it, or that a file in memory holds.
-std::string read_all(int descriptor) {
+/// Everything that comes out of a pipe until its last writer has closed it, or that a file in memory holds. What cannot
+/// be read to its end is nothing, and `error` says why.
+std::string read_all(int descriptor, int& error) {
   std::string text;
   std::array<char, 4096> buffer{};
   for (;;) {
     const ssize_t got = read(descriptor, buffer.data(), buffer.size());
     if (got > 0) text.append(buffer.data(), static_cast<std::size_t>(got));
-    if (got == 0 || (got < 0 && errno != EINTR)) return text;
+    if (got == 0) return text;
+    if (got < 0 && errno != EINTR) {
+      error = errno;
+      return {};
+    }
   }
 }
 
@@ -71,17 +78,29 @@ ProgramEnd run_program(const ProgramCall& call) {
   posix_spawn_file_actions_destroy(&actions);
   close(pipe_ends[1]);
   if (result.start_error == 0) {
-    result.out = read_all(pipe_ends[0]);
+    int unread = 0;
+    result.out = read_all(pipe_ends[0], unread);
+    close(pipe_ends[0]);  // who still writes into it ends
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     result.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     lseek(errors, 0, SEEK_SET);
-    result.err = read_all(errors);
+    result.err = read_all(errors, unread);
+    result.start_error = unread;
+  } else {
+    close(pipe_ends[0]);
   }
   close(errors);
-  close(pipe_ends[0]);
   return result;
+}
+
+InputError cannot_start(const std::string& program, const ProgramEnd& end, const std::string& remedy) {
+  const bool is_there = end.start_error != ENOENT && end.start_error != EACCES;
+  return {
+      ExitStatus::missing_program,
+      Problem{program, fmt::format("cannot be started ({})", std::strerror(end.start_error)),
+              is_there ? "try again when the system has room for another program (memory, processes, files)" : remedy}};
 }
 
 }  // namespace data

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "data/error.hpp"
+
 namespace data {
 
 struct ProgramCall {
@@ -13,7 +15,7 @@ struct ProgramCall {
 };
 
 struct ProgramEnd {
-  int start_error = 0;  ///< errno of the start
+  int start_error = 0;  ///< errno of the start, or of reading what it said
   int exit_status = 0;  ///< of the program; 128 + signal when it was killed
   std::string out;      ///< on its standard output
   std::string err;      ///< on its standard error
@@ -21,5 +23,8 @@ struct ProgramEnd {
 
 /// Starts the program and waits for its end. Its standard input is empty.
 ProgramEnd run_program(const ProgramCall& call);
+
+/// What is said of a program with a start_error (69); `remedy` where it is not there.
+InputError cannot_start(const std::string& program, const ProgramEnd& end, const std::string& remedy);
 
 }  // namespace data

@@ -74,6 +74,53 @@ std::optional<Date> days(int year, int month, int day) {
   return Date{86400.0 * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count()), false};
 }
 
+/// The Monday of the year's first week is that of January 4 (ISO 8601).
+std::optional<Date> day_of_week(int year, int week, int day) {
+  if (week < 1 || week > 53 || day < 1 || day > 7) return {};
+  const std::chrono::sys_days fourth(std::chrono::year(year) / std::chrono::January / 4);
+  const std::chrono::sys_days monday = fourth - std::chrono::days(std::chrono::weekday(fourth).iso_encoding() - 1U);
+  return Date{86400.0 * static_cast<double>((monday.time_since_epoch().count()) + 7 * (week - 1) + day - 1), false};
+}
+
+std::optional<Date> day_of_year(int year, int day) {
+  if (day < 1 || day > 365 + static_cast<int>(std::chrono::year(year).is_leap())) return {};
+  const std::chrono::sys_days first(std::chrono::year(year) / std::chrono::January / 1);
+  return Date{86400.0 * static_cast<double>(first.time_since_epoch().count() + day - 1), false};
+}
+
+/// 2024-W18-5, 2024W185, 2024-124, all of them a Friday.
+std::optional<Date> read_counted_date(Cursor& at) {
+  Cursor ahead = at;
+  const auto year = ahead.whole(4);
+  if (!year || ahead.taken() != 4) return {};
+  const bool parted = ahead.take('-');
+  std::optional<Date> date;
+  if (ahead.take('W')) {
+    const auto week = parted ? ahead.whole(2) : ahead.whole(3);
+    if (!week || ahead.taken() != (parted ? 2U : 3U) || (parted && !ahead.take('-'))) return {};
+    const auto day = parted ? ahead.whole(1) : std::optional(*week % 10);
+    if (!day) return {};
+    date = day_of_week(*year, parted ? *week : *week / 10, *day);
+  } else {
+    const auto day = ahead.whole(3);
+    if (!parted || !day || ahead.taken() != 3) return {};
+    date = day_of_year(*year, *day);
+  }
+  if (date) at = ahead;
+  return date;
+}
+
+/// Hours that a zone is ahead of UTC. Names that several zones have (BST, CST, IST) are not among them.
+std::optional<double> zone_of(std::string_view word) {
+  static constexpr std::array<std::pair<std::string_view, double>, 21> zones{
+      {{"", 0.0},     {"Z", 0.0},    {"UTC", 0.0},  {"GMT", 0.0},  {"WET", 0.0},  {"WEST", 1.0}, {"CET", 1.0},
+       {"CEST", 2.0}, {"MEZ", 1.0},  {"MESZ", 2.0}, {"EET", 2.0},  {"EEST", 3.0}, {"MSK", 3.0},  {"JST", 9.0},
+       {"KST", 9.0},  {"EST", -5.0}, {"EDT", -4.0}, {"PST", -8.0}, {"PDT", -7.0}, {"Uhr", 0.0},  {"h", 0.0}}};
+  for (const auto& [name, hours] : zones)
+    if (word == name) return hours;
+  return {};
+}
+
 /// The month that a word begins with, in English or German; 0: none.
 int month_of(std::string_view word) {
   const std::string name = lower_case(word);
@@ -181,6 +228,7 @@ std::optional<ClockTime> read_time(std::string_view text) {
   Cursor at(trimmed(text));
   ClockTime time;
   auto date = read_date(at);
+  if (!date) date = read_counted_date(at);
   if (!date) date = read_date_in_words(at);
   if (date) {
     time.dated = !date->either;
@@ -216,7 +264,8 @@ std::optional<ClockTime> read_time(std::string_view text) {
   if (is_half_of_day(at.rest())) {
     if (*hours < 1 || *hours > 12) return {};
     hours = *hours % 12 + (at.front() == 'P' || at.front() == 'p' ? 12 : 0);
-  } else if (at.rest() == "Z" || at.rest() == "UTC" || at.rest() == "GMT") {
+  } else if (const auto zone = zone_of(at.rest())) {
+    time.seconds -= 3600.0 * *zone;
   } else if (at.front() == '+' || at.front() == '-') {
     const double sign = at.take('-') ? -1.0 : (at.take('+'), 1.0);
     const auto zone = at.whole(4);
@@ -227,9 +276,9 @@ std::optional<ClockTime> read_time(std::string_view text) {
       if (!more) return {};
       zone_minutes += *more;
     }
-    if (!at.at_end()) return {};
+    if (!at.at_end() && (at.front() != '[' || !at.rest().ends_with(']'))) return {};  // "[Europe/Berlin]"
     time.seconds -= sign * 60.0 * zone_minutes;
-  } else if (!at.at_end()) {
+  } else {
     return {};
   }
   time.seconds += 3600.0 * *hours + 60.0 * *minutes + seconds;

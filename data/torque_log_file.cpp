@@ -345,10 +345,14 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
       ++log.missing;
       continue;
     }
-    if (!log.time.empty() && !(times[i] > log.time.back()))
+    if (!log.time.empty() && !(times[i] > log.time.back())) {
+      const bool an_hour = std::abs(times[i] - log.time.back() + 3600.0) < 60.0;
       refuse_data(csv.place(row, time),
                   fmt::format("{:g} s does not come after {:g} s of the sample before", times[i], log.time.back()),
-                  "sort the log by time, remove repeated lines, or split a log that was restarted");
+                  an_hour ? "the clock was set back by an hour, as at the end of summer time: add the hour from this "
+                            "line on, or split the log here"
+                          : "sort the log by time, remove repeated lines, or split a log that was restarted");
+    }
     log.time.push_back(times[i]);
     log.torque.push_back(m);
     log.speed.push_back(w);

@@ -9,7 +9,10 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <stdexcept>
+
+#include "data/error.hpp"
 
 namespace data {
 namespace {
@@ -45,17 +48,22 @@ ut_status visit_galilean(const ut_unit*, double scale, const ut_unit* underlying
 
 /// UDUNITS-2 keeps global state: one thread at a time.
 Parsed parse(std::string_view symbol) {
+  ut_status found{};
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   static ut_system* const system = [] {
     ut_set_error_message_handler(ut_ignore);
     return ut_read_xml(nullptr);
   }();
-  if (system == nullptr) throw std::runtime_error("UDUNITS-2 cannot read its table of units (install libudunits2-0)");
+  if (system == nullptr)
+    throw InputError(ExitStatus::missing_program,
+                     Problem{std::string(ut_get_path_xml(nullptr, &found)), "UDUNITS-2 cannot read its table of units",
+                             "install libudunits2-0, or check that the file can be read and that there is memory"});
 
   std::string text(symbol);
   ut_trim(text.data(), UT_UTF8);
   const std::unique_ptr<ut_unit, decltype(&ut_free)> unit(ut_parse(system, text.c_str(), UT_UTF8), &ut_free);
+  if (unit == nullptr && ut_get_status() == UT_OS) throw std::bad_alloc();
   Parsed parsed;
   const ut_visitor visitor{visit_basic, visit_product, visit_galilean, refuse_timestamp, refuse_logarithmic};
   if (unit == nullptr || ut_accept_visitor(unit.get(), &visitor, &parsed) != UT_SUCCESS) {

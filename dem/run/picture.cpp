@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <vector>
 
@@ -168,10 +167,7 @@ void draw_frame(const std::string& frame, const std::string& png, const PictureO
                  fmt::format("+H{}", options.height), "+A0.2", "-D", "+FN"},
        .folder = folder});
   fs::remove(pov);
-  if (result.start_error != 0)
-    throw data::InputError(data::ExitStatus::missing_program,
-                           {"povray", fmt::format("cannot be started ({})", std::strerror(result.start_error)),
-                            "install it: apt-get install povray"});
+  if (result.start_error != 0) throw data::cannot_start("povray", result, "install it: apt-get install povray");
   if (result.exit_status != 0 || !fs::exists(drawn))
     throw data::InputError(
         data::ExitStatus::missing_program,

@@ -331,6 +331,106 @@ TEST_CASE("rows of other settings stay in the table, and runs of other points st
   CHECK(names_in(folder.path / "s").size() == 2);
 }
 
+#ifndef __SANITIZE_ADDRESS__
+TEST_CASE("memory that the system does not give ends a command with words, and nothing half is left", "[slow]") {
+  const Folder folder;
+  make_study(folder);
+  int refused = 0;
+  for (int megabytes = 84; megabytes <= 132; megabytes += 2) {
+    INFO(megabytes);
+    fs::remove_all(folder.path / "out");
+    const auto outcome =
+        folder.shell(fmt::format("(ulimit -v {}; exec \"$demcal\" fit study --out out --quiet)", 1000 * megabytes));
+    INFO(outcome.err);
+    if (outcome.status == 127) continue;  // not even the libraries fit
+    CHECK((outcome.status == 65 || outcome.status == 0));
+    if (outcome.status == 65) {
+      ++refused;
+      CHECK_THAT(outcome.err, Contains("needs more memory than the system gives"));
+      CHECK_FALSE(fs::exists(folder.path / "out/surrogate.h5"));
+    }
+  }
+  CHECK(refused > 0);
+}
+#endif
+
+TEST_CASE("a run table is read from its copy where it is gone, and never from a damaged copy", "[slow]") {
+  const Folder folder;
+  const auto tiny = [&](const std::string& command, std::vector<std::string> more) {
+    std::vector<std::string> words{command, DEMCAL_SOURCE_DIR "/data/quick", "--out", "o"};
+    for (const char* key : {"rig.fill=200", "run.longest=\"0.4 s\"", "run.start_up_turns=0.25",
+                            "training.unsteady=\"use\"", "training.runs=2"})
+      words.insert(words.end(), {"--set", key});
+    words.insert(words.end(), more.begin(), more.end());
+    return folder.demcal(words);
+  };
+  REQUIRE(tiny("train", {}).status == 0);
+  const std::string table = folder.read("o/training.csv");
+  fs::remove(folder.path / "o/training.h5");
+  const auto again = tiny("train", {});
+  CHECK(again.status == 0);
+  CHECK_THAT(again.err, Contains("training.h5 is not there; its rows are read from training.csv"));
+  CHECK(folder.read("o/training.csv") == table);
+
+  fs::remove(folder.path / "o/training.h5");
+  std::string flipped = table;
+  flipped[flipped.rfind('1')] = '2';
+  folder.write("o/training.csv", flipped);
+  const auto refused = tiny("train", {});
+  CHECK(refused.status == 65);
+  CHECK_THAT(refused.err, Contains("training.csv: is damaged"));
+  CHECK(folder.read("o/training.csv") == flipped);
+}
+
+TEST_CASE("lists of points and exported points that were changed are said or refused") {
+  const Folder folder;
+  const std::string quick = DEMCAL_SOURCE_DIR "/data/quick";
+  REQUIRE(folder.demcal({"design", quick, "--out", "o", "--runs", "3"}).status == 0);
+  CHECK(folder.demcal({"check", quick, "--out", "o"}).err.find("design.csv") == std::string::npos);
+  std::string list = folder.read("o/design.csv");
+  list[list.rfind('1')] = '2';
+  folder.write("o/design.csv", list);
+  CHECK_THAT(folder.demcal({"check", quick, "--out", "o"}).err,
+             Contains("o/design.csv: was changed since demcal wrote it"));
+
+  REQUIRE(folder.demcal({"export", quick, "case", "--to", "liggghts", "--at", "hamaker=0"}).status == 0);
+  std::string point = folder.read("case/point.json");
+  point[point.find("friction=0.") + 11] ^= 1;
+  folder.write("case/point.json", point);
+  const auto outcome = folder.demcal({"export", quick, "case", "--collect"});
+  CHECK(outcome.status == 65);
+  CHECK_THAT(outcome.err, Contains("case/point.json: is damaged"));
+}
+
+TEST_CASE("training at the posterior that was interrupted does what was left, and no further points", "[slow]") {
+  const Folder folder;
+  const auto call = [&](std::vector<std::string> words) {
+    words.insert(words.begin() + 1, {DEMCAL_SOURCE_DIR "/data/quick", "--out", "o"});
+    for (const char* key :
+         {"rig.fill=200", "run.longest=\"0.4 s\"", "run.start_up_turns=0.25", "training.unsteady=\"use\""})
+      words.insert(words.end(), {"--set", key});
+    return folder.demcal(words);
+  };
+  REQUIRE(call({"design", "--runs", "3"}).status == 0);
+  const std::string list = folder.read("o/design.csv");
+  folder.write("o/next-runs.csv", list);
+  // Two of three points were asked for, and the last one of the list is what an interrupted call left to do.
+  const std::size_t heading = list.find('\n', list.find('\n') + 1) + 1, last = list.rfind('\n', list.size() - 2) + 1;
+  folder.write("o/design.csv", list.substr(0, heading) + list.substr(last));
+  const auto outcome = call({"train", "--at-posterior", "2"});
+  INFO(outcome.err);
+  CHECK(outcome.status == 0);
+  CHECK_THAT(outcome.err, Contains("1 run to make, left by an unfinished campaign"));
+}
+
+TEST_CASE("a file that cannot be written is named once") {
+  const Folder folder;
+  const auto outcome = folder.shell("(ulimit -f 2; exec \"$demcal\" new mixer)");  // the study is longer
+  CHECK(outcome.status == 73);
+  CHECK_THAT(outcome.err, Contains("study.toml: cannot be written: File too large"));
+  CHECK(outcome.err.find("study.toml") == outcome.err.rfind("study.toml"));
+}
+
 TEST_CASE("names of a study lead to no file outside the results folder") {
   const Folder folder;
   folder.study("quick");

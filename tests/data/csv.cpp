@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "data/origin.hpp"
 #include "tests/temporary.hpp"
 
 namespace {
@@ -319,4 +320,33 @@ TEST_CASE("a heading of 100,000 columns and a preamble of 20,000 lines are read 
   }
   CHECK(data::parse_csv(names + "z\n" + values + "1\n", "x.csv").columns.size() == 100001);
   CHECK(data::parse_csv(words + plain, "x.csv").rows.size() == 3);
+}
+
+TEST_CASE("a heading that a spreadsheet wrapped in its cell is one line") {
+  const data::Csv csv = data::parse_csv("\"time\n[s]\",\"torque\r\n[N m]\"\n0,1\n1,2\n", "x.csv");
+  CHECK(csv.columns == std::vector<std::string>{"time", "torque"});
+  CHECK(csv.units == std::vector<std::string>{"s", "N m"});
+}
+
+TEST_CASE("thousands parted by a blank, and a historian's words for no value, are read") {
+  const data::Csv csv = data::parse_csv("a;b\n1 200,5;Bad\n12 345 678,0;I/O Timeout\n7,5;<NA>\n7,25;1\n", "x.csv");
+  CHECK(csv.number(csv.rows[0], 0) == 1200.5);
+  CHECK(csv.number(csv.rows[1], 0) == 12345678.0);
+  for (const std::size_t row : {0, 1, 2}) CHECK(std::isnan(csv.number(csv.rows[row], 1)));
+}
+
+TEST_CASE("a file of another kind is named for what it is") {
+  for (const auto& [bytes, what] :
+       {std::pair("PK\x03\x04zip", "spreadsheet"), std::pair("<html><td>1</td>", "web page"),
+        std::pair("{\"time\": 1}", "JSON"), std::pair("TDSm....", "TDMS"), std::pair("\x1f\x8b\x08", "gzip"),
+        std::pair("%PDF-1.7", "PDF")})
+    CHECK_THROWS_WITH(data::parse_csv(bytes, "x.csv"),
+                      Catch::Contains("x.csv: is ") && Catch::Contains(what) && Catch::Contains("CSV"));
+}
+
+TEST_CASE("a table that was changed since demcal wrote it says so") {
+  std::string text = data::with_mark("a,b\n1,2\n3,4\n", "t.csv");
+  CHECK(data::parse_csv(text, "t.csv").took.empty());
+  text[text.find("3,4")] = '5';
+  CHECK_THAT(data::parse_csv(text, "t.csv").took_line(), Catch::Contains("t.csv: read as: it stands, though changed"));
 }

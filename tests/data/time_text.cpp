@@ -21,6 +21,18 @@ TEST_CASE("times of day and dates are read as loggers stamp them") {
         "3-May-2024 14:02:00", "03 Mai 2024 14:02", "May 3, 2024 2:02:00 PM", "20240503T140200", "20240503 140200.0",
         "2024-05-03 14:02:00 UTC", "2024-05-03T16:02:00+02:00", "2024-05-03T10:02:00-0400", "03.05.24 14:02:00"})
     CHECK(seconds(text) == noon + 50520.0);
+  // May 3, 2024 is the Friday of week 18 and day 124, by date -d 2024-05-03 +'%G-W%V-%u %j'.
+  for (const std::string text :
+       {"2024-W18-5T14:02:00", "2024W185 14:02:00", "2024-124T14:02:00", "2024-05-03 15:02:00 CET",
+        "2024-05-03 16:02:00 CEST", "03.05.2024 16:02:00 MESZ", "03.05.2024 14:02:00 Uhr",
+        "2024-05-03T16:02:00+02:00[Europe/Berlin]", "2024-05-03 23:02:00 JST"})
+    CHECK(seconds(text) == noon + 50520.0);
+  // By date -d 2021-01-03 +%G-W%V-%u, and of a leap year.
+  CHECK(seconds("2020-W53-7 00:00:00") == seconds("2021-01-03 00:00:00"));
+  CHECK(seconds("2024-366T00:00:00") == seconds("2024-12-31 00:00:00"));
+  for (const std::string none : {"2024-W54-1 14:02:00", "2024-W18-8 14:02:00", "2023-366T14:02:00", "2024-000T14:02:00",
+                                 "14:02:00 BST", "14:02:00 CST"})
+    CHECK_FALSE(data::read_time(none));
   CHECK(seconds("05/31/2024 00:00:01") == seconds("2024-05-31 00:00:01"));
   CHECK(seconds("31/05/2024 00:00:01") == seconds("2024-05-31 00:00:01"));
   CHECK(data::read_time("03/05/2024 14:02:00")->day_or_month);

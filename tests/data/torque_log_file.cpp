@@ -269,8 +269,8 @@ TEST_CASE("a meter's words for no value and for too much are taken for that, and
                                "' (1), are left out, "
                                "the first in line 3") == 0);
   }
-  CHECK(refusal(head + "1,Bad,50\n2,<0.01,50\n3,Bad,50\n") ==
-        "65: log.csv:3: torque: 3 fields from here on are no numbers: '<0.01' (1), 'Bad' (2) (write numbers with a "
+  CHECK(refusal(head + "1,Poor,50\n2,<0.01,50\n3,Poor,50\n") ==
+        "65: log.csv:3: torque: 3 fields from here on are no numbers: '<0.01' (1), 'Poor' (2) (write numbers with a "
         "decimal "
         "point, and nothing where there is no value)");
   CHECK(refusal(head + "1,low,50\n").find("65: log.csv:3: torque: 'low' is not a number") == 0);

@@ -55,10 +55,10 @@ FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const Surro
   constexpr std::size_t many_inputs = 8;
   constexpr Eigen::Index slow_runs = 300;
   if (fitted.rows.inputs.size() >= many_inputs && many.y.size() > slow_runs)
-    fitted.report.notes.push_back(
-        fmt::format("{} runs of {} inputs: a calibration of all of them takes a minute or so. Half the runs "
-                    "([surrogate] runs_most = {}) take less than half of it, and calibrate --no-scan half again",
-                    many.y.size(), fitted.rows.inputs.size(), many.y.size() / 2));
+    fitted.report.notes.push_back(fmt::format(
+        "{} runs of {} inputs: with some ten readings a calibration of all of them takes a minute or so. Half the runs "
+        "([surrogate] runs_most = {}) take less than half of it, and calibrate --no-scan half again",
+        many.y.size(), fitted.rows.inputs.size(), many.y.size() / 2));
   return fitted;
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
@@ -84,11 +83,8 @@ std::string draw(const Figure& figure, const std::string& folder, const GnuplotO
   const data::ProgramEnd result =
       data::run_program({.words = {options.program, "-d", "-e", "to_stdout=1", figure.stem + ".gp"}, .folder = folder});
   if (result.start_error != 0) {
-    throw data::InputError(data::ExitStatus::missing_program,
-                           {options.program,
-                            fmt::format("cannot be started ({}), but the report's figures are drawn with it",
-                                        std::strerror(result.start_error)),
-                            "install it: apt-get install gnuplot-nox"});
+    throw data::cannot_start(options.program, result,
+                             "the report's figures are drawn with it; install it: apt-get install gnuplot-nox");
   }
   const std::string& svg = result.out;
   if (result.exit_status != 0 || svg.find("</svg>") == std::string::npos) {

@@ -1,0 +1,25 @@
+#pragma once
+// What a calibration will take, known before anything is fitted, with n training runs and r readings:
+//
+//   memory of a surrogate's fit     56 n^2 bytes: seven matrices of n by n (measured: 45 MB of 1,000 runs, 215 MB of 2,000)
+//   processor time of a sampling    E r n^2 / F: E evaluations of the likelihood, each a triangular product of n by n with
+//                                   r columns, at F operations a second. E depends on the posterior; a case of ten
+//                                   free parameters asks some hundred thousand times.
+#include <string>
+#include <vector>
+
+#include "uq/emulate/surrogates.hpp"
+
+namespace uq {
+
+struct EffortLimits {
+  double memory = 0.0;     ///< bytes of this machine; 0: as the system says
+  double seconds = 600.0;  ///< of a case's sampling: a longer one is said
+};
+
+/// A sentence for each case whose sampling takes long: how long, what of, and what to thin. Throws data::InputError (78)
+/// where a surrogate's fit needs more memory than this machine has.
+std::vector<std::string> effort_notes(const data::Study& study, const data::RunTable& table,
+                                      const SurrogateOptions& options, const EffortLimits& limits = {});
+
+}  // namespace uq
