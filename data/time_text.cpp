@@ -268,9 +268,9 @@ std::optional<ClockTime> read_time(std::string_view text) {
     time.seconds -= 3600.0 * *zone;
   } else if (at.front() == '+' || at.front() == '-') {
     const double sign = at.take('-') ? -1.0 : (at.take('+'), 1.0);
-    const auto zone = at.whole(4);
-    if (!zone) return {};
-    int zone_minutes = at.taken() > 2 ? *zone / 100 * 60 + *zone % 100 : *zone * 60;
+    const auto offset = at.whole(4);
+    if (!offset) return {};
+    int zone_minutes = at.taken() > 2 ? *offset / 100 * 60 + *offset % 100 : *offset * 60;
     if (at.take(':')) {
       const auto more = at.whole(2);
       if (!more) return {};

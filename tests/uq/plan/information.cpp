@@ -44,7 +44,7 @@ Information estimate_independent(const known::Problem& problem, int draws, std::
 TEST_CASE("the information of all unknowns and of one is that of closed forms and of published examples", "[plan]") {
   for (const known::Problem& problem : known::problems()) {
     INFO(problem.name);
-    const Information found = estimate(problem, 1024, 8, 3);
+    const Information found = estimate(problem, 1024, 12, 3);
     // Student's interval for one seed of many problems, with room for the largest of them.
     CHECK(std::abs(found.total.value - problem.total) < 2.0 * found.total.error + 2e-4);
     CHECK(found.total.error < 0.01);
