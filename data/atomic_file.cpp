@@ -132,6 +132,14 @@ int open_to_read(const std::string& path) {
 
 }  // namespace
 
+void write_bytes(const std::string& path, std::string_view bytes) {
+  std::FILE* file = std::fopen(path.c_str(), "wbe");
+  if (file == nullptr) cannot_write(path, errno);
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const int write_error = errno;
+  if (std::fclose(file) != 0 || !written) cannot_write(path, written ? errno : write_error);
+}
+
 void require_replaceable(const std::string& path, Changed changed) {
   switch (origin_of(path)) {
     case Origin::absent:
@@ -164,13 +172,7 @@ void write_atomically(const std::string& path, const std::function<void(const st
 void write_atomically(const std::string& path, std::string_view content, Changed changed) {
   require_replaceable(path, changed);
   const std::string marked = with_mark(std::string(content), path);
-  write_through(path, [&](const std::string& temporary) {
-    std::FILE* file = std::fopen(temporary.c_str(), "wbe");
-    if (file == nullptr) cannot_write(path, errno);
-    const bool written = std::fwrite(marked.data(), 1, marked.size(), file) == marked.size();
-    const int write_error = errno;
-    if (std::fclose(file) != 0 || !written) cannot_write(path, written ? errno : write_error);
-  });
+  write_through(path, [&](const std::string& temporary) { write_bytes(temporary, marked); });
 }
 
 void require_file(const std::string& path) { ::close(open_to_read(path)); }

@@ -22,6 +22,10 @@ void write_atomically(const std::string& path, std::string_view content, Changed
 /// no file behind and is passed on, with `path` for the temporary name in its messages.
 void write_atomically(const std::string& path, const std::function<void(const std::string& temporary)>& write);
 
+/// Writes a file as it is, neither whole nor marked: for what `write` above writes under its temporary name. Throws
+/// InputError (73).
+void write_bytes(const std::string& path, std::string_view bytes);
+
 /// Throws as write_atomically would where the file that is there must not be replaced.
 void require_replaceable(const std::string& path, Changed changed = Changed::replace);
 

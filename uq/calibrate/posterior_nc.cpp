@@ -2,10 +2,13 @@
 
 #include <fmt/core.h>
 #include <netcdf.h>
+#include <netcdf_mem.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "data/atomic_file.hpp"
@@ -26,25 +29,25 @@ void check(int status, const std::string& what) {
       {what, fmt::format("cannot be written: {}", nc_strerror(status)), "check the folder and the space left"});
 }
 
-/// An open file that closes itself.
+/// A file that is made in memory, and written when it is whole: netCDF may crash where a disk refuses what it closes.
 class File {
  public:
-  explicit File(const std::string& path) : path_(path) {
-    check(nc_create(path.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_), path);
-  }
+  File() { check(nc_create_mem("posterior", NC_NETCDF4, 0, &id_), "a posterior in memory"); }
   ~File() {
     if (open_) nc_close(id_);
   }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
   int id() const { return id_; }
-  void close() {
+  void write(const std::string& path) {
     open_ = false;
-    check(nc_close(id_), path_);
+    NC_memio whole{};
+    check(nc_close_memio(id_, &whole), path);
+    const std::unique_ptr<void, decltype(&std::free)> memory(whole.memory, &std::free);
+    data::write_bytes(path, {static_cast<const char*>(whole.memory), whole.size});
   }
 
  private:
-  std::string path_;
   int id_ = -1;
   bool open_ = true;
 };
@@ -230,7 +233,7 @@ void write_file(const std::string& path, const data::Study& study, const Sampled
   const CaseModel& model = *sampled.model;
   const std::vector<Block> blocks = blocks_of(study, model);
   const Eigen::MatrixXd draws = sampled.draws.pooled();
-  File file(path);
+  File file;
   const std::string title = fmt::format("posterior of case {} of study {}", model.name, study.name);
   check(nc_put_att_text(file.id(), NC_GLOBAL, "title", title.size(), title.c_str()), path);
   write_unknowns(file, sampled);
@@ -262,7 +265,7 @@ void write_file(const std::string& path, const data::Study& study, const Sampled
     measured.doubles(block.name, {block.dimension}, values, unit.symbol);
     constant.doubles(block.name + "_se", {block.dimension}, errors, unit.symbol);
   }
-  file.close();
+  file.write(path);
 }
 
 }  // namespace
