@@ -15,8 +15,7 @@ void guard_memory() { std::set_new_handler(out_of_memory); }
 void out_of_memory() {
   constexpr std::string_view words =
       "this needs more memory than the system gives (use fewer rows, spheres or a smaller box, fewer --jobs, or a "
-      "larger "
-      "machine; what was finished is kept)\n";
+      "larger machine; what was finished is kept)\n";
   static_cast<void>(::write(STDERR_FILENO, words.data(), words.size()) < 0);  // nowhere else to say it
   ::_exit(static_cast<int>(data::ExitStatus::bad_data));
 }

@@ -76,12 +76,17 @@ InputError renamed(const InputError& error, const std::string& temporary, const 
   return {error.status, std::move(problems)};
 }
 
+/// Throws where it cannot be read: a file that is taken for another kind would get no mark.
 bool is_hdf5(const std::string& path) {
   char start[4] = {};
-  if (std::FILE* file = std::fopen(path.c_str(), "rbe")) {
-    static_cast<void>(std::fread(start, 1, sizeof start, file));
-    std::fclose(file);
-  }
+  std::FILE* file = std::fopen(path.c_str(), "rbe");
+  if (file == nullptr) cannot_write(path, errno);
+  errno = 0;
+  const std::size_t got = std::fread(start, 1, sizeof start, file);
+  const int error = errno;
+  std::fclose(file);
+  std::error_code unknown;
+  if (got < sizeof start && fs::file_size(path, unknown) >= sizeof start) cannot_write(path, error != 0 ? error : EIO);
   return std::memcmp(start, "\x89HDF", sizeof start) == 0;
 }
 

@@ -165,6 +165,8 @@ std::string with_mark(std::string content, const std::string& path) {
       content += "# " + blank + "\n";
     } else if (ending == ".svg" || ending == ".html") {
       content += "<!-- " + blank + " -->\n";
+    } else if (content.starts_with("\x89PNG")) {
+      content += "\n" + blank + "\n";  // a picture ends before it, at its IEND chunk
     } else if (ending == ".json" && content.front() == '{') {
       content.insert(1, fmt::format("\"origin\":\"{}\"{}", blank,
                                     content.find_first_not_of(" \n", 1) == content.find('}') ? "" : ","));

@@ -3,8 +3,8 @@
 //
 // A mark of origin stands in every file that demcal writes: "written by demcal, digest " and 32 hexadecimal digits. The
 // digits are the XXH3 of the whole file with zeros in their place. The mark is in a comment (CSV, gnuplot, SVG, HTML),
-// a key (JSON), the title (STL) or, for HDF5 and netCDF, behind the end that the format knows of, where readers do not
-// look. One flipped bit anywhere shows.
+// a key (JSON), the title (STL) or, for HDF5, netCDF and PNG, behind the end that the format knows of, where readers do
+// not look. One flipped bit anywhere shows.
 #include <string>
 #include <string_view>
 
@@ -27,7 +27,7 @@ Origin origin_of_bytes(std::string_view bytes);
 std::string blank_mark();
 
 /// `content` with the digest in its mark. A mark is added where there is none yet and the file's kind (the ending of
-/// `path`: csv, dat, gp, html, json, svg) has a place for one.
+/// `path`: csv, dat, gp, html, json, svg; of a PNG picture its first bytes) has a place for one.
 std::string with_mark(std::string content, const std::string& path);
 
 /// Adds the mark to a finished HDF5 or netCDF file. Returns 0 or an errno.

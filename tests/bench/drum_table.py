@@ -2,7 +2,7 @@
 """Coverage of intervals and verdicts on another code's table, and GrainLearning's filter beside it.
 
 drum_table.py DEMCAL [--designs 200] [--others 100] [--jobs 1] [--seed 1] [--errors roughness|PERCENT] [--truths all|inner]
-    [--out FOLDER] [--summary]
+    [--runs-most N] [--out FOLDER] [--summary]
 
 Each of N designs of data/drum-table in turn is the truth: its rows at the three speeds are the observations, as they
 stand (their own scatter is the noise), with the standard errors of make_data.py, or with PERCENT of every output. The
@@ -83,11 +83,11 @@ def read_draws(path):
         return {name: np.asarray(file["posterior"][name]).ravel() for name in PARAMETERS}
 
 
-def ours(program, folder, rows, truth, maker):
+def ours(program, folder, rows, truth, maker, runs_most):
     write_study(folder, maker, rows, truth)
     begin = time.time()
-    done = subprocess.run([program, "calibrate", str(folder), "--no-scan", "--json", "--quiet", "--out", str(folder / "out")],
-                          capture_output=True, text=True)
+    done = subprocess.run([program, "calibrate", str(folder), "--no-scan", "--json", "--quiet", "--out", str(folder / "out"),
+                           "--set", f"surrogate.runs_most={runs_most}"], capture_output=True, text=True)
     if done.returncode not in (0, 2):
         return {"failed": done.stderr.strip()[-500:], "status": done.returncode}
     report = json.loads(done.stdout)
@@ -152,12 +152,12 @@ def one_of_all(program, table, truths, truth, arguments, folders):
     own = [r for r in table if maker.design_of(r) == truth]
     folder = folders.get()
     try:
-        found = ours(program, folder, rows + own, truth, maker)
+        found = ours(program, folder, rows + own, truth, maker, arguments.runs_most)
     finally:
         folders.put(folder)
     same = [r for r in rows if r["psd_mm"] == truth[0]]
     return {"truth": dict(zip(maker.DESIGN, map(float, truth))), "others": arguments.others, "seed": arguments.seed, "errors": arguments.errors,
-            "truths": arguments.truths, "ours": found, "filter": filtered(same + own, truth, maker)}
+            "truths": arguments.truths, "runs_most": arguments.runs_most, "ours": found, "filter": filtered(same + own, truth, maker)}
 
 
 def one_design(program, table, truth, arguments):
@@ -170,10 +170,10 @@ def one_design(program, table, truth, arguments):
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder) / "drum-table"
         folder.mkdir()
-        found = ours(program, folder, rows, truth, maker)
+        found = ours(program, folder, rows, truth, maker, arguments.runs_most)
         shutil.rmtree(folder)
     return {"truth": dict(zip(maker.DESIGN, map(float, truth))), "others": arguments.others, "seed": arguments.seed, "errors": arguments.errors,
-            "truths": arguments.truths, "ours": found, "filter": filtered(rows, truth, maker)}
+            "truths": arguments.truths, "runs_most": arguments.runs_most, "ours": found, "filter": filtered(rows, truth, maker)}
 
 
 def share(flags):
@@ -227,6 +227,7 @@ def main():
     parser.add_argument("--designs", type=int, default=200)
     parser.add_argument("--others", type=int, default=100, help="other designs that are the runs; 0: all that are no truth")
     parser.add_argument("--errors", default="roughness")
+    parser.add_argument("--runs-most", type=int, default=1000, help="runs that train a surrogate")
     parser.add_argument("--truths", choices=["all", "inner"], default="all",
                         help="inner: designs with no parameter at an end of its range")
     parser.add_argument("--jobs", type=int, default=1)
@@ -237,7 +238,8 @@ def main():
     arguments.out.mkdir(parents=True, exist_ok=True)
     kept = arguments.out / "results.jsonl"
     results = [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
-    results = [r for r in results if (r["others"], r["seed"], r["errors"], r["truths"]) == (arguments.others, arguments.seed, arguments.errors, arguments.truths)]
+    kinds = ["others", "seed", "errors", "truths", "runs_most"]
+    results = [r for r in results if all(r[kind] == getattr(arguments, kind) for kind in kinds)]
     if not arguments.summary:
         maker = load_maker()
         table = maker.read_table(STUDY / "granudrum_liggghts.csv")

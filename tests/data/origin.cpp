@@ -20,13 +20,14 @@ std::vector<std::string> write_all_kinds(const TemporaryFolder& folder) {
   data::write_atomically(folder.path("f.svg"), "<svg></svg>\n");
   data::write_atomically(folder.path("f.gp"), "plot x\n");
   data::write_atomically(folder.path("f.dat"), "1 2\n");
+  data::write_atomically(folder.path("picture"), "\x89PNG\r\n" + std::string(200, 'x'));
   data::write_atomically(folder.path("m.stl"), "title; " + data::blank_mark() + std::string(200, 'x'));
   data::write_atomically(folder.path("t.h5"), [](const std::string& temporary) {
     const data::Hdf5Group root = data::create_hdf5(temporary);
     root.set("demcal", "1");
     root.write("x", std::vector<double>(300, 1.25));
   });
-  return {"t.csv", "r.json", "empty.json", "p.html", "f.svg", "f.gp", "f.dat", "m.stl", "t.h5"};
+  return {"t.csv", "r.json", "empty.json", "p.html", "f.svg", "f.gp", "f.dat", "picture", "m.stl", "t.h5"};
 }
 
 }  // namespace

@@ -64,10 +64,8 @@ std::vector<std::string> effort_notes(const data::Study& study, const data::RunT
     if (seconds < limits.seconds) continue;
     notes.push_back(fmt::format(
         "case '{}': {} readings, each predicted from {:.0f} runs some hundred thousand times: sampling takes about {} "
-        "of "
-        "processor time or more. A third of the runs take a ninth of it ([surrogate] runs_most = {:.0f}), a third of "
-        "the "
-        "readings a third (the means of neighbours in [[observe]] file)",
+        "of processor time or more. A third of the runs take a ninth of it ([surrogate] runs_most = {:.0f}), a third "
+        "of the readings a third (the means of neighbours in [[observe]] file)",
         one.name, readings, most_runs, duration(seconds), std::floor(most_runs / 3.0)));
   }
   return notes;
