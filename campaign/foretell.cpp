@@ -1,22 +1,15 @@
 #include "campaign/foretell.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
+#include "data/progress.hpp"
+#include "data/provenance.hpp"
 #include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/drive.hpp"
 #include "dem/run/looks.hpp"
 
 namespace campaign {
-namespace {
-
-double machine_memory() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
-}  // namespace
-
 Foretold foretell(const Workspace& workspace, const Point& point) {
   dem::PreparedCase prepared = dem::prepare(case_at(workspace, point));
   dem::Forecast forecast = dem::forecast(prepared, workspace.study.seed);
@@ -37,7 +30,7 @@ Cost cost_of(const dem::PreparedCase& prepared) {
   cost.steps = (c.run.settle + c.run.longest) / derived.time_step;
   cost.seconds = cost.steps * spheres / cost.effort.rate;
   cost.bytes = 2.0 * spheres * cost.effort.bytes_per_sphere;  // the state, and the last good one
-  const double machine = machine_memory();
+  const double machine = data::machine_memory();
   if (cost.bytes > 0.8 * machine)
     cost.warnings.push_back(fmt::format("a run needs about {:.2g} GB of memory, and this machine has {:.2g} GB",
                                         1e-9 * cost.bytes, 1e-9 * machine));
@@ -45,7 +38,7 @@ Cost cost_of(const dem::PreparedCase& prepared) {
     cost.warnings.push_back(
         fmt::format("a run takes up to {} on one core: {} spheres, {:.2g} steps of {:.2g} s (fewer "
                     "or larger spheres, or a softer contact.stiffness, shorten it)",
-                    duration_text(cost.seconds), derived.spheres, cost.steps, derived.time_step));
+                    data::rough_duration_text(cost.seconds), derived.spheres, cost.steps, derived.time_step));
   return cost;
 }
 
@@ -69,17 +62,10 @@ void require_memory(const Workspace& workspace, const Foretold& told, int jobs) 
   constexpr std::int64_t surely_fits = 100000;  // some 80 MB
   const auto spheres = static_cast<std::int64_t>(told.prepared.derived().spheres);
   if (spheres * jobs <= surely_fits) return;
-  std::optional<data::Problem> problem = too_large(cost_of(told.prepared), spheres, jobs, machine_memory());
+  std::optional<data::Problem> problem = too_large(cost_of(told.prepared), spheres, jobs, data::machine_memory());
   if (!problem) return;
   problem->place = workspace.study.file + ": " + problem->place;
   throw data::InputError(data::ExitStatus::bad_study, *problem);
-}
-
-std::string duration_text(double seconds) {
-  if (seconds < 100.0) return fmt::format("{:.2g} s", seconds);
-  if (seconds < 6000.0) return fmt::format("{:.2g} min", seconds / 60.0);
-  if (seconds < 360000.0) return fmt::format("{:.2g} h", seconds / 3600.0);
-  return fmt::format("{:.3g} days", seconds / 86400.0);
 }
 
 std::vector<std::string> problems_at_ends(const Workspace& workspace, const Point& middle) {

@@ -37,9 +37,6 @@ void require_memory(const Workspace& workspace, const Foretold& told, int jobs);
 /// What is wrong with a run of so many spheres in a machine of so many bytes; nothing where it fits.
 std::optional<data::Problem> too_large(const Cost& cost, std::int64_t spheres, int jobs, double machine);
 
-/// "2 min", "5.3 h".
-std::string duration_text(double seconds);
-
 /// Problems at the ends of each parameter's and control's range, the others amid theirs.
 std::vector<std::string> problems_at_ends(const Workspace& workspace, const Point& middle);
 

@@ -6,6 +6,7 @@
 #include "campaign/design.hpp"
 #include "campaign/foretell.hpp"
 #include "cli/command.hpp"
+#include "data/progress.hpp"
 #include "dem/rig/rig.hpp"
 #include "uq/calibrate/data_check.hpp"
 #include "uq/calibrate/effort.hpp"
@@ -83,11 +84,12 @@ Action add_check(CLI::App& program) {
       answer(*common, material.empty() ? "simulation, amid its ranges:" : material + ", amid its ranges:");
       for (const std::string& line : dem::describe(c, told.prepared.derived())) answer(*common, "  " + line);
       for (const std::string& line : dem::describe(told.forecast)) answer(*common, "  " + line);
-      answer(*common, fmt::format("  a run: at most {:.3g} steps, {} of processor time, {:.2g} MB; {} missing: {} "
-                                  "(at {:.2g} million particle-steps/s, measured on this machine just now)",
-                                  cost.steps, duration_text(cost.seconds), 1e-6 * cost.bytes,
-                                  data::counted(static_cast<std::size_t>(runs), "run"),
-                                  duration_text(static_cast<double>(runs) * cost.seconds), 1e-6 * cost.effort.rate));
+      answer(*common,
+             fmt::format("  a run: at most {:.3g} steps, {} of processor time, {:.2g} MB; {} missing: {} "
+                         "(at {:.2g} million particle-steps/s, measured on this machine just now)",
+                         cost.steps, data::rough_duration_text(cost.seconds), 1e-6 * cost.bytes,
+                         data::counted(static_cast<std::size_t>(runs), "run"),
+                         data::rough_duration_text(static_cast<double>(runs) * cost.seconds), 1e-6 * cost.effort.rate));
       const std::string of = material.empty() ? "" : material + ": ";
       for (const auto& list : {told.forecast.warnings, cost.warnings, problems_at_ends(workspace, middle)})
         for (const std::string& warning : list) warnings.push_back(of + warning);
@@ -100,7 +102,7 @@ Action add_check(CLI::App& program) {
     }
     if (!workspace.cases.empty())
       answer(*common, fmt::format("the campaign: {} missing, at most {} of processor time",
-                                  data::counted(missing.size(), "run"), duration_text(campaign_seconds)));
+                                  data::counted(missing.size(), "run"), data::rough_duration_text(campaign_seconds)));
     if (study.cases.empty())
       warnings.push_back(
           "there is no [[calibrate]] case yet: the study can train and plan (demcal plan --prior), not calibrate");

@@ -36,6 +36,13 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
+std::string rough_duration_text(double seconds) {
+  if (seconds < 100.0) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 6000.0) return fmt::format("{:.2g} min", seconds / 60.0);
+  if (seconds < 360000.0) return fmt::format("{:.2g} h", seconds / 3600.0);
+  return fmt::format("{:.3g} days", seconds / 86400.0);
+}
+
 Progress::Progress(std::string what, std::uint64_t total, ProgressOptions options)
     : what_(std::move(what)), total_(std::max<std::uint64_t>(1, total)), options_(std::move(options)) {
   if (!options_.write) options_.write = to_stderr;

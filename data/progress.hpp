@@ -47,4 +47,7 @@ class Progress {
 /// "42 s", "3 min 05 s", "2 h 10 min".
 std::string duration_text(double seconds);
 
+/// Of an estimate: "2.2 min", "5.3 h".
+std::string rough_duration_text(double seconds);
+
 }  // namespace data

@@ -44,6 +44,10 @@ std::string built_isa() { return DEMCAL_ISA; }
 std::string processor_isa() { return best_isa(); }
 bool processor_runs(const std::string& isa) { return level(best_isa()) >= level(isa); }
 
+double machine_memory() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
   std::tm parts{};

@@ -13,6 +13,8 @@ std::string built_isa();        ///< "x86-64", "x86-64-v3" or "x86-64-v4": of al
 std::string processor_isa();
 bool processor_runs(const std::string& isa);
 
+double machine_memory();  ///< bytes
+
 std::string utc_now();  ///< "2026-11-23T05:04:00Z"
 
 /// Name and value of each, for a report or a file's head: demcal, instruction set, compiler, time.

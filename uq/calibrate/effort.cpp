@@ -1,27 +1,19 @@
 #include "uq/calibrate/effort.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "data/error.hpp"
+#include "data/progress.hpp"
+#include "data/provenance.hpp"
 
 namespace uq {
 namespace {
 
 constexpr double bytes_per_pair = 56.0;
 constexpr double evaluations = 2e5, operations_per_second = 5e9;
-
-double machine_memory() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
-std::string duration(double seconds) {
-  return seconds < 5400.0 ? fmt::format("{:.0f} minutes", seconds / 60.0)
-                          : fmt::format("{:.1g} hours", seconds / 3600.0);
-}
 
 /// Runs that train the surrogate of a material.
 double training_runs(const data::RunTable& table, const std::string& material, const SurrogateOptions& options) {
@@ -35,7 +27,7 @@ double training_runs(const data::RunTable& table, const std::string& material, c
 
 std::vector<std::string> effort_notes(const data::Study& study, const data::RunTable& table,
                                       const SurrogateOptions& options, const EffortLimits& limits) {
-  const double machine = limits.memory > 0.0 ? limits.memory : machine_memory();
+  const double machine = limits.memory > 0.0 ? limits.memory : data::machine_memory();
   for (const data::Material& material : study.materials) {
     const double runs = training_runs(table, material.name, options), bytes = bytes_per_pair * runs * runs;
     if (bytes > 0.8 * machine)
@@ -66,7 +58,7 @@ std::vector<std::string> effort_notes(const data::Study& study, const data::RunT
         "case '{}': {} readings, each predicted from {:.0f} runs some hundred thousand times: sampling takes about {} "
         "of processor time or more. A third of the runs take a ninth of it ([surrogate] runs_most = {:.0f}), a third "
         "of the readings a third (the means of neighbours in [[observe]] file)",
-        one.name, readings, most_runs, duration(seconds), std::floor(most_runs / 3.0)));
+        one.name, readings, most_runs, data::rough_duration_text(seconds), std::floor(most_runs / 3.0)));
   }
   return notes;
 }

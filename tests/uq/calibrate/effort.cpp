@@ -38,10 +38,10 @@ TEST_CASE("a calibration that takes hours is said before it starts, with what to
   // 200 readings x 1000^2 x 2e5 evaluations / 5e9 a second = 8000 s.
   const std::vector<std::string> notes = uq::effort_notes(given.study, given.table, {});
   REQUIRE(notes.size() == 1);
-  CHECK_THAT(notes.front(), Contains("200 readings, each predicted from 1000 runs") && Contains("about 2 hours") &&
+  CHECK_THAT(notes.front(), Contains("200 readings, each predicted from 1000 runs") && Contains("about 2.2 h ") &&
                                 Contains("runs_most = 333"));
   // A ninth of it is a quarter of an hour, and a hundredth is not worth a word.
-  CHECK_THAT(uq::effort_notes(given.study, given.table, {.runs_most = 333}).front(), Contains("15 minutes"));
+  CHECK_THAT(uq::effort_notes(given.study, given.table, {.runs_most = 333}).front(), Contains("15 min "));
   CHECK(uq::effort_notes(given.study, given.table, {.runs_most = 100}).empty());
 }
 
