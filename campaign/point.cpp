@@ -95,6 +95,8 @@ dem::Case case_at(const Workspace& workspace, const Point& point) {
   dem::Case result = workspace.cases.at(point.material);
   const std::vector<data::Input> inputs = data::inputs_of(workspace.study);
   for (std::size_t i = 0; i < inputs.size(); ++i) dem::set_target(result, inputs[i].target, point.inputs[i]);
+  for (const data::Output& output : workspace.study.outputs)
+    if (output.name != "torque") result.run.known.push_back(output.name);
   return result;
 }
 
@@ -156,7 +158,9 @@ data::RunRow to_row(const Workspace& workspace, const Point& point, const dem::R
     const data::SeriesMean& mean = dem::output(result, output.name);
     row.outputs.push_back(mean.mean);
     row.standard_errors.push_back(mean.standard_error);
-    if (!mean.reliable) row.unreliable += (row.unreliable.empty() ? "" : " ") + output.name;
+    if (mean.reliable) continue;
+    if (!row.unreliable.empty()) row.unreliable += " ";
+    row.unreliable += output.name + (mean.drifts ? "" : data::brief_mark);
   }
   return row;
 }

@@ -23,7 +23,7 @@ Point parse_point(const Workspace& workspace, const std::string& material, const
 /// "friction 0.4, hamaker 2e-18 J, rpm 150 rpm".
 std::string describe(const data::Study& study, const Point& point);
 
-/// The material's DEM case with the point's values set by target.
+/// The material's DEM case with the point's values set by target, run until the errors of the study's outputs are known.
 dem::Case case_at(const Workspace& workspace, const Point& point);
 
 /// Hash of every DEM setting of the material that decides what a run estimates and is not an input: rows with another

@@ -18,7 +18,7 @@ namespace {
 /// it is measured.
 std::string course_of(const std::string& settings) {
   static constexpr std::string_view other[]{"run.standard_error ", "run.start_up", "run.shortest", "run.longest ",
-                                            "run.window "};
+                                            "run.window ", "run.known "};
   std::string course;
   for (std::size_t at = 0; at < settings.size();) {
     const std::size_t end = std::min(settings.find('\n', at), settings.size() - 1) + 1;

@@ -11,6 +11,7 @@
 #include "campaign/training_table.hpp"
 #include "data/origin.hpp"
 #include "data/run_table_files.hpp"
+#include "uq/emulate/surrogates.hpp"
 
 namespace campaign {
 namespace fs = std::filesystem;
@@ -33,20 +34,25 @@ void tell_unknown_rows(const data::Study& study, StudyRows& rows) {
                                .places = {}});
 }
 
-void leave_out_unsteady(const Workspace& workspace, StudyRows& rows) {
+/// Of the study's level or, `cheaper`, of the one under it.
+void leave_out_unsteady(const Workspace& workspace, bool cheaper, data::RunTable& table,
+                        std::vector<std::string>& notes) {
   if (workspace.unsteady == Unsteady::use) return;
+  const std::string of = cheaper ? "of the cheaper level, " : "";
+  const std::size_t all = table.rows.size();
   std::map<std::string, int> left_out;
-  std::erase_if(rows.table.rows, [&](const data::RunRow& row) {
+  std::erase_if(table.rows, [&](const data::RunRow& row) {
     const bool unsteady = data::is_unsteady(row);
     if (unsteady) ++left_out[row.state];
     return unsteady;
   });
   for (const auto& [state, count] : left_out)
-    rows.notes.push_back(fmt::format(
-        "{} of {} runs are not of the steady flow ({}) and are left out: raise run.longest and train again, "
-        "or set training.unsteady = \"use\"",
-        count, rows.all.rows.size(), state));
-  for (std::string& note : data::drop_unreliable(rows.table)) rows.notes.push_back(std::move(note));
+    notes.push_back(of + fmt::format(
+                             "{} of {} runs are not of the steady flow ({}) and are left out: raise run.longest and "
+                             "train again, or set training.unsteady = \"use\"",
+                             count, all, state));
+  for (const std::string& note : data::drop_unreliable(table, workspace.surrogates->fit.nugget))
+    notes.push_back(of + note);
 }
 
 }  // namespace
@@ -81,11 +87,12 @@ StudyRows study_rows(const Workspace& workspace) {
   if (fs::exists(own) || of_copy == data::Origin::ours || of_copy == data::Origin::changed)
     add(own, read_own_table(workspace, result.notes));
   result.table = result.all;
-  leave_out_unsteady(workspace, result);
+  leave_out_unsteady(workspace, false, result.table, result.notes);
   if (!study.training.low.empty()) {
     data::TableRead read = data::read_table(study.training.low, study);
     for (std::string& left_out : read.left_out) result.notes.push_back(std::move(left_out));
     result.findings.insert(result.findings.end(), read.findings.begin(), read.findings.end());
+    leave_out_unsteady(workspace, true, read.table, result.notes);
     result.low = std::move(read.table);
   }
   tell_unknown_rows(study, result);

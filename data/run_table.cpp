@@ -38,20 +38,30 @@ RunTable merge(const RunTable& first, const RunTable& second) {
 
 bool is_unsteady(const RunRow& row) { return !row.state.empty() && row.state != to_text(FlowState::steady); }
 
-std::vector<std::string> drop_unreliable(RunTable& table) {
+std::vector<std::string> drop_unreliable(RunTable& table, bool scatter_estimated) {
   std::vector<std::string> notes;
+  const auto calls = [](const RunRow& row, const std::string& name) {
+    return fmt::format(" {} ", row.unreliable).find(fmt::format(" {} ", name)) != std::string::npos;
+  };
   for (std::size_t i = 0; i < table.outputs.size(); ++i) {
-    const std::string name = fmt::format(" {} ", table.outputs[i].name);
-    std::size_t dropped = 0;
+    const std::string& name = table.outputs[i].name;
+    std::size_t dropped = 0, brief = 0;
     for (RunRow& row : table.rows) {
-      if (fmt::format(" {} ", row.unreliable).find(name) == std::string::npos) continue;
+      const bool is_brief = calls(row, name + brief_mark);
+      if (!is_brief && !calls(row, name)) continue;
+      ++(is_brief ? brief : dropped);
+      if (is_brief && scatter_estimated) continue;
       row.outputs[i] = row.standard_errors[i] = std::numeric_limits<double>::quiet_NaN();
-      ++dropped;
     }
     if (dropped > 0)
-      notes.push_back(
-          fmt::format("{} of {} runs are too short to know the error of {}: they count for the other outputs", dropped,
-                      table.rows.size(), table.outputs[i].name));
+      notes.push_back(fmt::format("{} of {} runs do not know {} or its error: they count for the other outputs",
+                                  dropped, table.rows.size(), name));
+    if (brief > 0)
+      notes.push_back(fmt::format("{} of {} runs are too short to know the error of {}: {}", brief, table.rows.size(),
+                                  name,
+                                  scatter_estimated
+                                      ? "it is at least what they state, and the surrogate estimates the rest"
+                                      : "they count for the other outputs"));
   }
   return notes;
 }

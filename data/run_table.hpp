@@ -42,7 +42,8 @@ struct RunRow {
   std::string origin;                   ///< program and version, or file and line
   double cpu_seconds = 0.0;
   std::string state = {};       ///< "steady", or why the means are not those of the steady flow; "" where nobody said
-  std::string unreliable = {};  ///< outputs whose errors are not known, by name, separated by spaces
+  /// Outputs whose errors are not known, by name, separated by spaces; NAME:short where the run was only too short.
+  std::string unreliable = {};
   std::string place = {};       ///< "runs.csv:31": where the row stands, by which the user names it; not stored
   LeftOut left_out = {};        ///< not stored
 };
@@ -66,8 +67,12 @@ std::string row_key(const RunRow& row);
 /// each other: two of the same point and seed are replicates of a code that writes no seed of its own.
 RunTable merge(const RunTable& first, const RunTable& second);
 
-/// Makes the outputs NaN whose errors the rows call unreliable; says how many of each.
-std::vector<std::string> drop_unreliable(RunTable& table);
+/// After an output's name in RunRow::unreliable: its mean is that of the flow, and its error at least what it states.
+inline constexpr const char* brief_mark = ":short";
+
+/// Makes the outputs NaN whose means the rows call unreliable, and, unless the surrogates estimate what the stated errors
+/// lack (`scatter_estimated`), those of runs too short to know their errors; says how many of each.
+std::vector<std::string> drop_unreliable(RunTable& table, bool scatter_estimated);
 
 /// Reads .h5 or .csv with the study's columns, in any column order. CSV rows with NaN or an empty cell among the
 /// inputs, or in every output, are left out; one that lacks some of the outputs (NaN in the row) is kept. Both are

@@ -22,6 +22,7 @@ struct SeriesMean {
   std::size_t dropped = 0;         ///< samples taken for start-up; 0 when the front does not differ from the rest
   bool reliable =
       true;  ///< false when the series is too short for its correlation (n < 20 tau) or its start-up does not end
+  bool drifts = false;  ///< then it is not reliable either: the mean is not that of a steady flow
 };
 
 /// The value in the middle (of an even number the upper one); not a number where there is none.

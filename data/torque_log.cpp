@@ -220,7 +220,7 @@ SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count) {
   const std::span<const double> used = spikes_count ? rest : std::span<const double>(without);
   if (!(found.effective_samples < few) && !swings_back(used)) return found;
   const SeriesMean slow = steadiness(used).mean;
-  if (!slow.reliable || !(slow.standard_error > 0.0)) return found;
+  if (!(slow.standard_error > (slow.reliable ? 0.0 : found.standard_error))) return found;
   found.standard_error = slow.standard_error;
   found.integrated_time = slow.integrated_time;
   found.effective_samples = slow.effective_samples;

@@ -158,6 +158,7 @@ struct RunControl {
   double shortest = 1.0;            ///< s of measured turning at least, and
   double shortest_turns = 2.0;      ///< turns at least
   double longest = 6.0;             ///< s of turning at most, start-up included
+  std::vector<std::string> known;   ///< outputs beside the torque whose errors it goes on for until they are known
 };
 
 struct Case {

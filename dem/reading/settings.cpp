@@ -79,6 +79,7 @@ std::string settings_text(const Case& c) {
   text.number("run.shortest", r.shortest, "s");
   text.number("run.shortest_turns", r.shortest_turns, "1");
   text.number("run.longest", r.longest, "s");
+  if (!r.known.empty()) text.lines += fmt::format("run.known = {}\n", fmt::join(r.known, " "));
   for (const Component& part : components_of(c)) add_sizes(part.material, text);
   return text.lines;
 }

@@ -5,7 +5,9 @@
 #include <span>
 
 #include "dem/engine/order.hpp"
+#include "dem/run/outputs.hpp"
 #include "dem/run/run.hpp"
+#include "dem/run/summary.hpp"
 
 namespace dem {
 namespace {
@@ -41,6 +43,9 @@ LookRule look_rule(const RunControl& run, double time, double turn) {
   rule.start_up = std::min(samples_in(std::max(run.start_up, run.start_up_turns * turn), time), rule.longest - 1);
   rule.shortest = std::max<std::size_t>(1, samples_in(std::max(run.shortest, run.shortest_turns * turn), time));
   rule.standard_error = run.standard_error;
+  rule.window = samples_in_window(run);
+  for (std::size_t k = 0; k < outputs().size(); ++k)
+    if (std::find(run.known.begin(), run.known.end(), outputs()[k].name) != run.known.end()) rule.known.push_back(k);
   return rule;
 }
 
@@ -76,6 +81,11 @@ Measured measure(const LookRule& rule, const Series& series, std::size_t samples
     if (cut == 0 || here.state == data::FlowState::steady) found = std::move(here);
     if (found.state == data::FlowState::steady || !moves) break;
   }
+  if (rule.known.empty()) return found;
+  const std::vector<data::SeriesMean> means = means_of(series, found.first, found.count, rule.window);
+  found.known = std::all_of(rule.known.begin(), rule.known.end(), [&](std::size_t output) {
+    return means[output].reliable || !std::isfinite(means[output].mean);
+  });
   return found;
 }
 
@@ -84,14 +94,14 @@ Looks begin_looks(const LookRule& rule) { return {.next = std::min(rule.longest,
 void take_looks(const LookRule& rule, const Series& series, Looks& looks) {
   while (!looks.ended && series.torque.size() >= looks.next) {
     const Measured m = looks.last = measure(rule, series, looks.next);
-    const bool steady = m.state == data::FlowState::steady;
+    const bool enough = m.state == data::FlowState::steady && m.known;
     const double wanted = rule.standard_error * std::abs(m.torque.mean),
                  ratio = m.torque.standard_error > 0.0 ? m.torque.standard_error / wanted : 0.0;
-    looks.ended = looks.next >= rule.longest || (steady && (looks.planned || ratio <= 1.0));
+    looks.ended = looks.next >= rule.longest || (enough && (looks.planned || ratio <= 1.0));
     if (looks.ended) return;
-    const double by = steady ? std::min(ratio * ratio, 1e6) : growth;
-    const std::size_t from = steady ? m.first : rule.start_up;
-    looks.planned = steady;
+    const double by = enough ? std::min(ratio * ratio, 1e6) : growth;
+    const std::size_t from = enough ? m.first : rule.start_up;
+    looks.planned = enough;
     looks.next = std::clamp(from + grown(looks.next - from, by), looks.next + 1, rule.longest);
   }
 }

@@ -13,7 +13,8 @@
 // Welch 1983). At the first look that finds a steady run with a known error e after n samples, the length is fixed at
 // n (e/e0)^2, e0 the wanted error (C. Stein, Ann. Math. Stat. 16 (1945) 243). The run stops there whatever its error is:
 // stopping when an error happens to be small would bias it. A run that drifts there is looked at again after half as
-// much again.
+// much again, and so is one too short for another output that it is made for (RunControl::known): a bed seen by a camera
+// avalanches more slowly than its torque shows.
 #include <cstddef>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,8 @@ struct LookRule {
   std::size_t shortest = 1;  ///< measured at least
   std::size_t longest = 1;   ///< start-up and measurement
   double standard_error = 0.02;
+  std::vector<std::size_t> known;  ///< outputs whose errors are to be known, by their place in outputs()
+  std::size_t window = 1;          ///< samples in one of RunControl::window
 };
 /// `time` is that of a sample, `turn` that of a turn of the tool, 0 when it has none [s].
 LookRule look_rule(const RunControl& run, double time, double turn);
@@ -50,6 +53,7 @@ struct Measured {
   data::SeriesMean torque;
   std::vector<double> drift_p;  ///< of torque, coordination, kinetic energy
   double bonds_rise = 0.0;      ///< of the bond order meanwhile, 0 where none is seen
+  bool known = true;            ///< the errors of LookRule::known, of those that are measured at all
 };
 /// Of the first `samples` samples.
 Measured measure(const LookRule& rule, const Series& series, std::size_t samples);

@@ -251,25 +251,26 @@ void write_run(const std::string& path, const Case& c, const RunResult& result) 
     if (!result.series.mixing_index.empty()) each_channel_series(result.series, write);
     const data::Hdf5Group summary = file.create_group("summary");
     std::vector<std::string> names, units;
-    std::array<std::vector<double>, 7> columns;
+    std::array<std::vector<double>, 8> columns;
     for (std::size_t k = 0; k < result.summary.mean.size(); ++k) {
       const data::SeriesMean& m = result.summary.mean[k];
       if (k >= outputs().size() - camera_outputs().size() && result.series.window_time.empty()) break;  // not seen
       names.push_back(outputs()[k].name);
       units.push_back(outputs()[k].unit);
-      const std::array<double, 7> row{m.mean,
+      const std::array<double, 8> row{m.mean,
                                       m.standard_error,
                                       m.sd,
                                       m.integrated_time,
                                       m.effective_samples,
                                       static_cast<double>(m.dropped),
-                                      m.reliable ? 1.0 : 0.0};
+                                      m.reliable ? 1.0 : 0.0,
+                                      m.drifts ? 1.0 : 0.0};
       for (std::size_t j = 0; j < row.size(); ++j) columns[j].push_back(row[j]);
     }
     summary.write_texts("names", names);
     summary.write_texts("units", units);
-    constexpr std::array<const char*, 7> heads{
-        "mean", "standard_error", "sd", "integrated_time", "effective_samples", "dropped", "reliable"};
+    constexpr std::array<const char*, 8> heads{
+        "mean", "standard_error", "sd", "integrated_time", "effective_samples", "dropped", "reliable", "drifts"};
     for (std::size_t j = 0; j < heads.size(); ++j) summary.write(heads[j], columns[j]);
     write_state(summary, result.summary);
     write_diagnostics(file.create_group("diagnostics"), result.diagnostics);
@@ -317,7 +318,10 @@ SavedRun read_run(const std::string& path) {
   const std::vector<double> mean = column("mean"), error = column("standard_error"), sd = column("sd"),
                             time = column("integrated_time"), samples = column("effective_samples"),
                             dropped = column("dropped"), reliable = column("reliable");
-  for (const std::vector<double>* other : {&error, &sd, &time, &samples, &dropped, &reliable})
+  // Files of before there was `drifts` do not tell it from a series that is too short.
+  const bool told = summary.has("drifts");
+  const std::vector<double> drifts = column(told ? "drifts" : "reliable");
+  for (const std::vector<double>* other : {&error, &sd, &time, &samples, &dropped, &reliable, &drifts})
     if (other->size() != mean.size())
       throw data::InputError(
           data::ExitStatus::bad_data,
@@ -338,7 +342,8 @@ SavedRun read_run(const std::string& path) {
                                 .integrated_time = time[k],
                                 .effective_samples = samples[k],
                                 .dropped = static_cast<std::size_t>(dropped[k]),
-                                .reliable = reliable[k] != 0.0});
+                                .reliable = reliable[k] != 0.0,
+                                .drifts = told ? drifts[k] != 0.0 : reliable[k] == 0.0});
   }
   read_state(summary, r.summary);
   r.checkpoint = read_checkpoint(file.group("checkpoint"));

@@ -42,7 +42,8 @@ data::SeriesMean fluctuation(std::span<const double> torque, std::size_t window)
 /// The mean and error of one output, reliable where it does not drift by itself.
 data::SeriesMean mean_of(std::span<const double> values) {
   data::Steadiness s = data::steadiness(values);
-  if (s.drift_p < 0.01) s.mean.reliable = false;
+  s.mean.drifts = s.drift_p < 0.01;
+  if (s.mean.drifts) s.mean.reliable = false;
   return s.mean;
 }
 
@@ -108,28 +109,32 @@ std::string why_not(const Case& c, const Measured& m, double turns) {
 
 }  // namespace
 
+std::vector<data::SeriesMean> means_of(const Series& s, std::size_t first, std::size_t count, std::size_t window) {
+  const auto measured = [&](const std::vector<double>& values) {
+    const std::size_t from = std::min(first, values.size());
+    return std::span(values).subspan(from, std::min(count, values.size() - from));
+  };
+  std::vector<data::SeriesMean> means;
+  for (const MeanOutput& output : mean_outputs()) {
+    means.push_back(mean_of(measured(s.*output.series)));
+    if (means.size() == 1) means.push_back(fluctuation(measured(s.torque), window));
+  }
+  for (data::SeriesMean& mean : means) mean.dropped = first;
+  const std::size_t first_window = (first + window - 1) / window;
+  for (const CameraOutput& output : camera_outputs()) {
+    const std::vector<double>& values = s.*output.series;
+    const std::size_t last = std::min((first + count) / window, values.size()), from = std::min(first_window, last);
+    means.push_back(mean_of_found(std::span(values).subspan(from, last - from)));
+    means.back().dropped = from;
+  }
+  return means;
+}
+
 Summary summarise(const Case& c, double turn, const Series& s, const Looks& looks) {
   const Measured& m = looks.last;
   Summary summary;
   const double sample = c.run.sample_interval;
-  const auto measured = [&](const std::vector<double>& values) {
-    const std::size_t first = std::min(m.first, values.size());
-    return std::span(values).subspan(first, std::min(m.count, values.size() - first));
-  };
-  const std::size_t window = samples_in_window(c.run);
-  for (const MeanOutput& output : mean_outputs()) {
-    summary.mean.push_back(mean_of(measured(s.*output.series)));
-    if (summary.mean.size() == 1) summary.mean.push_back(fluctuation(measured(s.torque), window));
-  }
-  for (data::SeriesMean& mean : summary.mean) mean.dropped = m.first;
-  const std::size_t first_window = (m.first + window - 1) / window;
-  for (const CameraOutput& output : camera_outputs()) {
-    const std::vector<double>& values = s.*output.series;
-    const std::size_t last = std::min((m.first + m.count) / window, values.size()),
-                      first = std::min(first_window, last);
-    summary.mean.push_back(mean_of_found(std::span(values).subspan(first, last - first)));
-    summary.mean.back().dropped = first;
-  }
+  summary.mean = means_of(s, m.first, m.count, samples_in_window(c.run));
   const data::SeriesMean& torque = summary.mean.front();
   summary.reached_target = torque.standard_error <= c.run.standard_error * std::abs(torque.mean);
   summary.state = m.state;

@@ -4,6 +4,10 @@
 
 namespace dem {
 
+/// Over the samples first ... first + count - 1, of which `window` make one of RunControl::window; in the order of
+/// outputs(). Not a number where a series has none of them.
+std::vector<data::SeriesMean> means_of(const Series& series, std::size_t first, std::size_t count, std::size_t window);
+
 /// Of a run whose looks are these; all but the processor time.
 Summary summarise(const Case& c, double turn, const Series& series, const Looks& looks);
 

@@ -42,6 +42,8 @@ TEST_CASE("runs that are not of the steady flow train nothing, by name and numbe
   CHECK(nlohmann::json::parse(outcome.out)["rows"] == row - 2);
   CHECK_THAT(outcome.err, Contains("not of the steady flow (drifting)") && Contains("not of the steady flow (short)") &&
                               Contains("run.longest") && Contains("training.unsteady"));
+  const auto below = folder.demcal({"check", "study", "--set", "training.low=\"runs.csv\""});
+  CHECK_THAT(below.err, Contains("of the cheaper level") && Contains("not of the steady flow (drifting)"));
   const auto taken = folder.demcal({"check", "study", "--json", "--set", "training.unsteady=\"use\""});
   CHECK(nlohmann::json::parse(taken.out)["rows"] == row);
   CHECK(taken.status == 0);

@@ -293,13 +293,29 @@ TEST_CASE("an output whose error is not known is dropped from its row by its who
   row.standard_errors = {0.1, 0.2};
   table.rows = {row, row};
   table.rows[1].unreliable = "coordination torque_fluctuation";
-  const std::vector<std::string> notes = data::drop_unreliable(table);
+  const std::vector<std::string> notes = data::drop_unreliable(table, true);
   CHECK(table.rows[0].outputs[1] == 2.0);
   CHECK(table.rows[1].outputs[0] == 1.0);
   CHECK(std::isnan(table.rows[1].outputs[1]));
   CHECK(std::isnan(table.rows[1].standard_errors[1]));
   REQUIRE(notes.size() == 1);
   CHECK_THAT(notes[0], Catch::Contains("1 of 2 runs") && Catch::Contains("torque_fluctuation"));
+}
+
+TEST_CASE("an output of a run too short to know its error counts where the scatter of the runs is estimated") {
+  data::RunTable table;
+  table.outputs = {{"torque", {}}, {"torque_fluctuation", {}}};
+  table.rows = {{.outputs = {1.0, 2.0}, .standard_errors = {0.1, 0.2}, .unreliable = "torque_fluctuation:short"}};
+  data::RunTable without = table;
+  const std::vector<std::string> kept = data::drop_unreliable(table, true), gone = data::drop_unreliable(without, false);
+  CHECK(table.rows[0].outputs[1] == 2.0);
+  CHECK(table.rows[0].standard_errors[1] == 0.2);
+  CHECK(std::isnan(without.rows[0].outputs[1]));
+  CHECK(without.rows[0].outputs[0] == 1.0);
+  REQUIRE(kept.size() == 1);
+  REQUIRE(gone.size() == 1);
+  CHECK_THAT(kept[0], Catch::Contains("the surrogate estimates the rest"));
+  CHECK_THAT(gone[0], Catch::Contains("count for the other outputs"));
 }
 
 TEST_CASE("a row is unsteady where it says so, and not where nobody looked") {

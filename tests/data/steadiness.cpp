@@ -103,6 +103,30 @@ TEST_CASE("mean, error and drift do not depend on the series' unit, and the drif
   CHECK(c.mean.standard_error == Approx(a.mean.standard_error));
 }
 
+TEST_CASE("the error is seldom called known in a series of seven correlation times, and mostly in one of 30") {
+  const auto called_known = [](std::size_t n) {
+    int known = 0;
+    for (std::uint32_t i = 0; i < 500; ++i) known += data::steadiness(autoregressive(n, i)).mean.reliable;
+    return known / 500.0;
+  };
+  CHECK(called_known(70) < 0.2);
+  CHECK(called_known(100) < 0.35);
+  CHECK(called_known(300) > 0.9);
+  CHECK(called_known(1000) > 0.99);
+}
+
+TEST_CASE("the error of a random walk's mean is hardly ever called known, however long the walk is") {
+  int known = 0;
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    data::RandomStream random(77, data::Purpose::test, i);
+    std::vector<double> x(1000);
+    double at = 0.0;
+    for (double& value : x) value = at += random.normal();
+    known += data::steadiness(x).mean.reliable;
+  }
+  CHECK(known <= 0.05 * 200);
+}
+
 TEST_CASE(
     "a series too short for its correlation is not reliable, a constant is exact, and neither is drifting by that") {
   CHECK_FALSE(data::steadiness(autoregressive(100, 3)).mean.reliable);

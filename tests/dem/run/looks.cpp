@@ -1,9 +1,11 @@
 // The stopping rule on series of known mean: torque, coordination and kinetic energy as autoregressive series.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "data/random.hpp"
 #include "dem/run/run.hpp"
+#include "dem/run/summary.hpp"
 
 namespace {
 
@@ -135,6 +137,42 @@ TEST_CASE("a torque that is 0 throughout ends the run at the first look, and one
   dem::Series around = flow(rule.longest, 2);
   for (double& value : around.torque) value = 1e-9 * (value - 1.0);
   CHECK(looks_at(around).ended);
+}
+
+TEST_CASE("a run goes on until the errors of the outputs that it is made for are known") {
+  // Windows of one sample, in which the silhouette swings 15 times as slowly as the torque.
+  dem::RunControl run;
+  run.start_up = 0.2, run.start_up_turns = 0.0, run.shortest = 0.6, run.longest = 8.0, run.standard_error = 0.03;
+  run.window = run.sample_interval = 1e-3;
+  const dem::LookRule torque_alone = dem::look_rule(run, 1e-3, 0.0);
+  run.known = {"silhouette_x", "upper_angle"};
+  const dem::LookRule both = dem::look_rule(run, 1e-3, 0.0);
+  int known_early = 0, known_late = 0, longer = 0, longest = 0;
+  const int runs = 20;
+  for (int i = 0; i < runs; ++i) {
+    dem::Series s = flow(both.longest, static_cast<std::uint32_t>(i));
+    s.silhouette_x = s.torque;
+    for (std::size_t k = 0; k < s.torque.size(); ++k) s.silhouette_x[k] = s.torque[k / 15];
+    s.upper_angle.assign(s.time.size(), std::numeric_limits<double>::quiet_NaN());  // never found: it holds up nothing
+    const auto looks_by = [&](const dem::LookRule& by) {
+      dem::Looks looks = dem::begin_looks(by);
+      dem::take_looks(by, s, looks);
+      return looks;
+    };
+    const auto error_known = [&](const dem::Looks& looks) {
+      return dem::means_of(s, looks.last.first, looks.last.count, 1)[both.known.front()].reliable;
+    };
+    const dem::Looks early = looks_by(torque_alone), late = looks_by(both);
+    known_early += error_known(early);
+    known_late += error_known(late);
+    longer += late.next > early.next;
+    longest += late.next == both.longest;
+  }
+  INFO("known early " << known_early << ", late " << known_late << ", longer " << longer << ", longest " << longest);
+  CHECK(known_early <= 6);
+  CHECK(longer >= runs - known_early);
+  CHECK(known_late >= 18);
+  CHECK(longest <= 5);
 }
 
 TEST_CASE("turns and seconds count, whichever are more") {
