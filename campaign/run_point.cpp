@@ -17,8 +17,8 @@ namespace {
 /// All that decides a run's bits up to where it stops: the settings without those that say how long it is, and what of
 /// it is measured.
 std::string course_of(const std::string& settings) {
-  static constexpr std::string_view other[]{"run.standard_error ", "run.start_up", "run.shortest", "run.longest ",
-                                            "run.window ", "run.known "};
+  static constexpr std::string_view other[]{"run.standard_error ", "run.start_up", "run.shortest",
+                                            "run.longest ",        "run.window ",  "run.known "};
   std::string course;
   for (std::size_t at = 0; at < settings.size();) {
     const std::size_t end = std::min(settings.find('\n', at), settings.size() - 1) + 1;
@@ -87,9 +87,10 @@ dem::RunResult run_point(const Workspace& workspace, const Point& point, const P
     return dem::FrameTag{.index = index, .count = options.frames, .seed = seed, .settings = dem::settings_text(c)};
   };
   // Frames that a finished or interrupted run has passed can only be had by making it again.
-  const std::uint64_t passed = !before             ? 0
-                               : ended(*before, c) ? ~std::uint64_t{0}
-                                                   : before->result.checkpoint.state.step;
+  const bool no_state = before && before->result.checkpoint.state.position.empty();
+  const std::uint64_t passed = !before                         ? 0
+                               : no_state || ended(*before, c) ? ~std::uint64_t{0}
+                                                               : before->result.checkpoint.state.step;
   for (int k = 0; k < options.frames && before; ++k)
     if (frames[k] <= passed && !dem::is_frame(dem::frame_path(options.frames_folder, k), tag(k))) before.reset();
   if (before && ended(*before, c)) return before->result;
@@ -105,11 +106,16 @@ dem::RunResult run_point(const Workspace& workspace, const Point& point, const P
   run.frame = [&](int index, const dem::Simulation& simulation, double time) {
     dem::write_frame(dem::frame_path(options.frames_folder, index), simulation, time, tag(index));
   };
-  if (before && before->result.status != dem::RunStatus::failed && !before->result.checkpoint.state.position.empty())
-    run.resume = &before->result.checkpoint;
+  const bool goes_on = before && before->result.status != dem::RunStatus::failed;
+  const bool judged_anew = goes_on && no_state && dem::long_enough(prepared, before->result.series);
+  if (goes_on && (judged_anew || !no_state)) run.resume = &before->result.checkpoint;
   dem::RunResult result = dem::run(prepared, seed, run);
+  if (judged_anew) {
+    result.diagnostics = before->result.diagnostics;
+    result.summary.cpu_seconds = before->result.summary.cpu_seconds;
+  }
   const bool steady = result.status == dem::RunStatus::done && result.summary.state == data::FlowState::steady;
-  if (steady && !options.keep_state) result.checkpoint = {};
+  if (judged_anew || (steady && !options.keep_state)) result.checkpoint = {};
   dem::write_run(options.path, c, result);
   return result;
 }

@@ -14,6 +14,7 @@
 #include "dem/contact/isa.hpp"
 #include "dem/engine/order.hpp"
 #include "dem/reading/prepare.hpp"
+#include "dem/rig/drive.hpp"
 #include "dem/run/mixing.hpp"
 #include "dem/run/outputs.hpp"
 #include "dem/run/summary.hpp"
@@ -45,7 +46,8 @@ struct Plan {
   LookRule rule;
 };
 
-Plan make_plan(const Case& c, const Derived& d, const Sensor& sensor) {
+/// `turn` is the time of a turn, 0 where nothing turns [s].
+Plan make_plan(const Case& c, const Derived& d, double turn) {
   const RunControl& r = c.run;
   const double dt = d.time_step;
   Plan p;
@@ -55,7 +57,7 @@ Plan make_plan(const Case& c, const Derived& d, const Sensor& sensor) {
   p.window = samples_in_window(r);
   p.picture = std::max<std::uint64_t>(1, p.window / pictures_in_window);
   while ((p.window + p.picture - 1) / p.picture % 2 == 0) ++p.picture;
-  p.rule = look_rule(r, static_cast<double>(p.sample) * dt, sensor.period);
+  p.rule = look_rule(r, static_cast<double>(p.sample) * dt, turn);
   return p;
 }
 
@@ -167,7 +169,7 @@ class Course {
         box_{rig_.low, rig_.high, rig_.periodic},
         sampling_(sampling_of(case_, rig_)),
         colour_(colours(rig_.channels, rig_.position)),
-        plan_(make_plan(case_, derived_, sensor_)),
+        plan_(make_plan(case_, derived_, sensor_.period)),
         looks_(begin_looks(plan_.rule)),
         frames_(frames_in(plan_, options.frames)),
         cpu_before_(cpu_time(options.threads)) {
@@ -184,7 +186,7 @@ class Course {
     if (options_.resume != nullptr) {
       now() = *options_.resume;
       cpu_earlier_ = now().under_way.cpu_seconds;
-      simulation_->restore(std::move(now().state));
+      if (!now().state.position.empty()) simulation_->restore(std::move(now().state));
       now().state = {};
     }
     take_looks(plan_.rule, now().series, looks_);  // those of before the restart
@@ -329,7 +331,15 @@ class Course {
 
 std::vector<std::uint64_t> frame_steps(const PreparedCase& prepared, int frames) {
   const Case& c = prepared.given();
-  return frames_in(make_plan(c, prepared.derived(), build_rig(c, 0).sensor), frames);
+  return frames_in(make_plan(c, prepared.derived(), turn_of(c)), frames);
+}
+
+bool long_enough(const PreparedCase& prepared, const Series& series) {
+  const Case& c = prepared.given();
+  const LookRule rule = make_plan(c, prepared.derived(), turn_of(c)).rule;
+  Looks looks = begin_looks(rule);
+  take_looks(rule, series, looks);
+  return looks.ended;
 }
 
 RunResult run(const PreparedCase& prepared, std::uint64_t seed, const RunOptions& options) {

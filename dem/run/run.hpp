@@ -152,7 +152,7 @@ struct RunOptions {
   std::function<void(const RunProgress&)> progress = {};  ///< about every 50 ms of simulated time
   double checkpoint_interval = 60.0;                      ///< s of wall time
   std::function<void(const Checkpoint&)> checkpoint = {};
-  const Checkpoint* resume = nullptr;  ///< go on from here
+  const Checkpoint* resume = nullptr;  ///< go on from here; without a state where the series is long_enough
   /// Moments to be kept, evenly spaced from the start of turning to the earliest end of the run; `frame` is called at
   /// each with its number and the s of turning. A run that goes on from a checkpoint gives those that come after it.
   int frames = 0;
@@ -161,6 +161,9 @@ struct RunOptions {
 
 /// The steps of a run, settling included, at which its frames are.
 std::vector<std::uint64_t> frame_steps(const PreparedCase& prepared, int frames);
+
+/// Whether a run of this series has ended as this case's would: then it is measured anew without its last state.
+bool long_enough(const PreparedCase& prepared, const Series& series);
 
 /// A run that cannot go on is a result with status failed. Throws data::InputError (78) when the spheres do not fit.
 RunResult run(const PreparedCase& prepared, std::uint64_t seed, const RunOptions& options = {});

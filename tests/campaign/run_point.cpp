@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "dem/run/run_file.hpp"
 #include "tests/campaign/fake_slurm.hpp"
 #include "tests/temporary.hpp"
 
@@ -23,4 +24,32 @@ TEST_CASE("a steady run that was kept without its last state is read back, and n
   Workspace other = workspace;
   ++other.study.seed;
   CHECK_FALSE(ended_run(other, run.point, path));
+}
+
+TEST_CASE("a run kept without its last state is measured anew where it is as long as it need be, and else made again") {
+  const TemporaryFolder folder;
+  const Workspace workspace = test::small_study(folder.path("out"), "60");
+  const PlannedRun run = test::planned(workspace, 1).front();
+  const std::string path = run_path(workspace, run.point);
+  dem::RunResult whole = run_point(workspace, run.point, {.path = path, .keep_state = true});
+  whole.checkpoint = {};
+  dem::write_run(path, case_at(workspace, run.point), whole);
+
+  const auto with_longest = [&](double longest) {
+    Workspace other = workspace;
+    for (auto& [material, c] : other.cases) c.run.longest = longest;
+    return other;
+  };
+  const dem::RunResult anew = run_point(with_longest(0.38), run.point, {.path = path, .keep_state = true}),
+                       fresh = run_point(with_longest(0.38), run.point,
+                                         {.path = folder.path("fresh.h5"), .keep_state = true});
+  CHECK(anew.series.torque == fresh.series.torque);
+  CHECK(anew.series.torque.size() < whole.series.torque.size());
+  CHECK(anew.summary.mean.front().mean == fresh.summary.mean.front().mean);
+  CHECK(anew.summary.cpu_seconds == whole.summary.cpu_seconds);
+  CHECK(anew.diagnostics.steps == whole.diagnostics.steps);
+  CHECK(anew.checkpoint.state.position.empty());
+
+  const dem::RunResult longer = run_point(with_longest(0.45), run.point, {.path = path, .keep_state = true});
+  CHECK(longer.series.torque.size() > whole.series.torque.size());
 }
