@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace surrogate {
 namespace {
@@ -51,6 +52,28 @@ std::vector<LevelCheck> check_levels(const TrainingSet& training, const HeldOutM
     checks.push_back(check);
   }
   return checks;
+}
+
+std::vector<ApartPair> pairs_apart(const TrainingSet& training) {
+  const Index inputs = training.x.cols();
+  std::vector<std::optional<double>> usual;  // of each input that varies: the value of most runs
+  for (Index k = 0; k < inputs; ++k) {
+    const std::vector<double> levels = levels_of(training.x.col(k));
+    const auto runs_at = [&](double level) { return ((training.x.col(k).array() - level).abs() < same).count(); };
+    usual.emplace_back();
+    if (levels.size() < 2) continue;
+    usual.back() =
+        *std::max_element(levels.begin(), levels.end(), [&](double a, double b) { return runs_at(a) < runs_at(b); });
+  }
+  std::vector<ApartPair> pairs;
+  for (Index i = 0; i < inputs; ++i) {
+    for (Index j = i + 1; j < inputs; ++j) {
+      if (!usual[i] || !usual[j]) continue;
+      const auto moved = [&](Index k) { return (training.x.col(k).array() - *usual[k]).abs() >= same; };
+      if (!(moved(i) && moved(j)).any()) pairs.push_back({training.name_of(i), training.name_of(j)});
+    }
+  }
+  return pairs;
 }
 
 std::vector<std::string> level_notes(const std::vector<LevelCheck>& checks) {

@@ -15,6 +15,10 @@ constexpr int levels_most = 8;  ///< an input with more values is no factor of a
 /// own scale.
 std::vector<LevelCheck> check_levels(const TrainingSet& training, const HeldOutModel& model);
 
+/// Pairs of inputs that no run moves together from where most runs hold them, as in a design of one factor at a time: how
+/// one's effect depends on the other is not in the runs, and no run left out can show it.
+std::vector<ApartPair> pairs_apart(const TrainingSet& training);
+
 /// What the checks found, one sentence each.
 std::vector<std::string> level_notes(const std::vector<LevelCheck>& checks);
 

@@ -170,6 +170,7 @@ Validation validate(const TrainingSet& given, const FitOptions& fit_options, con
 
   result.levels = check_levels(training, model);
   for (const std::string& note : level_notes(result.levels)) result.notes.push_back(note);
+  result.apart = pairs_apart(training);
   result.noise = check_noise(given, fit_options, process);
   if (const std::string note = noise_note(result.noise); !note.empty()) result.notes.push_back(note);
   result.verdict = judge(result, predicted, process.diagnostics(), options.thresholds);

@@ -70,6 +70,11 @@ struct LevelCheck {
   double coverage95 = 0.0;  ///< of these
 };
 
+/// Two inputs that no run moves together (levels.hpp), by name.
+struct ApartPair {
+  std::string first, second;
+};
+
 /// Stated errors against what the runs scatter by (noise_check.hpp).
 struct NoiseCheck {
   double scatter_ratio = 0.0;   ///< nugget sd over the stated errors' root mean square
@@ -93,6 +98,7 @@ struct Validation {
   double q2_leave_one_out = 0.0, q2_held_out = 0.0, q2_attainable = 0.0, q2_function = 0.0;
   Coverage coverage_leave_one_out, coverage_held_out;
   std::vector<LevelCheck> levels;  ///< inputs of few values
+  std::vector<ApartPair> apart;    ///< inputs that no run moves together
   NoiseCheck noise;
   double mahalanobis_probability = 0.0;  ///< smallest of the folds times their number
   int large_errors = 0;                  ///< held-out standardised errors above 2 in size

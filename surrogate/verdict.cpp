@@ -1,6 +1,6 @@
 #include "surrogate/verdict.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
 
 #include <algorithm>
@@ -41,6 +41,15 @@ bool too_wide(const Validation& v) {
     degrees += fold.degrees;
   }
   return v.coverage_held_out.observed[2] >= 0.95 && distance < degrees && !v.noise.understated();
+}
+
+/// "a and b, a and c" or "any two of the inputs"; empty where there are none.
+std::string named_pairs(const std::vector<ApartPair>& pairs) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> names;
+  for (const ApartPair& pair : pairs) names.push_back(pair.first + " and " + pair.second);
+  if (names.size() > most) return fmt::format("{} and {} other pairs", names.front(), names.size() - 1);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// What to do about intervals that are off.
@@ -133,8 +142,8 @@ SurrogateVerdict judge(const Validation& v, int predicted, const FitDiagnostics&
                                      [](const BoundHit& hit) { return !hit.harmless; });
   const bool between =
       std::any_of(v.levels.begin(), v.levels.end(), [&](const LevelCheck& check) { return doubtful(check, t); });
-  if (v.q2_function < t.q2_good || !diagnostics.converged || bad_bound || between || noise_doubtful(v) ||
-      coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability ||
+  if (v.q2_function < t.q2_good || !diagnostics.converged || bad_bound || between || !v.apart.empty() ||
+      noise_doubtful(v) || coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability ||
       v.mahalanobis_probability < t.mahalanobis_probability)
     return SurrogateVerdict::caution;
   return SurrogateVerdict::good;
@@ -165,6 +174,8 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
     v.finding += unknown->levels == 2 ? fmt::format("; nothing is known between the 2 levels of {}", unknown->input)
                                       : fmt::format("; whole levels of {} left out are predicted with Q2 {:.3f}",
                                                     unknown->input, unknown->q2);
+  const std::string apart = named_pairs(v.apart);
+  if (!apart.empty()) v.finding += "; no run moves " + apart + " together";
   if (noise_doubtful(v)) v.finding += "; " + noise_note(v.noise);
   v.finding += ".";
 
@@ -183,6 +194,10 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
     v.consequence = "Its intervals are wider than its errors: posteriors that rest on it are wider than need be.";
   } else if (unknown != v.levels.end()) {
     v.consequence = "What lies between the levels is assumed, not learnt: the posterior is as wide as that leaves it.";
+  } else if (!apart.empty()) {
+    v.consequence =
+        "How the effect of one depends on the other is assumed, not learnt: posteriors that rest on it may be too "
+        "narrow.";
   } else if (v.q2_function < t.q2_good) {
     v.consequence = "Its error is a large part of the response; it enters the likelihood and widens the posterior.";
   } else {
@@ -195,6 +210,11 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
   if (unknown != v.levels.end() && v.verdict == SurrogateVerdict::caution) {
     v.more_runs = std::max(8, v.runs / 4);
     v.remedy = fmt::format("Add about {} runs between the levels of {}.", v.more_runs, unknown->input);
+    return;
+  }
+  if (!apart.empty() && v.verdict == SurrogateVerdict::caution) {
+    v.more_runs = std::max(8, v.runs / 2);
+    v.remedy = fmt::format("Add about {} runs that move all inputs at once (demcal design).", v.more_runs);
     return;
   }
   if (v.q2_function < t.q2_good) {

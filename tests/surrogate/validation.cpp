@@ -73,6 +73,26 @@ TEST_CASE("standard errors that are too large make intervals that are too wide, 
   CHECK(v.more_runs == 0);
 }
 
+TEST_CASE("runs that move one input at a time leave their interplay unknown, which is said") {
+  constexpr int steps = 12;
+  const auto star = [](bool with_joint) {
+    TrainingSet training{MatrixXd::Constant(2 * steps + (with_joint ? 1 : 0), 2, 0.5), {}, {}, {"friction", "rpm"}};
+    for (int k = 0; k < 2 * steps; ++k) training.x(k, k / steps) = (k % steps + 0.5) / steps;
+    if (with_joint) training.x.row(2 * steps) << 0.9, 0.9;
+    training.y.resize(training.x.rows());
+    for (int i = 0; i < training.y.size(); ++i) training.y[i] = smooth(VectorXd(training.x.row(i)));
+    training.noise_variance = VectorXd::Constant(training.y.size(), 1e-4);
+    return training;
+  };
+  const TrainingSet apart = star(false), joint = star(true);
+  const Validation v = validate(apart, {}, fit(apart));
+  CHECK(v.verdict == SurrogateVerdict::caution);
+  CHECK_THAT(v.finding, Catch::Contains("no run moves friction and rpm together"));
+  CHECK_THAT(v.remedy, Catch::Contains("move all inputs at once"));
+  CHECK(v.more_runs > 0);
+  CHECK(validate(joint, {}, fit(joint)).apart.empty());
+}
+
 TEST_CASE("an output that is all noise is not called good") {
   const TrainingSet training = runs_of([](const VectorXd&) { return 1.0; }, 40, 2, 0.1, 6);
   const Validation v = validate(training, {}, fit(training));
