@@ -220,6 +220,7 @@ SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count) {
   const std::span<const double> used = spikes_count ? rest : std::span<const double>(without);
   if (!(found.effective_samples < few) && !swings_back(used)) return found;
   const SeriesMean slow = steadiness(used).mean;
+  // Where it is not known, what it states is the least that the error is.
   if (!(slow.standard_error > (slow.reliable ? 0.0 : found.standard_error))) return found;
   found.standard_error = slow.standard_error;
   found.integrated_time = slow.integrated_time;
