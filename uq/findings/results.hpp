@@ -227,6 +227,7 @@ struct InputSupport {
   double outside = 0.0;                    ///< share of the posterior beyond them
   double gap = 0.0;                        ///< share of the posterior in a gap of them
   double gap_low = 0.0, gap_high = 0.0;    ///< that gap; equal: there is none
+  bool operator==(const InputSupport&) const = default;
 };
 
 /// A point to run next.

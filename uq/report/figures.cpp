@@ -39,24 +39,39 @@ struct Observed {
   std::vector<double> x, value, error;
 };
 
+void add(Observed& observed, const PredictivePoint& point, const std::string& control) {
+  observed.x.push_back(point.controls.at(control));
+  observed.value.push_back(point.observed);
+  observed.error.push_back(std::isfinite(point.standard_error) ? point.standard_error : 0.0);
+}
+
 Observed observed_beside(const CaseReport& result, const PredictiveCurve& curve) {
   Observed observed;
-  for (const PredictivePoint& point : result.predictive) {
-    if (!belongs(point, curve)) continue;
-    observed.x.push_back(point.controls.at(curve.control));
-    observed.value.push_back(point.observed);
-    observed.error.push_back(std::isfinite(point.standard_error) ? point.standard_error : 0.0);
-  }
+  for (const PredictivePoint& point : result.predictive)
+    if (belongs(point, curve)) add(observed, point, curve.control);
   return observed;
 }
 
+/// Of data that the case has not used. With a second control they need not lie on the curve.
+Observed unused_beside(const CaseReport& result, const PredictiveCurve& curve) {
+  Observed unused;
+  for (const PredictionReport& made : result.predictions)
+    for (const PredictedPoint& one : made.points)
+      if (one.point.output == curve.output && one.point.controls.size() == 1 &&
+          one.point.controls.contains(curve.control))
+        add(unused, one.point, curve.control);
+  return unused;
+}
+
 /// Axes, labels and ranges around observed points and some curves against the same control.
-std::string frame(const Observed& observed, const std::vector<const PredictiveCurve*>& curves) {
+std::string frame(const std::vector<const Observed*>& points, const std::vector<const PredictiveCurve*>& curves) {
   Extent across, up;
-  for (std::size_t i = 0; i < observed.x.size(); ++i) {
-    across.include(observed.x[i]);
-    up.include(observed.value[i] - observed.error[i]);
-    up.include(observed.value[i] + observed.error[i]);
+  for (const Observed* observed : points) {
+    for (std::size_t i = 0; i < observed->x.size(); ++i) {
+      across.include(observed->x[i]);
+      up.include(observed->value[i] - observed->error[i]);
+      up.include(observed->value[i] + observed->error[i]);
+    }
   }
   for (const PredictiveCurve* curve : curves) {
     for (const double value : curve->x) across.include(value);
@@ -120,11 +135,11 @@ std::vector<PredictiveCurve> curves_to_draw(const CaseReport& result) {
 }
 
 Figure predictive_figure(const CaseReport& result, const PredictiveCurve& curve, const std::string& stem) {
-  const Observed observed = observed_beside(result, curve);
+  const Observed observed = observed_beside(result, curve), unused = unused_beside(result, curve);
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}};
   figure.data = plot::block("band", {curve.x, curve.mean, curve.q05, curve.q95}) +
                 plot::block("observed", {observed.x, observed.value, observed.error});
-  figure.script = frame(observed, {&curve}) +
+  figure.script = frame({&observed, &unused}, {&curve}) +
                   fmt::format(
                       "plot '{0}.dat' index 'band' using ($1*sx):($3*sy):($4*sy) with filledcurves "
                       "linecolor rgb '{1}' title 'model, 90 %', \\\n"
@@ -132,8 +147,16 @@ Figure predictive_figure(const CaseReport& result, const PredictiveCurve& curve,
                       "title 'model, mean', \\\n  ",
                       stem, plot::pale, plot::blue) +
                   observed_marks();
-  figure.alt = fmt::format("{} against {} in case {}: observed points with their errors and the model's 90 % band",
-                           curve.output, curve.control, result.name);
+  if (!unused.x.empty()) {
+    figure.data += plot::block("unused", {unused.x, unused.value, unused.error});
+    figure.script += fmt::format(
+        ", \\\n  '' index 'unused' using ($1*sx):($2*sy):($3*sy) with yerrorbars linecolor rgb '{}' linewidth 1.3 "
+        "pointtype 6 pointsize 0.8 title 'observed, not used'",
+        plot::ink);
+  }
+  figure.alt = fmt::format("{} against {} in case {}: observed points with their errors{} and the model's 90 % band",
+                           curve.output, curve.control, result.name,
+                           unused.x.empty() ? "" : ", those that the case has not used among them,");
   return figure;
 }
 
@@ -146,7 +169,7 @@ Figure equivalent_figure(const CaseReport& result, const TradedPair& traded, con
     if (curve.observation_set == like.observation_set && curve.output == like.output) curves.push_back(&curve);
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}};
   figure.data = plot::block("observed", {observed.x, observed.value, observed.error});
-  figure.script = frame(observed, curves) + "plot ";
+  figure.script = frame({&observed}, curves) + "plot ";
   for (std::size_t i = 0; i < curves.size(); ++i) {
     figure.data += plot::block(fmt::format("point{}", i + 1), {curves[i]->x, curves[i]->mean});
     figure.script += fmt::format(

@@ -1,4 +1,5 @@
 // One case of the page: verdict in words, its parameters, where runs support it, profiles; the order of its parts.
+#include <algorithm>
 #include <cmath>
 
 #include "uq/findings/study_units.hpp"
@@ -86,6 +87,8 @@ Markup support_part(const SupportReport& support) {
       .columns = {
           {"Input"}, {"Covered by runs", nowrap}, {"Posterior beyond", number}, {"Posterior in a gap", number}}};
   for (const InputSupport& input : support.inputs) {
+    // The surrogates of several outputs mostly have the same runs.
+    if (&*std::find(support.inputs.begin(), support.inputs.end(), input) != &input) continue;
     const std::string gap = input.gap > 0.0 ? " (" + between(input.gap_low, input.gap_high) + ")" : "";
     table.rows.push_back({input.name, between(input.runs_low, input.runs_high) + behind_number(input.unit),
                           percent(input.outside), percent(input.gap) + gap});

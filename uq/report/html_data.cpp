@@ -97,9 +97,10 @@ Markup predictive_part(const CaseReport& result, const std::string& id, const Co
     figures += figure(
         predictive_figure(result, curves[i], fmt::format("{}-predictive-{}", id, i + 1)),
         fmt::format(
-            "{} against {}{}. Points: observed, bars of one standard error. Line and band: the model's mean and "
+            "{} against {}{}. Points: observed, bars of one standard error{}. Line and band: the model's mean and "
             "90\u00a0% of its posterior, surrogate uncertainty included, measurement error {}.",
-            curves[i].output, curves[i].control, set.empty() ? "" : " (" + set + ")", made_of_points ? "too" : "not"),
+            curves[i].output, curves[i].control, set.empty() ? "" : " (" + set + ")",
+            result.predictions.empty() ? "" : "; open: not used by the case", made_of_points ? "too" : "not"),
         context);
   }
   return tag::h3("Model against observation") + figures + predictive_table(result, context);

@@ -139,3 +139,36 @@ TEST_CASE("ids of two inlined figures differ and references follow them") {
         "<svg role=\"img\" aria-label=\"a &amp; b\" viewBox=\"0 0 1 1\"><g id=\"f-a\"/><use xlink:href='#f-a'/>"
         "<path fill=\"url(#f-a)\"/></svg>");
 }
+
+TEST_CASE("data that the case has not used are drawn beside its curve, those of its output and control alone") {
+  CaseReport result;
+  const PredictiveCurve curve{.output = "torque",
+                              .unit = "N m",
+                              .control = "rpm",
+                              .control_unit = "rpm",
+                              .observation_set = "bench",
+                              .x = {10.0, 50.0},
+                              .mean = {1.0, 2.0},
+                              .q05 = {0.9, 1.9},
+                              .q95 = {1.1, 2.1}};
+  CHECK(predictive_figure(result, curve, "f").data.find("# unused") == std::string::npos);
+  const auto point = [](const std::string& output, std::map<std::string, double> controls, double value) {
+    return PredictedPoint{.point = {.controls = std::move(controls),
+                                    .output = output,
+                                    .unit = {},
+                                    .observed = value,
+                                    .standard_error = 0.5,
+                                    .observation_set = "other"}};
+  };
+  result.predictions.push_back(
+      {.name = "other",
+       .points = {point("torque", {{"rpm", 30.0}}, 7.25), point("axial_flow", {{"rpm", 30.0}}, 8.25),
+                  point("torque", {{"rpm", 30.0}, {"fill", 1.0}}, 9.25)}});
+  const Figure figure = predictive_figure(result, curve, "f");
+  const std::string unused = figure.data.substr(figure.data.find("# unused"));
+  CHECK(unused.find("30 7.25 0.5") != std::string::npos);
+  CHECK(figure.data.find("8.25") == std::string::npos);
+  CHECK(figure.data.find("9.25") == std::string::npos);
+  CHECK(figure.script.find("set yrange") != std::string::npos);
+  CHECK(figure.script.find("not used") != std::string::npos);
+}
