@@ -240,8 +240,15 @@ NextRun next_run(const data::Study& study, const Ground& ground, const Candidate
   return run;
 }
 
-/// Maximin among the candidates, given the runs.
-std::vector<NextRun> next_runs(const data::Study& study, const Ground& ground, const MatrixXd& draws, int count) {
+/// A point proposed for a run, which gives all outputs of its material.
+struct Proposed {
+  std::string material;
+  VectorXd point;
+};
+
+/// Maximin among the candidates, given the runs and what is proposed already; joins `proposed`.
+std::vector<NextRun> next_runs(const data::Study& study, const Ground& ground, const MatrixXd& draws, int count,
+                               std::vector<Proposed>& proposed) {
   std::vector<Candidate> candidates;
   for (Index d = 0; d < draws.rows(); ++d) {
     const MatrixXd points = points_at(ground, draws.row(d).transpose());
@@ -251,14 +258,21 @@ std::vector<NextRun> next_runs(const data::Study& study, const Ground& ground, c
   VectorXd nearest(static_cast<Index>(candidates.size()));
   for (Index i = 0; i < nearest.size(); ++i)
     nearest[i] = (runs.rowwise() - candidates[i].point.transpose()).rowwise().squaredNorm().minCoeff();
+  const auto keep_away_from = [&](const VectorXd& point) {
+    for (Index k = 0; k < nearest.size(); ++k)
+      nearest[k] = std::min(nearest[k], (candidates[k].point - point).squaredNorm());
+  };
+  const std::string& material = ground.group->emulator.material;
+  for (const Proposed& other : proposed)
+    if (other.material == material && other.point.size() == runs.cols()) keep_away_from(other.point);
   std::vector<NextRun> chosen;
   for (int i = 0; i < count && i < nearest.size(); ++i) {
     Index best = 0;
     if (!(nearest.maxCoeff(&best) > 1e-12)) break;
     const Candidate& candidate = candidates[best];
     chosen.push_back(next_run(study, ground, candidate));
-    for (Index k = 0; k < nearest.size(); ++k)
-      nearest[k] = std::min(nearest[k], (candidates[k].point - candidate.point).squaredNorm());
+    keep_away_from(candidate.point);
+    proposed.push_back({material, candidate.point});
   }
   return chosen;
 }
@@ -279,6 +293,7 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
   VectorXd distance = VectorXd::Zero(some.rows()), ratio = distance;
   std::vector<bool> unsupported(static_cast<std::size_t>(some.rows()), false), empty(unsupported),
       uncertain(unsupported), outside(unsupported), gap(unsupported);
+  std::vector<Proposed> proposed;
   for (const Ground& ground : grounds) {
     const std::size_t first = report.inputs.size();
     for (std::size_t k = 0; k < ground.lines.size(); ++k) {
@@ -308,7 +323,8 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
       }
     }
     const auto share = std::max<int>(1, t.next_runs / static_cast<int>(grounds.size()));
-    for (NextRun& run : next_runs(study, ground, thinned(draws, 60), share)) report.next_runs.push_back(std::move(run));
+    for (NextRun& run : next_runs(study, ground, thinned(draws, 60), share, proposed))
+      report.next_runs.push_back(std::move(run));
   }
   const auto share = [each](const std::vector<bool>& flags) {
     return each * static_cast<double>(std::count(flags.begin(), flags.end(), true));

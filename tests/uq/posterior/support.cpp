@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "data/random.hpp"
 #include "surrogate/design.hpp"
@@ -101,6 +103,20 @@ TEST_CASE("a posterior amid a space-filling design is supported, and so is one n
       CHECK(found.next_runs[0].point.size() == 3);
     }
   }
+}
+
+TEST_CASE("the runs proposed of a case of several outputs are as many, and no two alike", "[uq]") {
+  Scene scene = scene_of(surrogate::scrambled_sobol(30, 3, 5, 0));
+  for (const char* name : {"flow", "angle"}) {
+    scene.study.outputs.push_back({.name = name});
+    scene.model.groups.push_back(scene.model.groups.front());
+    scene.model.groups.back().emulator.output = scene.study.outputs.size() - 1;
+  }
+  const SupportReport found = support_of(scene, 0.4, 0.5);
+  std::set<std::map<std::string, double>> distinct;
+  for (const NextRun& run : found.next_runs) distinct.insert(run.point);
+  CHECK(found.next_runs.size() == 12);
+  CHECK(distinct.size() == 12);
 }
 
 TEST_CASE("a posterior beyond what the runs cover of an input is not, and the input and its end are named", "[uq]") {
