@@ -47,10 +47,10 @@ void leave_out_unsteady(const Workspace& workspace, bool cheaper, data::RunTable
     return unsteady;
   });
   for (const auto& [state, count] : left_out)
-    notes.push_back(of + fmt::format(
-                             "{} of {} runs are not of the steady flow ({}) and are left out: raise run.longest and "
-                             "train again, or set training.unsteady = \"use\"",
-                             count, all, state));
+    notes.push_back(of +
+                    fmt::format("{} of {} runs are not of the steady flow ({}) and are left out: raise run.longest and "
+                                "train again, or set training.unsteady = \"use\"",
+                                count, all, state));
   for (const std::string& note : data::drop_unreliable(table, workspace.surrogates->fit.nugget))
     notes.push_back(of + note);
 }

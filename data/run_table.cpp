@@ -57,11 +57,10 @@ std::vector<std::string> drop_unreliable(RunTable& table, bool scatter_estimated
       notes.push_back(fmt::format("{} of {} runs do not know {} or its error: they count for the other outputs",
                                   dropped, table.rows.size(), name));
     if (brief > 0)
-      notes.push_back(fmt::format("{} of {} runs are too short to know the error of {}: {}", brief, table.rows.size(),
-                                  name,
-                                  scatter_estimated
-                                      ? "it is at least what they state, and the surrogate estimates the rest"
-                                      : "they count for the other outputs"));
+      notes.push_back(
+          fmt::format("{} of {} runs are too short to know the error of {}: {}", brief, table.rows.size(), name,
+                      scatter_estimated ? "it is at least what they state, and the surrogate estimates the rest"
+                                        : "they count for the other outputs"));
   }
   return notes;
 }

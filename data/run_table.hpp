@@ -41,11 +41,11 @@ struct RunRow {
   std::string isa;                      ///< instruction set that made it
   std::string origin;                   ///< program and version, or file and line
   double cpu_seconds = 0.0;
-  std::string state = {};       ///< "steady", or why the means are not those of the steady flow; "" where nobody said
+  std::string state = {};  ///< "steady", or why the means are not those of the steady flow; "" where nobody said
   /// Outputs whose errors are not known, by name, separated by spaces; NAME:short where the run was only too short.
   std::string unreliable = {};
-  std::string place = {};       ///< "runs.csv:31": where the row stands, by which the user names it; not stored
-  LeftOut left_out = {};        ///< not stored
+  std::string place = {};  ///< "runs.csv:31": where the row stands, by which the user names it; not stored
+  LeftOut left_out = {};   ///< not stored
 };
 /// Whether the row says of itself that it is not of the steady flow.
 bool is_unsteady(const RunRow& row);

@@ -48,7 +48,7 @@ TEST_CASE("the study on pictures of a real powder can be run, and keeps two spee
   INFO(outcome.out << outcome.err);
   CHECK(outcome.status == 0);
   CHECK_THAT(outcome.out + outcome.err,
-             Contains("2 observation sets, 1 case") && Contains("no problems"));
+             Contains("2 observation sets, 2 cases, 11 training runs") && Contains("no problems"));
 }
 
 TEST_CASE("a model that cannot reproduce its data is refused, and the datum is named", "[slow]") {

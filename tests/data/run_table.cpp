@@ -307,7 +307,8 @@ TEST_CASE("an output of a run too short to know its error counts where the scatt
   table.outputs = {{"torque", {}}, {"torque_fluctuation", {}}};
   table.rows = {{.outputs = {1.0, 2.0}, .standard_errors = {0.1, 0.2}, .unreliable = "torque_fluctuation:short"}};
   data::RunTable without = table;
-  const std::vector<std::string> kept = data::drop_unreliable(table, true), gone = data::drop_unreliable(without, false);
+  const std::vector<std::string> kept = data::drop_unreliable(table, true),
+                                 gone = data::drop_unreliable(without, false);
   CHECK(table.rows[0].outputs[1] == 2.0);
   CHECK(table.rows[0].standard_errors[1] == 0.2);
   CHECK(std::isnan(without.rows[0].outputs[1]));
