@@ -251,26 +251,26 @@ void write_run(const std::string& path, const Case& c, const RunResult& result) 
     if (!result.series.mixing_index.empty()) each_channel_series(result.series, write);
     const data::Hdf5Group summary = file.create_group("summary");
     std::vector<std::string> names, units;
-    std::array<std::vector<double>, 8> columns;
+    constexpr std::array heads{"mean",    "standard_error", "sd",    "integrated_time", "effective_samples",
+                               "dropped", "reliable",       "drifts"};
+    std::array<std::vector<double>, heads.size()> columns;
     for (std::size_t k = 0; k < result.summary.mean.size(); ++k) {
       const data::SeriesMean& m = result.summary.mean[k];
       if (k >= outputs().size() - camera_outputs().size() && result.series.window_time.empty()) break;  // not seen
       names.push_back(outputs()[k].name);
       units.push_back(outputs()[k].unit);
-      const std::array<double, 8> row{m.mean,
-                                      m.standard_error,
-                                      m.sd,
-                                      m.integrated_time,
-                                      m.effective_samples,
-                                      static_cast<double>(m.dropped),
-                                      m.reliable ? 1.0 : 0.0,
-                                      m.drifts ? 1.0 : 0.0};
+      const std::array<double, heads.size()> row{m.mean,
+                                                 m.standard_error,
+                                                 m.sd,
+                                                 m.integrated_time,
+                                                 m.effective_samples,
+                                                 static_cast<double>(m.dropped),
+                                                 m.reliable ? 1.0 : 0.0,
+                                                 m.drifts ? 1.0 : 0.0};
       for (std::size_t j = 0; j < row.size(); ++j) columns[j].push_back(row[j]);
     }
     summary.write_texts("names", names);
     summary.write_texts("units", units);
-    constexpr std::array<const char*, 8> heads{
-        "mean", "standard_error", "sd", "integrated_time", "effective_samples", "dropped", "reliable", "drifts"};
     for (std::size_t j = 0; j < heads.size(); ++j) summary.write(heads[j], columns[j]);
     write_state(summary, result.summary);
     write_diagnostics(file.create_group("diagnostics"), result.diagnostics);
