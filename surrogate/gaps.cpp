@@ -105,17 +105,33 @@ double gap_covariance(const InputGap& gap, double a, double b) {
   return a == b ? std::max(value, 0.0) : value;
 }
 
+namespace {
+
+double departure_covariance(const InputGap& gap, const RowVectorXd& a, const RowVectorXd& b) {
+  return gap.sd * gap.sd * gap_covariance(gap, a[gap.input], b[gap.input]) * likeness(gap, a, b);
+}
+
+}  // namespace
+
 void add_gaps(const std::vector<InputGap>& gaps, const MatrixXd& points, MatrixXd& covariance) {
   for (const InputGap& gap : gaps)
     for (Index j = 0; j < points.rows(); ++j) {
       if (!inside(gap, points(j, gap.input))) continue;
       for (Index i = 0; i <= j; ++i) {
         if (!inside(gap, points(i, gap.input))) continue;
-        const double value = gap.sd * gap.sd * gap_covariance(gap, points(i, gap.input), points(j, gap.input)) *
-                             (i == j ? 1.0 : likeness(gap, points.row(i), points.row(j)));
+        const double value = departure_covariance(gap, points.row(i), points.row(j));
         covariance(i, j) += value;
         if (i != j) covariance(j, i) += value;
       }
+    }
+}
+
+void add_gaps_between(const std::vector<InputGap>& gaps, const MatrixXd& a, const MatrixXd& b, MatrixXd& covariance) {
+  for (const InputGap& gap : gaps)
+    for (Index j = 0; j < b.rows(); ++j) {
+      if (!inside(gap, b(j, gap.input))) continue;
+      for (Index i = 0; i < a.rows(); ++i)
+        if (inside(gap, a(i, gap.input))) covariance(i, j) += departure_covariance(gap, a.row(i), b.row(j));
     }
 }
 

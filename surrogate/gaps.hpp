@@ -42,6 +42,10 @@ double gap_covariance(const InputGap& gap, double a, double b);
 /// Adds the departures' covariance (of z) of points in the unit cube, active inputs only, one per row.
 void add_gaps(const std::vector<InputGap>& gaps, const Eigen::MatrixXd& points, Eigen::MatrixXd& covariance);
 
+/// The same between points and others: rows of `covariance` for the rows of a, columns for those of b.
+void add_gaps_between(const std::vector<InputGap>& gaps, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
+                      Eigen::MatrixXd& covariance);
+
 /// Their variance at one point.
 double gap_variance(const std::vector<InputGap>& gaps, const Eigen::RowVectorXd& point);
 

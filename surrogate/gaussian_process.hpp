@@ -96,7 +96,7 @@ struct OutsideRange {
 
 /// Buffers of a prediction, to be reused by one thread.
 struct PredictionWorkspace {
-  Eigen::MatrixXd points, squares, correlations, slopes, whitened, solved, basis, projected, moved;
+  Eigen::MatrixXd points, squares, correlations, slopes, whitened, solved, basis, projected, moved, with_fixed;
   Eigen::VectorXd log_mean;
   Eigen::MatrixXd log_covariance;
   Prediction part;

@@ -27,10 +27,7 @@ void correlate_with_runs(const Conditioned& part, const GaussianProcess& process
   if (part.factorised.whitened_basis.cols() > 0) workspace.basis = basis_matrix(process.mean(), workspace.points);
   for (Index k = 0; k < d; ++k) workspace.points.col(k) /= part.parameters.length_scales[k];
 
-  workspace.squares.setZero(n, m);
-  for (Index j = 0; j < m; ++j)
-    for (Index k = 0; k < d; ++k)
-      workspace.squares.col(j).array() += (part.scaled_points.col(k).array() - workspace.points(j, k)).square();
+  square_distances(part.scaled_points, workspace.points, workspace.squares);
   workspace.correlations.resize(n, m);
   if (with_slopes) workspace.slopes.resize(n, m);
   correlate(process.kernel(), {{workspace.squares.data(), n * m},
@@ -71,12 +68,8 @@ void latent(const Conditioned& part, const GaussianProcess& process, PointRange 
   latent_mean(part, range, workspace, result.mean);
 
   result.covariance.resize(m, m);
-  workspace.squares.resize(m, m);  // free by now
-  workspace.squares.setZero();
-  for (Index k = 0; k < workspace.points.cols(); ++k)
-    for (Index j = 0; j < m; ++j)
-      workspace.squares.col(j).array() +=
-          (workspace.points.col(k).segment(first, m).array() - workspace.points(first + j, k)).square();
+  const auto points = workspace.points.middleRows(first, m);
+  square_distances(points, points, workspace.squares);  // free by now
   correlate(process.kernel(), {{workspace.squares.data(), m * m}, {result.covariance.data(), m * m}, {nullptr, 0}});
   result.covariance *= part.parameters.signal_variance;
   result.covariance.noalias() -=
@@ -87,8 +80,7 @@ void latent(const Conditioned& part, const GaussianProcess& process, PointRange 
   // Rounding may leave a variance at a training point of an exact code just below zero.
   result.covariance.diagonal() = result.covariance.diagonal().cwiseMax(0.0);
   if (!process.data().gaps.empty())
-    add_gaps(process.data().gaps, workspace.points.middleRows(first, m) * part.parameters.length_scales.asDiagonal(),
-             result.covariance);
+    add_gaps(process.data().gaps, points * part.parameters.length_scales.asDiagonal(), result.covariance);
 }
 
 void rescale(const Standardised& data, Prediction& result) {
@@ -99,11 +91,25 @@ void rescale(const Standardised& data, Prediction& result) {
   result.covariance = (result.mean * result.mean.transpose()).cwiseProduct(result.covariance.array().expm1().matrix());
 }
 
+void square_distances(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b,
+                      Eigen::MatrixXd& squares) {
+  squares.setZero(a.rows(), b.rows());
+  for (Index j = 0; j < b.rows(); ++j)
+    for (Index k = 0; k < a.cols(); ++k) squares.col(j).array() += (a.col(k).array() - b(j, k)).square();
+}
+
 void check_points(const Eigen::MatrixXd& points, int dimension) {
   if (points.cols() != dimension)
     throw std::invalid_argument(
         fmt::format("points have {} coordinates, the process has {} inputs", points.cols(), dimension));
 }
+
+void check_groups(const Eigen::MatrixXd& points, int group) {
+  if (group < 1 || points.rows() % group != 0)
+    throw std::invalid_argument(fmt::format("{} points are not whole groups of {}", points.rows(), group));
+}
+
+Index groups_at_once(int group) { return std::max<Index>(1, 192 / group); }
 
 Prediction GaussianProcess::predict(const Eigen::MatrixXd& points) const {
   PredictionWorkspace workspace;
@@ -150,10 +156,8 @@ Eigen::VectorXd GaussianProcess::predict_mean(const Eigen::MatrixXd& points) con
 
 std::vector<Prediction> GaussianProcess::predict_batch(const Eigen::MatrixXd& points, int group) const {
   check_points(points, dimension());
-  if (group < 1 || points.rows() % group != 0)
-    throw std::invalid_argument(fmt::format("{} points are not whole groups of {}", points.rows(), group));
-  const Index groups = points.rows() / group;
-  const Index block = std::max<Index>(1, 192 / group);  // groups per matrix product
+  check_groups(points, group);
+  const Index groups = points.rows() / group, block = groups_at_once(group);
   std::vector<Prediction> results(static_cast<std::size_t>(groups));
   PredictionWorkspace workspace;
   for (Index first = 0; first < groups; first += block) {

@@ -1,5 +1,5 @@
 #pragma once
-// The steps of a prediction, shared by prediction.cpp and prediction_gradient.cpp only.
+// The steps of a prediction, for the sources of this folder only.
 #include "surrogate/gaussian_process.hpp"
 
 namespace surrogate {
@@ -20,6 +20,14 @@ void latent(const Conditioned& part, const GaussianProcess& process, PointRange 
 
 /// From z to y.
 void rescale(const Standardised& data, Prediction& result);
+
+/// r^2 (kernel.hpp) between the rows of a and b, which are divided by the length scales: rows of a by rows of b.
+void square_distances(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b,
+                      Eigen::MatrixXd& squares);
+
+/// Points of a batch are whole groups; so many groups share a matrix product.
+void check_groups(const Eigen::MatrixXd& points, int group);
+Eigen::Index groups_at_once(int group);
 
 void check_points(const Eigen::MatrixXd& points, int dimension);
 

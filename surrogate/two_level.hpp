@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "surrogate/fit.hpp"
+#include "surrogate/joint_prediction.hpp"
 #include "surrogate/validation.hpp"
 
 namespace surrogate {
@@ -70,13 +71,19 @@ class TwoLevelProcess {
 
  private:
   struct Part {
-    Eigen::MatrixXd factor, whitened_basis, basis_factor;
+    Eigen::MatrixXd inverse_factor, whitened_basis, basis_factor;
     Eigen::VectorXd weights, coefficients;
   };
-  Prediction at_high(const Prediction& low_at_all, const Eigen::MatrixXd& points) const;
+  struct Workspace;
+  /// Of the groups of one block, from results[0] on.
+  void predict_block(const Eigen::MatrixXd& points, int group, Workspace& workspace,
+                     std::span<Prediction> results) const;
 
   GaussianProcess low_;
   HighLevel high_;
+  FixedPoints low_at_high_;      // the low level beside the high runs
+  Eigen::VectorXd lengths_;      // of the discrepancy at q = 1, unit cube
+  Eigen::MatrixXd scaled_runs_;  // the high runs' points by these lengths
   std::vector<Part> parts_;
 };
 

@@ -44,10 +44,8 @@ double spread(const VectorXd& values) { return std::sqrt((values.array() - value
 
 /// The high level's posterior as a function of u.
 struct Problem {
-  const GaussianProcess& low;
-  const TrainingSet& high;
+  HighProblem high;
   const TwoLevelOptions& options;
-  Prediction low_at_high;
   double ratio = 1.0, size = 1.0;
   HyperPosterior posterior;
 
@@ -58,7 +56,7 @@ struct Problem {
             .nugget_sd = options.nugget ? size * std::exp(u[3]) : 0.0};
   }
   double log_density(const VectorXd& u) const {
-    const HighFit found = fit_high(low, low_at_high, high, options.discrepancy_mean, at(u));
+    const HighFit found = fit_high(high, at(u));
     if (!found.ok) return -std::numeric_limits<double>::infinity();
     const VectorXd deviation = u - posterior.prior_mean;
     return found.log_likelihood - 0.5 * deviation.dot(posterior.prior_precision.cwiseProduct(deviation));
@@ -110,7 +108,7 @@ StartOutcome maximise(const Problem& problem, const VectorXd& start) {
   } catch (const std::exception&) {
     outcome.converged = false;
   }
-  outcome.points = static_cast<int>(problem.high.y.size());
+  outcome.points = static_cast<int>(problem.high.runs.y.size());
   return outcome;
 }
 
@@ -121,8 +119,8 @@ TwoLevelProcess fit_two_level(const GaussianProcess& low, const TrainingSet& hig
   TrainingSet high = high_runs;
   if (high.noise_variance.size() == 0) high.noise_variance = VectorXd::Zero(high.y.size());
   check(low, high);
-  Problem problem{low, high, options, low.predict(high.x)};
-  const double high_spread = spread(high.y), low_spread = spread(problem.low_at_high.mean);
+  Problem problem{high_problem(low, high, options.discrepancy_mean), options};
+  const double high_spread = spread(high.y), low_spread = spread(problem.high.low_at_high.mean);
   problem.size = high_spread > 0.0 ? high_spread : std::max(high.y.cwiseAbs().maxCoeff(), 1e-300);
   problem.ratio = low_spread > 0.0 && high_spread > 0.0 ? high_spread / low_spread : 1.0;
 

@@ -6,9 +6,25 @@ namespace surrogate {
 
 constexpr double longest_discrepancy = 1.0;  ///< unit cube: its length scales at q = 1 are the low level's up to this
 
-/// Correlations of the discrepancy between the rows of `a` and `b`.
-Eigen::MatrixXd discrepancy_correlations(const GaussianProcess& low, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
-                                         double length_factor);
+/// Length scales of the discrepancy at q = 1, unit cube.
+Eigen::VectorXd discrepancy_lengths(const GaussianProcess& low);
+
+/// Points (one per row) in units of these lengths.
+Eigen::MatrixXd scaled_points(const Eigen::MatrixXd& points, const Eigen::VectorXd& lengths);
+
+/// Correlations of the discrepancy, c(r / q), from the square distances r^2 at q = 1.
+void discrepancy_correlations(Kernel kernel, const Eigen::MatrixXd& squares, double length_factor,
+                              Eigen::MatrixXd& scratch, Eigen::MatrixXd& value);
+
+/// The high runs and what the low level says of them.
+struct HighProblem {
+  Kernel kernel;
+  const TrainingSet& runs;
+  MeanBasis mean;
+  Prediction low_at_high;
+  Eigen::MatrixXd squares;  ///< square distances of the runs at q = 1
+};
+HighProblem high_problem(const GaussianProcess& low, const TrainingSet& high, MeanBasis mean);
 
 /// Generalised least squares of the high runs for one setting.
 struct HighFit {
@@ -19,7 +35,6 @@ struct HighFit {
   Eigen::VectorXd weights, coefficients;
 };
 
-HighFit fit_high(const GaussianProcess& low, const Prediction& low_at_high, const TrainingSet& high, MeanBasis mean,
-                 const TwoLevelParameters& parameters);
+HighFit fit_high(const HighProblem& problem, const TwoLevelParameters& parameters);
 
 }  // namespace surrogate
