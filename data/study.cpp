@@ -248,6 +248,7 @@ Study read_study(const StudyFile& file) {
   read_rig_scale(root, study);
   ObservationFiles files = read_observation_sets(root, study);
   check_meters(root, study);
+  read_correlations(root, study);
   read_cases(root, study);
   read_unused_data(root, study);
   replace_missing_errors(study, files);

@@ -129,6 +129,14 @@ struct CommonError {
   bool apart = false;  ///< from its meter's: integrated out by itself, where nothing else is read by the meter
 };
 
+/// The errors of two outputs' readings at one setting go together, as those of two numbers read off one picture.
+struct ErrorCorrelation {
+  std::size_t output = 0, other_output = 0;  ///< indices into Study::outputs
+  std::string other_set = {};                ///< that holds the other output's readings
+  double value = 0.0;                        ///< correlation coefficient
+  std::string place = {};
+};
+
 struct ObservationSet {
   std::string name;
   std::string material;
@@ -138,6 +146,7 @@ struct ObservationSet {
   std::vector<ObservationCopy> copies = {};
   std::string meter = {};  ///< sets that name the same one have its common errors together; empty: each its own
   std::vector<CommonError> common_errors;
+  std::vector<ErrorCorrelation> correlations = {};
   std::vector<SettingError> setting_errors;
   bool of_machine = false;          ///< measured on the whole machine, of which the runs simulate a slice
   bool assumed = false;             ///< stands for a measurement before any is made (uq/plan/unmeasured.hpp)

@@ -335,6 +335,18 @@ const std::vector<StudyKey>& study_keys() {
        "name of the meter; the common error of measurements that name the same one is one error, sampled with the "
        "parameters; else each measurement has its own",
        "\"torque-cell-1\""},
+      {"observe.correlation", "tables", "", "", "",
+       "outputs whose own errors go together at one setting, as those of numbers read off one picture",
+       "[[observe.correlation]]"},
+      {"observe.correlation.between", "list of texts", "", "", "",
+       "the two outputs; the file has the first, and the second unless `with` names its set",
+       "[\"angle_lower\", \"torque\"]"},
+      {"observe.correlation.with", "text", "", "", "the same",
+       "observation set that has the second output; its readings at the same settings belong to this set's, in their "
+       "order",
+       "\"torque\""},
+      {"observe.correlation.value", "number", "", "above -1 to 1, 1 excluded", "",
+       "correlation coefficient of the two errors", "0.5"},
       {"observe.uncertainty", "table", "", "", "",
        "how well the settings of this measurement are known, by control, instead of the control's own",
        "{ rpm = \"1 %\" }"},

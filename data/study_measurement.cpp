@@ -249,6 +249,58 @@ void read_measurement(const Section& root, const Section& section, const Study& 
   }
 }
 
+namespace {
+
+/// Index of an output by name that the set has readings of; none is a problem of the section.
+std::optional<std::size_t> read_measured_output(const Section& section, const Study& study, const ObservationSet& set,
+                                                const std::string& name) {
+  for (const std::size_t output : set.outputs)
+    if (study.outputs[output].name == name) return output;
+  std::vector<std::string> names;
+  for (const std::size_t output : set.outputs) names.push_back(study.outputs[output].name);
+  section.problem("between", fmt::format("'{}' is no output that '{}' measures", name, set.name),
+                  fmt::format("it measures {}", fmt::join(names, ", ")));
+  return {};
+}
+
+}  // namespace
+
+void read_correlations(const Section& root, Study& study) {
+  std::size_t index = 0;
+  for (const Section& observe : root.array("observe")) {
+    ObservationSet& set = study.observations[index++];
+    for (const Section& section : observe.array("correlation")) {
+      ErrorCorrelation found{.other_set = section.text("with", ""), .place = section.place()};
+      found.value = section.number("value", {.low = -1.0, .high = 1.0, .open_low = true, .open_high = true});
+      const std::vector<std::string> between = section.texts("between", true);
+      if (between.size() != 2) {
+        if (section.has("between"))
+          section.problem("between", fmt::format("names {} outputs, but a correlation is of two", between.size()),
+                          "name two outputs");
+        continue;
+      }
+      const std::optional<std::size_t> other =
+          found.other_set.empty() ? index - 1 : study.observation_index(found.other_set);
+      if (!other) {
+        section.problem("with", fmt::format("there is no observation set '{}'", found.other_set),
+                        "name an [[observe]], or leave with out where one file has both outputs");
+        continue;
+      }
+      const auto first = read_measured_output(section, study, set, between[0]);
+      const auto second = read_measured_output(section, study, study.observations[*other], between[1]);
+      if (!first || !second) continue;
+      if (*other == index - 1 && *first == *second) {
+        section.problem("between", fmt::format("names {} twice", between[0]), "name two outputs");
+        continue;
+      }
+      found.output = *first;
+      found.other_output = *second;
+      found.other_set = study.observations[*other].name;
+      set.correlations.push_back(std::move(found));
+    }
+  }
+}
+
 std::map<std::string, double> read_settings(const Section& section, const Study& study) {
   std::map<std::string, double> settings;
   for (const Control& control : study.controls)

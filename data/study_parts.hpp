@@ -38,6 +38,8 @@ Spread read_spread(const Section& section, std::string_view key, const Unit& uni
 std::optional<SettingError> read_uncertainty(const Section& section, std::string_view key, const Control& control,
                                              const Unit* section_unit);
 void read_measurement(const Section& root, const Section& section, const Study& study, ObservationSet& set);
+/// [[observe.correlation]] of every set, once all sets are there.
+void read_correlations(const Section& root, Study& study);
 /// Values of controls that an observation file has no column of: settings = { fill = 2400 }.
 std::map<std::string, double> read_settings(const Section& section, const Study& study);
 /// offset, gain, noise and discrepancy of a case.

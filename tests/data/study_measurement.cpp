@@ -159,6 +159,26 @@ TEST_CASE("sets that name one meter state one common error") {
   says(problem(two(error + "meter = \"a b\"\n", error)), "'a b' cannot be part of an unknown's name");
 }
 
+TEST_CASE("errors of two outputs that go together are named with their outputs and sets") {
+  const std::string both = "speed,torque,torque_se,flow,flow_se\n50,8.1,0.2,3,0.1\n300,9.3,0.3,4,0.1\n";
+  const auto with = [](const std::string& lines) {
+    return head + observe + "[[observe.correlation]]\n" + lines + powder;
+  };
+  const std::string between = "between = [\"torque\", \"flow\"]\n";
+  const data::ErrorCorrelation found =
+      study_with(with(between + "value = -0.4\n"), both).observations.at(0).correlations.at(0);
+  CHECK(found.output == 0);
+  CHECK(found.other_output == 1);
+  CHECK(found.other_set == "bench");
+  CHECK(found.value == -0.4);
+  says(problem(with(between + "value = 1\n"), both), "observe.bench.correlation");
+  says(problem(with(between), both), "value: is missing");
+  says(problem(with(between + "value = 0.4\n")), "'flow' is no output that 'bench' measures");
+  says(problem(with("between = [\"torque\"]\nvalue = 0.4\n")), "names 1 outputs, but a correlation is of two");
+  says(problem(with("between = [\"torque\", \"torque\"]\nvalue = 0.4\n")), "names torque twice");
+  says(problem(with(between + "with = \"other\"\nvalue = 0.4\n"), both), "there is no observation set 'other'");
+}
+
 TEST_CASE("a control that the file has no column of is set for the whole set") {
   const data::Study study =
       study_with(head + observe + "settings = { speed = \"60 rpm\" }\n" + powder, "torque,torque_se\n8,1\n9,1\n");

@@ -170,6 +170,12 @@ ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, 
       group.variance[r] = std::max(sd * sd, 1e-300) / candidate.readings;
       found.planned[planned->second.candidate].push_back(row);
     }
+  // A planned reading is one of its own: nothing says that its error goes with another's.
+  const auto is_measured = [&](Index at) {
+    return std::binary_search(found.measured.begin(), found.measured.end(), at);
+  };
+  std::erase_if(model.linked_errors,
+                [&](const LinkedErrors& pair) { return !is_measured(pair.first) || !is_measured(pair.second); });
   return found;
 }
 

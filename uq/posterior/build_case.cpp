@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "data/error.hpp"
 #include "uq/posterior/build_measurement.hpp"
@@ -53,6 +54,8 @@ class Builder {
       for (auto& part : group.measurement.discrepancies)
         part.magnitude = std::sqrt(group.observed.segment(part.first, part.count).array().square().mean());
     }
+    link_errors(model);
+    stop_on_problems();
     pool_rows(model);
     refuse_too_many_settings(study_, model);
     return model;
@@ -255,6 +258,50 @@ class Builder {
                           parameter.unit.from_si(parameter.low), parameter.unit.from_si(parameter.high)),
               "fix it inside the range, or train in a wider one");
     return {.unknown = -1, .scaled = scaled};
+  }
+
+  /// Rows whose own errors go together, as the observation sets say.
+  void link_errors(CaseModel& model) {
+    std::map<std::tuple<std::size_t, std::size_t, std::size_t>, Eigen::Index> row_of;  // by set, point and output
+    const std::vector<RowOrigin> from = origins(model);
+    for (std::size_t row = 0; row < from.size(); ++row)
+      row_of[{from[row].set, from[row].point, from[row].output}] = static_cast<Eigen::Index>(row);
+    std::string place;
+    for (const std::size_t set : used_sets_)
+      for (const data::ErrorCorrelation& stated : study_.observations[set].correlations) {
+        const std::size_t other = study_.observation_index(stated.other_set).value();
+        for (const auto& [point, other_point] : same_settings(set, other)) {
+          const auto first = row_of.find({set, point, stated.output});
+          const auto second = row_of.find({other, other_point, stated.other_output});
+          if (first == row_of.end() || second == row_of.end()) continue;
+          model.linked_errors.push_back({first->second, second->second, stated.value});
+          place = stated.place;
+        }
+      }
+    if (model.linked_errors.empty()) return;
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(model.row_count());
+    Eigen::MatrixXd correlation = Eigen::MatrixXd::Zero(ones.size(), ones.size());
+    add_own_errors(ones, model.linked_errors, correlation);
+    if (correlation.llt().info() != Eigen::Success)
+      problem(
+          place,
+          fmt::format("the correlations of case '{}' contradict each other: no errors can have them all", wanted_.name),
+          "state them as estimated from the same readings, or smaller ones");
+  }
+
+  /// Points of two sets at equal settings, the first of one with the first of the other, and so on.
+  std::vector<std::pair<std::size_t, std::size_t>> same_settings(std::size_t set, std::size_t other) const {
+    std::map<std::vector<double>, std::vector<std::size_t>> points;
+    for (std::size_t i = 0; i < study_.observations[other].points.size(); ++i)
+      points[study_.observations[other].points[i].controls].push_back(i);
+    std::map<std::vector<double>, std::size_t> seen;
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (std::size_t i = 0; i < study_.observations[set].points.size(); ++i) {
+      const std::vector<double>& controls = study_.observations[set].points[i].controls;
+      const std::size_t rank = seen[controls]++;
+      if (rank < points[controls].size()) pairs.emplace_back(i, points[controls][rank]);
+    }
+    return pairs;
   }
 
   void check_unknowns_used(const CaseModel& model) {

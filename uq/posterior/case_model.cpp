@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "uq/posterior/distinct.hpp"
 
@@ -55,6 +56,27 @@ CaseModel with_data(const CaseModel& model, const Eigen::VectorXd& observed, con
   assert(first == observed.size());
   if (model.distinct) pool_rows(other);
   return other;
+}
+
+void add_own_errors(const Eigen::VectorXd& variance, const std::vector<LinkedErrors>& linked,
+                    Eigen::MatrixXd& covariance) {
+  covariance.diagonal() += variance;
+  for (const LinkedErrors& pair : linked) {
+    const double value = pair.correlation * std::sqrt(variance[pair.first] * variance[pair.second]);
+    covariance(pair.first, pair.second) += value;
+    covariance(pair.second, pair.first) += value;
+  }
+}
+
+std::vector<LinkedErrors> linked_among(const std::vector<LinkedErrors>& linked, const std::vector<Eigen::Index>& rows) {
+  std::vector<LinkedErrors> found;
+  for (const LinkedErrors& pair : linked) {
+    const auto first = std::find(rows.begin(), rows.end(), pair.first);
+    const auto second = std::find(rows.begin(), rows.end(), pair.second);
+    if (first != rows.end() && second != rows.end())
+      found.push_back({first - rows.begin(), second - rows.begin(), pair.correlation});
+  }
+  return found;
 }
 
 Eigen::VectorXd observed(const CaseModel& model) {

@@ -56,10 +56,24 @@ struct RowGroup {
   std::vector<Repeats> repeats = {};            ///< in the model of distinct rows: what was averaged
 };
 
+/// Two measured numbers whose own errors are correlated (observe.correlation).
+struct LinkedErrors {
+  Eigen::Index first = 0, second = 0;  ///< rows of all groups, stacked
+  double correlation = 0.0;
+};
+
+/// Adds the covariance of own errors with these variances.
+void add_own_errors(const Eigen::VectorXd& variance, const std::vector<LinkedErrors>& linked,
+                    Eigen::MatrixXd& covariance);
+
+/// The pairs of which both are among `rows`, as places in it.
+std::vector<LinkedErrors> linked_among(const std::vector<LinkedErrors>& linked, const std::vector<Eigen::Index>& rows);
+
 struct CaseModel {
   std::string name;
   std::vector<Unknown> unknowns;  ///< the case's own parameters first, in its order, then its nuisances
   std::vector<RowGroup> groups;
+  std::vector<LinkedErrors> linked_errors = {};
   std::vector<std::string> linked;                 ///< names of the other cases that are sampled with it
   std::vector<std::string> observed_sets;          ///< of the case itself
   std::shared_ptr<const CaseModel> distinct = {};  ///< rows of equal settings as one; none where all differ

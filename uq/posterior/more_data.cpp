@@ -92,13 +92,14 @@ CaseModel with_more_data(const data::Study& wider, const std::vector<Emulator>& 
 
 ReadingLaw reading_law(const StackedPrediction& all, const Eigen::VectorXd& observed,
                        const std::vector<Eigen::Index>& wanted, const std::vector<Eigen::Index>& measured) {
-  ReadingLaw law{all.mean(wanted), all.covariance(wanted, wanted), all.noise(wanted)};
+  ReadingLaw law{all.mean(wanted), all.covariance(wanted, wanted), all.noise(wanted),
+                 linked_among(all.linked_errors, wanted)};
   if (measured.empty()) return law;
-  Eigen::MatrixXd among = all.covariance(measured, measured);
-  among.diagonal() += all.noise(measured);
+  const Eigen::MatrixXd total = all.total();
+  const Eigen::MatrixXd among = total(measured, measured);
   const Eigen::LLT<Eigen::MatrixXd> factor(among);
   if (factor.info() != Eigen::Success) return law;
-  const Eigen::MatrixXd between = all.covariance(measured, wanted);
+  const Eigen::MatrixXd between = total(measured, wanted);
   law.mean += between.transpose() * factor.solve(observed(measured) - all.mean(measured));
   law.shared -= between.transpose() * factor.solve(between);
   return law;

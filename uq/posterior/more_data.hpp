@@ -17,9 +17,17 @@ CaseModel with_more_data(const data::Study& wider, const std::vector<Emulator>& 
 /// the meter's common errors and the discrepancy with them. With S the covariance of all rows given u, noise included,
 ///   wanted | u, y  ~  N( mean_w + S_wm S_mm^-1 (y - mean_m),  S_ww - S_wm S_mm^-1 S_mw ).
 struct ReadingLaw {
-  Eigen::VectorXd mean;    ///< SI
-  Eigen::MatrixXd shared;  ///< SI^2, what a reading made again shares
-  Eigen::VectorXd noise;   ///< SI^2, variances of each reading's own
+  Eigen::VectorXd mean;                          ///< SI
+  Eigen::MatrixXd shared;                        ///< SI^2, what a reading made again shares
+  Eigen::VectorXd noise;                         ///< SI^2, variances of each reading's own
+  std::vector<LinkedErrors> linked_errors = {};  ///< among the rows wanted
+
+  /// Of readings made once.
+  Eigen::MatrixXd total() const {
+    Eigen::MatrixXd sum = shared;
+    add_own_errors(noise, linked_errors, sum);
+    return sum;
+  }
 };
 
 struct StackedPrediction;

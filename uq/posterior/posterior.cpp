@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "uq/infer/factor.hpp"
@@ -58,25 +59,37 @@ Scatter scatter_of(const CaseModel& model, const Repeats& repeats, const Eigen::
           .slope = (chi - repeats.extra) / k * unknown.slope(u[repeats.noise])};
 }
 
-/// Adds the gradient of one group's log density to `sum`.
-void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u, Evaluation& sum) {
-  if (!group.uniform || !group.emulator.predict_with_gradient) {
-    // No derivative along a common shift: central differences.
-    const auto density = [&](const Eigen::VectorXd& at) {
-      return log_row_density(model, group, group.emulator.predict(rows_at(group, at)), at);
-    };
-    sum.value += density(u);
-    constexpr double step = 1e-5;
-    for (Eigen::Index s = 0; s < u.size(); ++s) {
-      const bool nuisance = model.unknowns[s].nuisance != Acts::none;
-      if (!nuisance && !(group.unknown.array() == static_cast<int>(s)).any()) continue;
-      Eigen::VectorXd up = u, down = u;
-      up[s] += step;
-      down[s] -= step;
-      sum.gradient[s] += (density(up) - density(down)) / (2.0 * step);
-    }
-    return;
+/// The law of a group's numbers and its slopes along the unknowns that move it.
+struct GroupSlopes {
+  GroupLaw law;
+  LawGradient slopes;
+};
+
+/// By central differences, for an emulator without a derivative along a common shift.
+GroupSlopes differenced(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u) {
+  constexpr double step = 1e-5;
+  const auto total_at = [&](const Eigen::VectorXd& at) {
+    GroupLaw law = group_law(model, group, at);
+    law.covariance.diagonal() += law.noise;
+    return law;
+  };
+  GroupSlopes found{.law = group_law(model, group, u), .slopes = {}};
+  for (Eigen::Index s = 0; s < u.size(); ++s) {
+    const bool nuisance = model.unknowns[s].nuisance != Acts::none;
+    if (!nuisance && !(group.unknown.array() == static_cast<int>(s)).any()) continue;
+    Eigen::VectorXd up = u, down = u;
+    up[s] += step;
+    down[s] -= step;
+    const GroupLaw above = total_at(up), below = total_at(down);
+    found.slopes.along.push_back(static_cast<int>(s));
+    found.slopes.mean.emplace_back((above.mean - below.mean) / (2.0 * step));
+    found.slopes.covariance.emplace_back((above.covariance - below.covariance) / (2.0 * step));
   }
+  return found;
+}
+
+GroupSlopes slopes_of(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u) {
+  if (!group.uniform || !group.emulator.predict_with_gradient) return differenced(model, group, u);
   std::vector<int> coordinates, unknowns;
   for (std::size_t s = 0; s < group.coordinate.size(); ++s)
     if (group.coordinate[s]) {
@@ -84,26 +97,84 @@ void add_gradient(const CaseModel& model, const RowGroup& group, const Eigen::Ve
       unknowns.push_back(static_cast<int>(s));
     }
   const surrogate::PredictionGradient found = group.emulator.predict_with_gradient(rows_at(group, u), coordinates);
-  const GroupLaw law = law_of(group.measurement, model.unknowns, group.variance, found.value, u);
-  Eigen::MatrixXd covariance = law.covariance;
-  covariance.diagonal() += law.noise;
+  return {law_of(group.measurement, model.unknowns, group.variance, found.value, u),
+          law_gradient(group.measurement, model.unknowns, group.variance, found, {unknowns, u})};
+}
+
+/// log N(residual; 0, covariance), and its gradient along the unknowns that move mean and covariance.
+void add_normal(const Eigen::VectorXd& residual, const Eigen::MatrixXd& covariance, const LawGradient& slopes,
+                Evaluation& sum) {
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   if (factor.info() != Eigen::Success) {
     sum.value = nowhere;
     return;
   }
-  const Eigen::Index rows = group.observed.size();
-  const Eigen::VectorXd residual = group.observed - law.mean;
+  const Eigen::Index rows = residual.size();
   const Eigen::VectorXd a = factor.solve(residual);
   const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(rows, rows));
   sum.value += -0.5 * residual.dot(a) - factor.matrixLLT().diagonal().array().log().sum() -
                0.5 * static_cast<double>(rows) * std::log(2.0 * std::numbers::pi);
-  const LawGradient slopes = law_gradient(group.measurement, model.unknowns, group.variance, found, {unknowns, u});
   for (std::size_t k = 0; k < slopes.along.size(); ++k) {
     const Eigen::MatrixXd& slope = slopes.covariance[k];
     sum.gradient[slopes.along[k]] +=
         a.dot(slopes.mean[k]) + 0.5 * (a.dot(slope * a) - inverse.cwiseProduct(slope).sum());
   }
+}
+
+/// Adds one group's log density and its gradient.
+void add_group(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u, Evaluation& sum) {
+  const GroupSlopes found = slopes_of(model, group, u);
+  Eigen::MatrixXd covariance = found.law.covariance;
+  covariance.diagonal() += found.law.noise;
+  add_normal(group.observed - found.law.mean, covariance, found.slopes, sum);
+}
+
+/// Adds the log density of all numbers together, whose own errors are linked, and its gradient.
+void add_linked(const CaseModel& model, const Eigen::VectorXd& u, Evaluation& sum) {
+  const Eigen::Index rows = model.row_count();
+  std::vector<GroupLaw> laws;
+  LawGradient all;
+  std::vector<Eigen::VectorXd> noise;  // slopes of the own errors' variances
+  std::vector<std::ptrdiff_t> place(model.unknowns.size(), -1);
+  Eigen::Index first = 0;
+  for (const RowGroup& group : model.groups) {
+    GroupSlopes found = slopes_of(model, group, u);
+    const Eigen::Index count = group.observed.size();
+    for (std::size_t k = 0; k < found.slopes.along.size(); ++k) {
+      const int s = found.slopes.along[k];
+      if (place[s] < 0) {
+        place[s] = std::ssize(all.along);
+        all.along.push_back(s);
+        all.mean.emplace_back(Eigen::VectorXd::Zero(rows));
+        all.covariance.emplace_back(Eigen::MatrixXd::Zero(rows, rows));
+        noise.emplace_back(Eigen::VectorXd::Zero(rows));
+      }
+      all.mean[place[s]].segment(first, count) += found.slopes.mean[k];
+      all.covariance[place[s]].block(first, first, count, count) += found.slopes.covariance[k];
+    }
+    for (const ReadSet& set : group.measurement.sets)
+      if (set.noise >= 0) {
+        // The variance goes with the square of the unknown's value.
+        const Unknown& unknown = model.unknowns[set.noise];
+        const double slope = 2.0 * unknown.slope(u[set.noise]) / unknown.value(u[set.noise]);
+        noise[place[set.noise]].segment(first + set.first, set.count) =
+            slope * found.law.noise.segment(set.first, set.count);
+      }
+    laws.push_back(std::move(found.law));
+    first += count;
+  }
+  const StackedPrediction stacked = stack(model, laws, u);
+  for (std::size_t k = 0; k < all.along.size(); ++k)
+    for (const LinkedErrors& pair : model.linked_errors) {
+      const Eigen::Index i = pair.first, j = pair.second;
+      const double root = std::sqrt(stacked.noise[i] * stacked.noise[j]);
+      if (!(root > 0.0)) continue;
+      const double slope =
+          0.5 * pair.correlation * (noise[k][i] * stacked.noise[j] + stacked.noise[i] * noise[k][j]) / root;
+      all.covariance[k](i, j) += slope;
+      all.covariance[k](j, i) += slope;
+    }
+  add_normal(observed(model) - stacked.mean, stacked.total(), all, sum);
 }
 
 /// The laws of all groups' distinct rows at u.
@@ -112,6 +183,12 @@ std::vector<GroupLaw> laws_at(const CaseModel& full, const Eigen::VectorXd& u) {
   std::vector<GroupLaw> laws;
   for (const RowGroup& group : model.groups) laws.push_back(group_law(model, group, u));
   return laws;
+}
+
+/// Of all numbers together, where own errors are linked.
+double log_linked_density(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u) {
+  const StackedPrediction stacked = stack(model, laws, u);
+  return log_normal(observed(model) - stacked.mean, stacked.total());
 }
 
 }  // namespace
@@ -137,8 +214,10 @@ GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::V
 
 StackedPrediction stack(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u) {
   const Eigen::Index rows = model.row_count();
-  StackedPrediction stacked{
-      .mean = Eigen::VectorXd(rows), .covariance = Eigen::MatrixXd::Zero(rows, rows), .noise = Eigen::VectorXd(rows)};
+  StackedPrediction stacked{.mean = Eigen::VectorXd(rows),
+                            .covariance = Eigen::MatrixXd::Zero(rows, rows),
+                            .noise = Eigen::VectorXd(rows),
+                            .linked_errors = model.linked_errors};
   Eigen::Index first = 0;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
     const RowGroup& group = model.groups[g];
@@ -225,6 +304,7 @@ Evaluation log_prior_gradient(const CaseModel& model, const Eigen::VectorXd& u) 
 
 double log_likelihood(const CaseModel& full, const Eigen::VectorXd& u) {
   const CaseModel& model = distinct_rows(full);
+  if (!model.linked_errors.empty()) return log_linked_density(model, laws_at(model, u), u);
   double sum = 0.0;
   for (const auto& group : model.groups)
     sum += log_group_density(model, group, group.emulator.predict(rows_at(group, u)), u);
@@ -234,8 +314,12 @@ double log_likelihood(const CaseModel& full, const Eigen::VectorXd& u) {
 Evaluation log_likelihood_gradient(const CaseModel& full, const Eigen::VectorXd& u) {
   const CaseModel& model = distinct_rows(full);
   Evaluation sum{.value = 0.0, .gradient = Eigen::VectorXd::Zero(u.size())};
+  if (!model.linked_errors.empty()) {
+    add_linked(model, u, sum);
+    return sum;
+  }
   for (const auto& group : model.groups) {
-    add_gradient(model, group, u, sum);
+    add_group(model, group, u, sum);
     for (const Repeats& repeats : group.repeats) {
       const Scatter scatter = scatter_of(model, repeats, u);
       sum.value += scatter.log_density;
@@ -248,6 +332,12 @@ Evaluation log_likelihood_gradient(const CaseModel& full, const Eigen::VectorXd&
 Eigen::VectorXd log_likelihoods(const CaseModel& full, const Eigen::MatrixXd& points) {
   const CaseModel& model = distinct_rows(full);
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(points.rows());
+  if (!model.linked_errors.empty()) {
+    for_each_law(model, points, [&](Eigen::Index point, const std::vector<GroupLaw>& laws) {
+      sums[point] = log_linked_density(model, laws, points.row(point).transpose());
+    });
+    return sums;
+  }
   for (const auto& group : model.groups)
     for (Eigen::Index from = 0; from < points.rows(); from += points_at_once) {
       const Eigen::MatrixXd part = points.middleRows(from, std::min(points_at_once, points.rows() - from));
@@ -270,9 +360,7 @@ Eigen::MatrixXd pointwise_log_likelihoods(const CaseModel& model, const Eigen::M
 }
 
 double chi_squared(const StackedPrediction& prediction, const Eigen::VectorXd& y, double noise_factor) {
-  Eigen::MatrixXd covariance = prediction.covariance;
-  covariance.diagonal() += noise_factor * prediction.noise;
-  const Factor root = factor(covariance, "the data under the model");
+  const Factor root = factor(prediction.total(noise_factor), "the data under the model");
   Eigen::VectorXd residual = y - prediction.mean;
   root.llt.matrixL().solveInPlace(residual);
   return residual.squaredNorm();

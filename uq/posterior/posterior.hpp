@@ -2,6 +2,8 @@
 // The posterior of a case over its scaled unknowns u:
 //   log p(u | y) = sum_s log prior_s(u_s) + log L(u) + const
 //   log L(u) = sum_g log N(y_g | mean_g(u), S_g(u))          (full constants, so that evidences can be compared)
+// or, where errors of different outputs are correlated (observe.correlation), log N(y | mean(u), S(u)) of all rows, with
+// r_ij n_i n_j between numbers i and j whose own errors have the sds n.
 // g runs over the emulators, y_g are all the case's numbers that emulator g predicts; mean_g and S_g, the covariance of
 // all that is uncertain of them, noise included, are those of uq/posterior/measurement.hpp, which adds a meter's errors to the
 // emulator's mean and full covariance across those rows: a surrogate's error at one speed is nearly the same error at
@@ -20,13 +22,15 @@ namespace uq {
 
 /// Stacked prediction of all rows at u.
 struct StackedPrediction {
-  Eigen::VectorXd mean;        ///< SI
-  Eigen::MatrixXd covariance;  ///< SI^2, without the noise; zero between emulators
-  Eigen::VectorXd noise;       ///< SI^2, variance of each number's own error
+  Eigen::VectorXd mean;                          ///< SI
+  Eigen::MatrixXd covariance;                    ///< SI^2, without the noise; zero between emulators
+  Eigen::VectorXd noise;                         ///< SI^2, variance of each number's own error
+  std::vector<LinkedErrors> linked_errors = {};  ///< between the numbers' own errors
 
-  Eigen::MatrixXd total() const {
+  /// With the numbers' own errors, their variances times `noise_factor`.
+  Eigen::MatrixXd total(double noise_factor = 1.0) const {
     Eigen::MatrixXd sum = covariance;
-    sum.diagonal() += noise;
+    add_own_errors(noise_factor * noise, linked_errors, sum);
     return sum;
   }
 };

@@ -127,11 +127,25 @@ FitCheck check_fit(const CaseModel& model, const Eigen::MatrixXd& draws, const E
   return check;
 }
 
+namespace {
+
+/// Own errors with these variances from standard normal numbers.
+Eigen::VectorXd own_errors(const Eigen::VectorXd& variance, const std::vector<LinkedErrors>& linked,
+                           const Eigen::VectorXd& normal) {
+  if (linked.empty()) return variance.cwiseSqrt().cwiseProduct(normal);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(variance.size(), variance.size());
+  add_own_errors(variance, linked, covariance);
+  return semidefinite_root(covariance, "replicate errors") * normal;
+}
+
+}  // namespace
+
 Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws, std::uint64_t seed) {
   Eigen::MatrixXd made(draws.rows(), model.row_count());
   data::RandomStream random(seed, data::Purpose::posterior_predictive);
   for_each_law(model, draws, [&](Eigen::Index i, const std::vector<GroupLaw>& laws) {
     const Eigen::VectorXd u = draws.row(i).transpose();
+    Eigen::VectorXd own(made.cols()), variance(made.cols());
     Eigen::Index first = 0;
     for (std::size_t g = 0; g < laws.size(); ++g) {
       // What rows of equal settings share, then each row's own noise.
@@ -142,10 +156,13 @@ Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws,
       const Eigen::VectorXd noise = noise_of(group.measurement, model.unknowns, group.variance, u);
       for (Eigen::Index row = 0; row < noise.size(); ++row) {
         const Eigen::Index at = model.distinct ? group.distinct_row[row] : row;
-        made(i, first + row) = shared[at] + std::sqrt(noise[row]) * random.normal();
+        made(i, first + row) = shared[at];
+        own[first + row] = random.normal();
       }
+      variance.segment(first, noise.size()) = noise;
       first += noise.size();
     }
+    made.row(i) += own_errors(variance, model.linked_errors, own).transpose();
   });
   return made;
 }

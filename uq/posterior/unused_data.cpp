@@ -35,11 +35,11 @@ Mixture mixture_of(const CaseModel& model, const MatrixXd& draws, const std::vec
               MatrixXd::Zero(rows, rows)};
   const VectorXd y = observed(model);
   for (Index i = 0; i < draws.rows(); ++i) {
-    ReadingLaw law = reading_law(predict(model, draws.row(i).transpose()), y, wanted, measured);
-    law.shared.diagonal() += law.noise;
+    const ReadingLaw law = reading_law(predict(model, draws.row(i).transpose()), y, wanted, measured);
+    const MatrixXd total = law.total();
     all.mean.row(i) = law.mean.transpose();
-    all.sd.row(i) = law.shared.diagonal().cwiseMax(0.0).cwiseSqrt().transpose();
-    all.covariance += law.shared / static_cast<double>(draws.rows());
+    all.sd.row(i) = total.diagonal().cwiseMax(0.0).cwiseSqrt().transpose();
+    all.covariance += total / static_cast<double>(draws.rows());
   }
   all.centre = all.mean.colwise().mean().transpose();
   const MatrixXd apart = all.mean.rowwise() - all.centre.transpose();

@@ -35,6 +35,7 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
                     .mean = prediction.mean,
                     .covariance = prediction.covariance,
                     .noise = prediction.noise,
+                    .linked_errors = prediction.linked_errors,
                     .slopes = {},
                     .precision = {}};
     const Eigen::MatrixXd slopes = sensitivity(model, u);
@@ -65,7 +66,7 @@ PathWords::PathWords(const std::vector<PathPoint>& points, const std::vector<Eig
     Local local{
         .u = point.u, .doubt = point.doubt, .mean = point.mean(rows), .covariance = {}, .slopes = {}, .bent = {}};
     Eigen::MatrixXd covariance = point.covariance(rows, rows);
-    covariance.diagonal() += point.noise(rows).cwiseProduct(noise_share);
+    add_own_errors(point.noise(rows).cwiseProduct(noise_share), linked_among(point.linked_errors, rows), covariance);
     local.covariance.compute(covariance);
     if (local.covariance.info() != Eigen::Success) continue;
     local.log_determinant = 2.0 * local.covariance.matrixLLT().diagonal().array().log().sum();

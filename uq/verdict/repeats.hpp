@@ -40,9 +40,10 @@ struct PathPoint {
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;  ///< without the noise
   Eigen::VectorXd noise;       ///< variances
-  Eigen::MatrixXd slopes;      ///< rows x the unknowns that can move
-  Eigen::VectorXd precision;   ///< of their priors
-  bool at_end = false;         ///< another of the case's parameters stands at the end of its range
+  std::vector<LinkedErrors> linked_errors;
+  Eigen::MatrixXd slopes;     ///< rows x the unknowns that can move
+  Eigen::VectorXd precision;  ///< of their priors
+  bool at_end = false;        ///< another of the case's parameters stands at the end of its range
 };
 
 /// Points that may matter: near enough to the best or beside such a point, and the two ends; all of them when `all`.

@@ -1,0 +1,121 @@
+#!/usr/bin/python3
+"""Runs the paper's sweeps and gathers them in sweeps.csv: sweep.py DEMCAL [--out FOLDER] [--jobs 1] [--gather]
+
+Every point is one `demcal simulate data/paper`, kept below FOLDER, so that a second start goes on where one was cut
+off; --gather only writes the table of what is there. Sweeps:
+  friction     0.2 to 0.6 without cohesion, six speeds                                      (the paper's figure 3)
+  hamaker      0 to 9e-18 J at a friction of 0.40, six speeds                               (its figure 4)
+  choices      what the paper does not state, each alone changed, at the slowest and the fastest speed: minimum
+               separation, the load that limits friction, attraction of the walls, stiffness, equal spheres
+A point that ends with an error (spheres pressed into each other, say) has a row with its message and no numbers.
+"""
+import argparse
+import concurrent.futures
+import csv
+import json
+import pathlib
+import subprocess
+
+HERE = pathlib.Path(__file__).resolve().parent
+SPEEDS = [50, 100, 150, 200, 250, 300]
+CHOICES = {
+    "minimum separation 0.4 nm": {"contact.minimum_separation": "0.4 nm"},
+    "minimum separation 1 nm": {"contact.minimum_separation": "1 nm"},
+    "minimum separation 4 nm": {"contact.minimum_separation": "4 nm"},
+    "cap on the net force": {"contact.cap": "net"},
+    "cap of Thornton": {"contact.cap": "thornton"},
+    "walls do not attract": {"contact.wall_hamaker": "0 J"},
+    "walls attract as planes": {"contact.wall_attraction": "derjaguin"},
+    "stiffness 1200 N/m": {"contact.stiffness": "1200 N/m"},
+}
+OUTPUTS = ["torque", "coordination", "axial_flow", "kinetic_energy"]
+
+
+def points():
+    """(sweep, choice, material, friction, hamaker in J, rpm, settings), the cheapest questions first."""
+    for hamaker in ("2e-18", "9e-18", "1e-18", "4e-18", "6e-18"):
+        for rpm in SPEEDS:
+            yield "hamaker", "", "spread", 0.4, hamaker, rpm, {}
+    for friction in (0.4, 0.2, 0.6, 0.3, 0.5):
+        for rpm in SPEEDS:
+            yield "friction", "", "spread", friction, "0", rpm, {}
+    for choice, settings in CHOICES.items():
+        for hamaker in ("2e-18", "9e-18"):
+            for rpm in (50, 300):
+                yield "choices", choice, "spread", 0.4, hamaker, rpm, settings
+    for hamaker in ("0", "2e-18", "9e-18"):
+        for rpm in (50, 300):
+            yield "choices", "equal spheres", "equal", 0.4, hamaker, rpm, {}
+
+
+def folder_of(arguments, point):
+    sweep, choice, material, friction, hamaker, rpm, _ = point
+    return arguments.out / f"{sweep}-{choice.replace(' ', '-')}-{material}-{friction}-{hamaker}-{rpm}"
+
+
+def simulate(arguments, point):
+    _, _, material, friction, hamaker, rpm, settings = point
+    folder = folder_of(arguments, point)
+    kept = folder / "result.json"
+    if kept.exists():
+        return
+    command = [arguments.demcal, "simulate", str(HERE), "--material", material, "--at", f"friction={friction},hamaker={hamaker},rpm={rpm}",
+               "--json", "--quiet", "--out", str(folder)]
+    for key, value in settings.items():
+        command += ["--set", f"{key}={value}"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    folder.mkdir(parents=True, exist_ok=True)
+    if done.returncode in (0, 2):  # 2: done, with a warning
+        kept.write_text(done.stdout)
+    elif done.returncode < 0 or done.returncode in (130, 143):
+        raise SystemExit(f"ended by a signal: {' '.join(command)}")
+    else:
+        kept.write_text(json.dumps({"error": done.stderr.strip().splitlines()[0]}))
+    print(f"{folder.name}: {done.returncode}", flush=True)
+
+
+def row_of(arguments, point):
+    sweep, choice, material, friction, hamaker, rpm, _ = point
+    kept = folder_of(arguments, point) / "result.json"
+    if not kept.exists():
+        return None
+    found = json.loads(kept.read_text())
+    row = {"sweep": sweep, "choice": choice, "material": material, "friction": friction, "hamaker": hamaker, "rpm": rpm}
+    if "error" in found:
+        return row | {"state": "failed: " + found["error"]}
+    for name in OUTPUTS:
+        output = found["outputs"][name]
+        row[name] = f"{output['mean']:.6g}"
+        row[name + "_se"] = f"{output['standard_error']:.3g}"
+    return row | {"bond_number": f"{found['bond_number']:.4g}", "turns": f"{found['measured']['turns']:.4g}", "seed": found["seed"],
+                  "settings": found["settings"], "state": found["state"]}
+
+
+def gather(arguments):
+    rows = [row for row in (row_of(arguments, point) for point in points()) if row]
+    columns = ["sweep", "choice", "material", "friction", "hamaker", "rpm"] + [c for o in OUTPUTS for c in (o, o + "_se")] + [
+        "bond_number", "turns", "seed", "settings", "state"]
+    with open(HERE / "sweeps.csv", "w", newline="") as file:
+        file.write("# made by sweep.py; torque in uN m, coordination in contacts a sphere, axial_flow in g/s, kinetic_energy in uJ;\n"
+                   "# NAME_se: standard error; bond_number: largest pull-off force over weight; turns: of the measured window\n")
+        writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    print(f"{len(rows)} of {sum(1 for _ in points())} points")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("demcal")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("paper-runs"))
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--gather", action="store_true")
+    arguments = parser.parse_args()
+    if not arguments.gather:
+        with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+            list(pool.map(lambda point: simulate(arguments, point), points()))
+    gather(arguments)
+
+
+if __name__ == "__main__":
+    main()
