@@ -99,7 +99,7 @@ InputError cannot_start(const std::string& program, const ProgramEnd& end, const
   const bool is_there = end.start_error != ENOENT && end.start_error != EACCES;
   return {
       ExitStatus::missing_program,
-      Problem{program, fmt::format("cannot be started ({})", std::strerror(end.start_error)),
+      Problem{program, fmt::format("cannot be run ({})", std::strerror(end.start_error)),
               is_there ? "try again when the system has room for another program (memory, processes, files)" : remedy}};
 }
 

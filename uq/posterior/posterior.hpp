@@ -2,13 +2,15 @@
 // The posterior of a case over its scaled unknowns u:
 //   log p(u | y) = sum_s log prior_s(u_s) + log L(u) + const
 //   log L(u) = sum_g log N(y_g | mean_g(u), S_g(u))          (full constants, so that evidences can be compared)
-// or, where errors of different outputs are correlated (observe.correlation), log N(y | mean(u), S(u)) of all rows, with
-// r_ij n_i n_j between numbers i and j whose own errors have the sds n.
 // g runs over the emulators, y_g are all the case's numbers that emulator g predicts; mean_g and S_g, the covariance of
 // all that is uncertain of them, noise included, are those of uq/posterior/measurement.hpp, which adds a meter's errors to the
 // emulator's mean and full covariance across those rows: a surrogate's error at one speed is nearly the same error at
 // the next, and counting it as independent would make posteriors too narrow. Gradient, with r = y - mean, a = S^-1 r:
 //   dlogL/dk = a' dmean/dk + 1/2 (a' dS/dk a - tr(S^-1 dS/dk))
+// Where errors of different outputs are correlated (observe.correlation), the likelihood is log N(y | mean(u), S(u)) of
+// all numbers together, with r_ij n_i n_j between numbers i and j whose own errors have the sds n. Deviation: the bands of
+// a discrepancy, the part of a Bayes factor that is the surrogate's (held.hpp) and the choice of further runs take the
+// outputs one by one.
 #include <Eigen/Dense>
 #include <functional>
 #include <memory>
