@@ -76,7 +76,7 @@ Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, 
   const bool simulated = !workspace.cases.empty();
   std::map<std::string, int> rows_of;
   for (const data::RunRow& row : table.rows) {
-    if (!data::is_unsteady(row) || cannot_do_better(workspace, row))
+    if (!data::is_unsteady(row) || workspace.unsteady == Unsteady::use || cannot_do_better(workspace, row))
       known.insert(simulated ? data::row_key(row) : data::row_key({.material = row.material, .inputs = row.inputs}));
     ++rows_of[row.material];
   }

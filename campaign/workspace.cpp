@@ -116,9 +116,11 @@ Workspace open_workspace(const StudyOptions& options) {
 
 void require_rig(const Workspace& workspace) {
   if (!workspace.cases.empty()) return;
-  throw data::InputError(data::ExitStatus::bad_study,
-                         {workspace.study.file, "has no [rig], so there is nothing to simulate",
-                          "add a [rig] section (demcal new shows one)"});
+  throw data::InputError(
+      data::ExitStatus::bad_study,
+      {data::shown_path(workspace.study.file), "has no [rig], so demcal cannot simulate it",
+       "add a [rig], as demcal new shows one; for runs of another code demcal design lists points, and "
+       "demcal train --until posterior the most useful ones"});
 }
 
 void make_out(const Workspace& workspace, const std::string& subfolder) {

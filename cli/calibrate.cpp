@@ -93,6 +93,10 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
   const double limit =
       options.time.empty() ? std::numeric_limits<double>::infinity() : parse_duration(options.time, "--for");
   Rounds rounds(workspace.study.cases.size());
+  bool doubtful = false;  // a run of a round ended with a warning, or not at all
+  const auto worst = [&doubtful](data::ExitStatus status) {
+    return doubtful && status == data::ExitStatus::done ? data::ExitStatus::warning : status;
+  };
   std::vector<ListedRun> listed = read_verify_runs(workspace);
   for (int round = 1;; ++round) {
     // Surrogates that have not seen the round's runs, and the runs.
@@ -110,7 +114,7 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
                         }());
     if (agreed || last) {
       add_rounds(rounds, result.report);
-      return report_on(common, workspace, unseen, result);
+      return worst(report_on(common, workspace, unseen, result));
     }
     if (listed.empty()) {
       listed = verification_runs(workspace, unseen, result, options.verify);
@@ -126,7 +130,7 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
       answer(common, fmt::format("{} to run with your code: {}. Add what they give to {}, and give this command again",
                                  data::counted(missing.size(), "point"), verify_runs_path(workspace),
                                  workspace.study.training.table));
-      return report_on(common, workspace, unseen, result);
+      return worst(report_on(common, workspace, unseen, result));
     }
     if (!missing.empty()) {
       say(common, fmt::format("verification, round {}: {} at points of the posterior", round,
@@ -140,7 +144,8 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
       }
       rows = rows_to_learn_from(common, workspace);
       for (const std::string& warning : batch.warnings) say(common, "warning: " + warning);
-      for (const std::string& failure : batch.failures) say(common, "failed: " + failure);
+      for (const std::string& failure : batch.failures) say(common, "warning: failed: " + failure);
+      doubtful = doubtful || !batch.warnings.empty() || !batch.failures.empty();
       if (batch.error) std::rethrow_exception(batch.error);
       if (interrupt.interrupted()) {
         say(common,
@@ -171,17 +176,23 @@ Action add_calibrate(CLI::App& program) {
                         "demcal calibrate data/developer", options->common);
   options->sampler = add_sampler_option(*command);
   add_isa_option(*command);
-  command
-      ->add_option("--verify", options->verify,
-                   "run the simulation at so many points of each case's posterior, at up to three measured settings, "
-                   "compare with the surrogate, learn from the runs, and repeat until they agree. For another code's "
-                   "runs it writes OUT/verify-runs.csv")
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--rounds", options->rounds, "of --verify, at most (default 3)")->check(CLI::Range(1, 100));
-  command->add_option("--for", options->time, "with --verify: no new round after this time, as 2h or 90min");
+  CLI::Option* verify =
+      command
+          ->add_option(
+              "--verify", options->verify,
+              "run the simulation at so many points of each case's posterior, at up to three measured settings, "
+              "compare with the surrogate, learn from the runs, and repeat until they agree. For another code's "
+              "runs it writes OUT/verify-runs.csv")
+          ->check(CLI::Range(1, 1000));
+  command->add_option("--rounds", options->rounds, "of --verify, at most (default 3)")
+      ->needs(verify)
+      ->check(CLI::Range(1, 100));
+  command->add_option("--for", options->time, "with --verify: no new round after this time, as 2h or 90min")
+      ->needs(verify);
   command->add_flag("--no-scan", options->no_scan,
                     "leave out what other measurement errors would identify, half of the time of the cases");
   command->add_option("--jobs", options->jobs, "with --verify: runs at the same time (default: one a core)")
+      ->needs(verify)
       ->check(CLI::Range(1, 4096));
   return [options] {
     if (options->verify > 0) return calibrate_and_verify(*options);

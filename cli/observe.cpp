@@ -90,9 +90,9 @@ data::ExitStatus observe(ObserveOptions options) {
     const std::string& symbol = options.columns.speed.unit;
     const auto unit = data::unit_meant(symbol.empty() ? "rpm" : symbol, "rpm");
     if (!unit)
-      throw data::InputError(
-          data::ExitStatus::usage,
-          data::Problem{"--rpm-unit", fmt::format("'{}' is not a unit of speed", symbol), "like rpm"});
+      throw data::InputError(data::ExitStatus::usage,
+                             data::Problem{"--rpm-unit", fmt::format("'{}' is not a unit of speed", symbol),
+                                           "give one, such as rpm, rad/s or 1/min"});
     options.columns.constant_speed = unit->to_si(*options.constant_speed);
   }
   data::TorqueLog log = data::read_torque_log(options.log, options.columns);
@@ -106,6 +106,7 @@ data::ExitStatus observe(ObserveOptions options) {
   for (std::string& words : of_plateaus) warnings.push_back(std::move(words));
   const data::Unit unit = options.unit.empty() ? log.torque_unit : data::parse_unit(options.unit);
   const Idle idle = find_idle(options, log, plateaus);
+  warnings.insert(warnings.end(), idle.warnings.begin(), idle.warnings.end());
 
   data::write_atomically(out.string(), observations_csv(options, log, plateaus, idle, unit), data::Changed::refuse);
   std::vector<double> off;

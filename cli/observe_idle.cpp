@@ -30,12 +30,11 @@ Idle find_idle(const ObserveOptions& options, const data::TorqueLog& log, const 
     data::TorqueLog empty = options.idle_log.empty() ? log : data::read_torque_log(options.idle_log, options.columns);
     if (!options.idle_log.empty())
       for (const std::string& note : empty.notes) say(options.common, fmt::format("note: {}: {}", empty.file, note));
-    if (!options.idle_log.empty())
-      for (const std::string& words : empty.warnings)
-        say(options.common, fmt::format("warning: {}: {}", empty.file, words));
-    if (!options.idle_log.empty())
+    if (!options.idle_log.empty()) {
+      for (const std::string& words : empty.warnings) idle.warnings.push_back(fmt::format("{}: {}", empty.file, words));
       for (const std::string& words : data::remove_no_values(empty))
-        say(options.common, fmt::format("warning: {}: {}", empty.file, words));
+        idle.warnings.push_back(fmt::format("{}: {}", empty.file, words));
+    }
     data::PlateauOptions part = options.plateaus;
     part.from = options.idle_window.from();
     part.to = options.idle_window.to();

@@ -11,7 +11,8 @@ namespace cli {
 /// What is taken off: nothing, one value for all rows, or the empty machine's torque at each speed.
 struct Idle {
   enum class Kind { none, value, log } kind = Kind::none;
-  std::vector<data::MeanTorque> at;  ///< SI, by plateau
+  std::vector<data::MeanTorque> at;        ///< SI, by plateau
+  std::vector<std::string> warnings = {};  ///< of the empty machine's own log
 };
 
 /// Throws InputError: 64 options that contradict each other; 65 a speed at which the empty machine was not run.

@@ -21,7 +21,7 @@ data::ExitStatus check_width(const Common& common, const Workspace& workspace,
                              const std::vector<uq::Emulator>& emulators, int replicates) {
   const std::filesystem::path out = workspace.out;
   nlohmann::json json = nlohmann::json::array();
-  bool calibrated = true;
+  std::vector<std::string> warnings;
   make_out(workspace, "figures");
   for (std::size_t i = 0; i < workspace.study.cases.size(); ++i) {
     const uq::CaseModel model = uq::build_case(workspace.study, emulators, i);
@@ -42,7 +42,9 @@ data::ExitStatus check_width(const Common& common, const Workspace& workspace,
     const std::string path = (out / ("sbc-" + model.name + ".json")).string();
     data::write_atomically(path, uq::to_json_text(found));
     uq::draw(uq::rank_figure(found, uq::slug("sbc-" + model.name)), (out / "figures").string(), {});
-    calibrated = calibrated && found.calibrated();
+    if (!found.calibrated())
+      warnings.push_back(
+          fmt::format("{}: ranks lie outside the 95 % bands: intervals do not cover what they state", model.name));
     for (const uq::RankCheck& one : found.unknowns) {
       answer(common, fmt::format("{}: {}: ranks {} the 95 % bands; {:.0f} % intervals cover {:.1f} +- {:.1f} %",
                                  model.name, one.name, one.inside ? "inside" : "OUTSIDE", 100.0 * found.interval,
@@ -53,8 +55,9 @@ data::ExitStatus check_width(const Common& common, const Workspace& workspace,
                               replicates));
     json.push_back({{"case", model.name}, {"calibrated", found.calibrated()}, {"file", path}});
   }
-  print_json(common, {{"cases", json}});
-  return calibrated ? data::ExitStatus::done : data::ExitStatus::warning;
+  for (const std::string& warning : warnings) say(common, "warning: " + warning);
+  print_json(common, {{"cases", json}, {"warnings", warnings}, {"status", warnings.empty() ? "ok" : "warning"}});
+  return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
 }
 
 /// A line for each unknown: mean, sd, central interval, and how well the draws know it.

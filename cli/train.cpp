@@ -45,22 +45,28 @@ Action add_train(CLI::App& program) {
       ->add_option("--runs", options->runs,
                    "so many runs: those still missing from the design, or, when there are none, further ones")
       ->check(CLI::Range(1, 100000));
-  command
-      ->add_option("--at-posterior", options->at_posterior,
-                   "instead: so many points of the last calibration's posteriors that lie far from the runs "
-                   "(OUT/next-runs.csv)")
-      ->check(CLI::Range(1, 100000))
-      ->type_name("N");
-  command
-      ->add_option_function<std::string>(
-          "--until", [options](const std::string&) { options->until_posterior = true; },
-          "posterior: runs in batches where they sharpen the posteriors of the study's cases, until little of their "
-          "width is the surrogate's; --runs and --for limit them. For another code's runs it writes OUT/next-runs.csv")
-      ->check(one_of({"posterior"}));
-  command->add_option("--for", options->time, "with --until: no new batch after this time, as 2h or 90min");
+  CLI::Option* at_posterior =
+      command
+          ->add_option("--at-posterior", options->at_posterior,
+                       "instead: so many points of the last calibration's posteriors that lie far from the runs "
+                       "(OUT/next-runs.csv)")
+          ->check(CLI::Range(1, 100000))
+          ->type_name("N");
+  CLI::Option* until = command
+                           ->add_option_function<std::string>(
+                               "--until", [options](const std::string&) { options->until_posterior = true; },
+                               "posterior: runs in batches where they sharpen the posteriors of the study's cases, "
+                               "until little of their "
+                               "width is the surrogate's; --runs and --for limit them. For another code's runs it "
+                               "writes OUT/next-runs.csv")
+                           ->check(one_of({"posterior"}));
+  at_posterior->excludes(until)->excludes("--runs");
+  command->add_option("--for", options->time, "with --until: no new batch after this time, as 2h or 90min")
+      ->needs(until);
   command
       ->add_option("--share", options->share,
                    "with --until: the part of the posterior variance that may stay the surrogate's (default 0.1)")
+      ->needs(until)
       ->check(CLI::Range(0.001, 1.0));
   add_slurm_options(*command, options->slurm);
   return [options, command] {
@@ -93,8 +99,8 @@ Action add_train(CLI::App& program) {
     else
       say(common, fmt::format("{} to make{}; the table has {}", data::counted(campaign.points.size(), "run"),
                               campaign.continues ? ", left by an unfinished campaign" : "", before));
-    if (const std::string warning = too_short(workspace, campaign.points); !warning.empty())
-      say(common, "warning: " + warning);
+    const std::string foretold = too_short(workspace, campaign.points);
+    if (!foretold.empty()) say(common, "warning: " + foretold);
 
     std::vector<PlannedRun> runs;
     for (const Point& point : campaign.points) runs.push_back({point, workspace.study.seed});
@@ -125,7 +131,7 @@ Action add_train(CLI::App& program) {
     if (ledger.error) std::rethrow_exception(ledger.error);
     const std::string table = (fs::path(workspace.out) / "training.csv").string();
     for (const std::string& warning : ledger.warnings) say(common, "warning: " + warning);
-    for (const std::string& failure : ledger.failures) say(common, "failed: " + failure);
+    for (const std::string& failure : ledger.failures) say(common, "warning: failed: " + failure);
     nlohmann::json json{{"finished", ledger.finished},      {"failed", ledger.failures},
                         {"warnings", ledger.warnings},      {"unsteady", ledger.unsteady},
                         {"rows", ledger.table.rows.size()}, {"table", table}};
@@ -137,17 +143,15 @@ Action add_train(CLI::App& program) {
                               campaign.points.size()));
       return data::ExitStatus::interrupted;
     }
-    answer(common, fmt::format("{} new runs, {} in all: {}", ledger.finished, ledger.table.rows.size(), table));
-    if (workspace.unsteady == Unsteady::use) {  // they were asked for
-      ledger.unsteady = 0;
-      ledger.warnings.clear();
-    }
+    answer(common, fmt::format("{}, {} in all: {}", data::counted(ledger.finished, "new run"), ledger.table.rows.size(),
+                               table));
+    if (workspace.unsteady == Unsteady::use) ledger.unsteady = 0;  // they were asked for
     if (ledger.unsteady > 0)
       say(common,
           fmt::format("warning: {} of the new runs are not of the steady flow and train nothing (training.unsteady "
                       "= \"use\" takes them)",
                       ledger.unsteady));
-    const bool clean = ledger.failures.empty() && ledger.warnings.empty() && ledger.unsteady == 0;
+    const bool clean = foretold.empty() && ledger.failures.empty() && ledger.warnings.empty() && ledger.unsteady == 0;
     return clean ? data::ExitStatus::done : data::ExitStatus::warning;
   };
 }

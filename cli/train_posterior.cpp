@@ -114,7 +114,7 @@ data::ExitStatus tell(const Common& common, const Workspace& workspace, const Po
   const CampaignTotals& totals = campaign.totals();
   const std::size_t rows = campaign.rows().table.rows.size();
   for (const std::string& warning : totals.warnings) say(common, "warning: " + warning);
-  for (const std::string& failure : totals.failures) say(common, "failed: " + failure);
+  for (const std::string& failure : totals.failures) say(common, "warning: failed: " + failure);
   const std::size_t unsteady = workspace.unsteady == Unsteady::use ? 0 : totals.unsteady;  // else they were asked for
   if (unsteady > 0)
     say(common, fmt::format("warning: {} of the new runs are not of the steady flow and train nothing", unsteady));
@@ -138,7 +138,8 @@ data::ExitStatus tell(const Common& common, const Workspace& workspace, const Po
   if (campaign.assessed() && !campaign.assessment().settled(options.share))
     answer(common, fmt::format("{}; to go on: {}", share_text(workspace.study, campaign.assessment()),
                                cost_text(campaign, options.jobs)));
-  return totals.failures.empty() && unsteady == 0 ? data::ExitStatus::done : data::ExitStatus::warning;
+  return totals.failures.empty() && totals.warnings.empty() && unsteady == 0 ? data::ExitStatus::done
+                                                                             : data::ExitStatus::warning;
 }
 
 }  // namespace

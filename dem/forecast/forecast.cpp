@@ -90,9 +90,15 @@ Forecast forecast(const PreparedCase& prepared, std::uint64_t seed) {
 
 std::vector<std::string> describe(const Forecast& f) {
   std::vector<std::string> lines = f.bodies;
-  if (f.fill && f.surface)
-    lines.push_back(fmt::format("fill: {:.2g} % of the room up to {}; the bed's surface will lie at {} mm ({})",
-                                100.0 * *f.fill, f.full_at, mm(*f.surface), f.up));
+  if (f.fill && f.surface) {
+    const std::string above = "above ";  // the axis, or the axes
+    const std::string surface = f.up.starts_with(above)
+                                    ? fmt::format("{} mm {} {}", mm(std::abs(*f.surface)),
+                                                  *f.surface < 0.0 ? "below" : "above", f.up.substr(above.size()))
+                                    : fmt::format("at {} mm ({})", mm(*f.surface), f.up);
+    lines.push_back(fmt::format("fill: {:.2g} % of the room up to {}; the bed's surface will lie {}", 100.0 * *f.fill,
+                                f.full_at, surface));
+  }
   for (const NamedGap& gap : f.gaps)
     lines.push_back(
         fmt::format("gap between {}: {} mm, {:.2g} of the largest sphere", gap.between, mm(gap.width), gap.in_spheres));

@@ -271,8 +271,8 @@ TEST_CASE("a full disk ends no command with a signal: the file is named, and not
     const auto outcome =
         folder.shell(fmt::format("(ulimit -f {}; exec \"$demcal\" calibrate study --quiet)", 2 * kilobytes));
     INFO(outcome.err);
-    CHECK((outcome.status == 73 || outcome.status == 0 || outcome.status == 2));
-    if (outcome.status == 73) CHECK_THAT(outcome.err, Contains("other-code-results/") && Contains("cannot be written"));
+    CHECK(outcome.status == 73);  // the report alone is larger
+    CHECK_THAT(outcome.err, Contains("other-code-results/") && Contains("cannot be written"));
     for (const std::string& name : names_in(folder.path)) CHECK_FALSE(name.ends_with(".tmp"));
   }
 }
@@ -449,9 +449,13 @@ TEST_CASE("names of a study lead to no file outside the results folder") {
                                       "--set",  "run.sample_interval=\"0.1 ms\"",
                                       "--out",  "a/b/c/o"});
   INFO(outcome.err);
+  int found = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder.path)) {
     const std::string inside = entry.path().lexically_relative(folder.path).string();
-    if (inside.find("EVIL") != std::string::npos) CHECK(inside.find("a/b/c/o/runs/") == 0);
+    if (inside.find("EVIL") == std::string::npos) continue;
+    CHECK(inside.find("a/b/c/o/runs/") == 0);
+    ++found;
   }
+  CHECK(found == 1);
   CHECK(fs::exists(folder.path / "a/b/c/o/runs"));
 }

@@ -285,6 +285,18 @@ void check_meters(const data::Study& study, std::vector<Finding>& findings) {
   }
 }
 
+/// Outputs of one file whose errors are taken as independent: too narrow a posterior where they were read off one
+/// picture.
+void check_readings(const data::Study& study, const data::ObservationSet& set, std::vector<Finding>& findings) {
+  if (set.outputs.size() < 2 || !set.correlations.empty()) return;
+  std::vector<std::string> names;
+  for (const std::size_t output : set.outputs) names.push_back(study.outputs[output].name);
+  Finding finding = data::about_rows(data::FindingKind::errors_apart, Severity::note, {set.place});
+  finding.what = fmt::format("the errors of {} at one setting are taken as independent", fmt::join(names, ", "));
+  finding.remedy = "if they were read off one picture, or by one instrument, state [[observe.correlation]]";
+  findings.push_back(std::move(finding));
+}
+
 }  // namespace
 
 std::string place_of(const data::ObservationSet& set, const data::Observation& point) {
@@ -300,6 +312,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
     check_magnitude(study, table, set, findings);
     check_control_unit(study, table, set, findings);
     check_errors(study, set, thresholds, findings);
+    check_readings(study, set, findings);
   }
   check_meters(study, findings);
   return findings;
