@@ -43,6 +43,7 @@ double take_ramps(const data::TorqueLog& log, std::vector<data::Plateau>& platea
 struct Observed {
   std::vector<data::Plateau> plateaus;
   double ramps = 0.0;                 ///< s in which the speed changed slowly
+  double refused = 0.0;               ///< s of holds of which no observation is made
   std::vector<std::string> warnings;  ///< of what was left out
 };
 
@@ -65,6 +66,15 @@ Observed find_observed(const ObserveOptions& options, const data::TorqueLog& log
         "hold each speed for a while, or cut out with --window what is constant");
   const std::size_t before = plateaus.size();
   std::erase_if(plateaus, [&](const data::Plateau& plateau) {
+    const double held = log.time[plateau.first + plateau.count - 1] - log.time[plateau.first];
+    if (const std::optional<double> end = data::dies_at(log, plateau)) {
+      warnings.push_back(fmt::format(
+          "{:.4g} {} at {:.4g} s: the torque falls to nearly nothing at {:.4g} s and stays there: the sensor or the "
+          "machine failed, and no observation is made of it; cut out what is right with --window",
+          log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, log.time[plateau.first], *end));
+      found.refused += held;
+      return true;
+    }
     const std::optional<double> limit = data::saturated_at(log, plateau);
     if (!limit) return false;
     warnings.push_back(
@@ -72,6 +82,7 @@ Observed find_observed(const ObserveOptions& options, const data::TorqueLog& log
                     "and no observation is made of it",
                     log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, log.time[plateau.first],
                     log.torque_unit.from_si(*limit), log.torque_unit.symbol));
+    found.refused += held;
     return true;
   });
   if (plateaus.empty() && before > 0) data::refuse_data(log.file, warnings.back(), "check the sensor's range");
@@ -102,7 +113,7 @@ data::ExitStatus observe(ObserveOptions options) {
   for (std::string& words : data::remove_no_values(log)) warnings.push_back(std::move(words));
   options.plateaus.from = options.window.from();
   options.plateaus.to = options.window.to();
-  auto [plateaus, ramps, of_plateaus] = find_observed(options, log);
+  auto [plateaus, ramps, refused, of_plateaus] = find_observed(options, log);
   for (std::string& words : of_plateaus) warnings.push_back(std::move(words));
   const data::Unit unit = options.unit.empty() ? log.torque_unit : data::parse_unit(options.unit);
   const Idle idle = find_idle(options, log, plateaus);
@@ -141,7 +152,7 @@ data::ExitStatus observe(ObserveOptions options) {
   std::vector<std::string> notes;
   for (const data::Plateau& plateau : plateaus)
     for (std::string& note : data::plateau_notes(log, plateau)) notes.push_back(std::move(note));
-  if (std::string note = left_over(log, plateaus, options.plateaus, ramps); !note.empty())
+  if (std::string note = left_over(log, plateaus, options.plateaus, ramps + refused); !note.empty())
     notes.push_back(std::move(note));
   for (const std::string& note : notes) say(options.common, "note: " + note);
   for (const std::string& warning : warnings) say(options.common, "warning: " + warning);

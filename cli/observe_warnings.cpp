@@ -38,7 +38,7 @@ std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vect
 }
 
 std::string left_over(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
-                      const data::PlateauOptions& options, double ramps) {
+                      const data::PlateauOptions& options, double known) {
   const double standstill = data::standstill_speed(log);
   double turning = 0.0, held = 0.0;
   for (std::size_t i = 1; i < log.time.size(); ++i)
@@ -47,11 +47,11 @@ std::string left_over(const data::TorqueLog& log, const std::vector<data::Platea
       turning += log.time[i] - log.time[i - 1];
   for (const data::Plateau& plateau : plateaus)
     held += log.time[plateau.first + plateau.count - 1] - log.time[plateau.first];
-  if (turning - ramps < 1.5 * held) return {};
+  if (turning - known < 1.5 * held) return {};
   return fmt::format(
       "{:.3g} s of {:.3g} s of turning belong to no speed that stays within {:g} %: where the tachometer scatters by "
       "more, widen that (--tolerance {:g})",
-      turning - held, turning, 100.0 * options.tolerance, 500.0 * options.tolerance);
+      turning - known - held, turning, 100.0 * options.tolerance, 500.0 * options.tolerance);
 }
 
 }  // namespace cli

@@ -12,9 +12,9 @@ namespace cli {
 std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
                                      const Idle& idle);
 
-/// Where less than two thirds of the turning belong to a plateau: by how much, and the remedy. `ramps`: seconds in which
-/// the speed changed slowly.
+/// Where less than two thirds of the turning belong to a plateau: by how much, and the remedy. `known`: seconds that
+/// something else was said of, such as slow ramps.
 std::string left_over(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
-                      const data::PlateauOptions& options, double ramps);
+                      const data::PlateauOptions& options, double known);
 
 }  // namespace cli

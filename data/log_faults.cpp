@@ -188,7 +188,7 @@ std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau,
   const std::vector<double> values = used_torques(log, plateau);
   if (values.size() < 10) return {};
   const std::map<double, std::size_t> levels = levels_of(values);
-  if (levels.size() == 1) return levels.begin()->first != 0.0 ? std::optional(levels.begin()->first) : std::nullopt;
+  if (levels.size() == 1) return levels.begin()->first;
   if (levels.size() <= coarse_levels) return {};
   for (const bool largest : {false, true}) {
     const Level level = extreme(levels, largest);
@@ -197,6 +197,17 @@ std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau,
       return level.value;
   }
   return {};
+}
+
+std::optional<double> dies_at(const TorqueLog& log, const Plateau& plateau) {
+  constexpr std::size_t fewest = 5;
+  constexpr double nearly_nothing = 0.1;
+  if (plateau.torque.dropped < fewest) return {};
+  const auto dropped = log.torque.begin() + static_cast<std::ptrdiff_t>(plateau.used_from);
+  const double before =
+      std::abs(median_of(std::vector<double>(dropped - static_cast<std::ptrdiff_t>(plateau.torque.dropped), dropped)));
+  if (std::abs(median_of(used_torques(log, plateau))) >= nearly_nothing * before) return {};
+  return log.time[plateau.used_from];
 }
 
 std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau) {

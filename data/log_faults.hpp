@@ -17,6 +17,10 @@ std::vector<std::string> remove_no_values(TorqueLog& log);
 /// them, the largest or smallest. A torque of two or three values is that of a coarse logger.
 std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau, double most = 0.5);
 
+/// The time [s] from which a plateau has nearly no torque, below a tenth of what it had, so that what looks like a
+/// start-up is the measurement and the rest a sensor or a machine that failed; none: it keeps its torque.
+std::optional<double> dies_at(const TorqueLog& log, const Plateau& plateau);
+
 /// What is doubtful in a plateau's torque, in words: clipped at a limit, coarse steps of the resolution, spikes, a
 /// drift.
 std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau);

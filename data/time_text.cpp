@@ -65,6 +65,7 @@ class Cursor {
 struct Date {
   double seconds = 0.0;
   bool either = false;
+  DateOrder order = DateOrder::unknown;
 };
 
 std::optional<Date> days(int year, int month, int day) {
@@ -181,7 +182,7 @@ std::optional<ClockTime> read_compact(std::string_view text) {
 }
 
 /// The date at the front; the cursor stands behind it, or where it was.
-std::optional<Date> read_date(Cursor& at) {
+std::optional<Date> read_date(Cursor& at, DateOrder order) {
   Cursor ahead = at;
   const auto first = ahead.whole(4);
   if (!first) return {};
@@ -197,14 +198,19 @@ std::optional<Date> read_date(Cursor& at) {
     date = days(*first, *second, *third);
   } else if (mark != '/') {
     date = days(*third < 100 ? 2000 + *third : *third, *second, *first);
-  } else if (*first > 12) {
-    date = days(*third < 100 ? 2000 + *third : *third, *second, *first);
-  } else if (*second > 12) {
-    date = days(*third < 100 ? 2000 + *third : *third, *first, *second);
-  } else if (*first == *second) {
-    date = days(*third < 100 ? 2000 + *third : *third, *first, *second);
   } else {
-    date = Date{0.0, true};
+    const int year = *third < 100 ? 2000 + *third : *third;
+    const DateOrder shown = *first > 12    ? DateOrder::day_first
+                            : *second > 12 ? DateOrder::month_first
+                                           : DateOrder::unknown;
+    const DateOrder read = shown != DateOrder::unknown ? shown : order;
+    if (*first == *second || read == DateOrder::month_first)
+      date = days(year, *first, *second);
+    else if (read == DateOrder::day_first)
+      date = days(year, *second, *first);
+    else
+      date = Date{.seconds = 0.0, .either = true};
+    if (date) date->order = shown;
   }
   if (date) at = ahead;
   return date;
@@ -223,16 +229,17 @@ bool is_half_of_day(std::string_view text) {
 
 }  // namespace
 
-std::optional<ClockTime> read_time(std::string_view text) {
+std::optional<ClockTime> read_time(std::string_view text, DateOrder order) {
   if (text.find(':') == std::string_view::npos) return read_compact(trimmed(text));
   Cursor at(trimmed(text));
   ClockTime time;
-  auto date = read_date(at);
+  auto date = read_date(at, order);
   if (!date) date = read_counted_date(at);
   if (!date) date = read_date_in_words(at);
   if (date) {
     time.dated = !date->either;
     time.day_or_month = date->either;
+    time.order = date->order;
     time.seconds = date->seconds;
     if (!at.take('T')) at.blanks();
     at.take(',');

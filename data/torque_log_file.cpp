@@ -198,6 +198,13 @@ Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) 
   const Unit unit = stamps.clock ? parse_unit("s") : find_unit(csv, column, wanted, {"s", "time"});
   const std::optional<std::size_t> dates = stamps.clock ? find_dates(csv, column, *first) : std::nullopt;
   if (dates) stamps.took.push_back(fmt::format("days by the column '{}'", csv.headings[*dates]));
+  const auto text_of = [&](const CsvRow& row) {
+    return dates ? row.fields[*dates] + " " + row.fields[column] : row.fields[column];
+  };
+  DateOrder order = DateOrder::unknown;  // the day of 01/06/2024, as 31/05/2024 above or below shows it
+  if (stamps.clock)
+    for (const CsvRow& row : csv.rows)
+      if (const auto time = read_time(text_of(row)); time && time->order != DateOrder::unknown) order = time->order;
   bool dated = false, either = false;
   for (const CsvRow& row : csv.rows) {
     const std::string& field = row.fields[column];
@@ -206,7 +213,7 @@ Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) 
     } else if (!stamps.clock) {
       stamps.seconds.push_back(unit.to_si(csv.number(row, column)));
     } else {
-      const auto time = read_time(dates ? row.fields[*dates] + " " + field : field);
+      const auto time = read_time(text_of(row), order);
       if (!time && dates)
         refuse_data(csv.place(row, *dates), fmt::format("'{}' is no date like those before", row.fields[*dates]),
                     "write every date alike");

@@ -15,26 +15,14 @@ namespace {
 /// One spelling for the signs of micro, product, power and the blank.
 std::string normalised(std::string_view given) {
   std::string text(trimmed(given));
-  for (const auto& [from, to] :
-       std::initializer_list<std::pair<std::string_view, std::string_view>>{{"\xc2\xb5", "u"},
-                                                                            {"\xce\xbc", "u"},
-                                                                            {"\xc2\xb7", " "},
-                                                                            {"\xe2\x8b\x85", " "},
-                                                                            {"\xe2\x88\x99", " "},
-                                                                            {"\xe2\x80\xa2", " "},
-                                                                            {"\xc3\x97", " "},
-                                                                            {"\xc2\xa0", " "},
-                                                                            {"\xe2\x81\xbb", "-"},
-                                                                            {"\xe2\x81\xb0", "0"},
-                                                                            {"\xc2\xb9", "1"},
-                                                                            {"\xc2\xb2", "2"},
-                                                                            {"\xc2\xb3", "3"},
-                                                                            {"\xe2\x81\xb4", "4"},
-                                                                            {"\xe2\x81\xb5", "5"},
-                                                                            {"\xe2\x81\xb6", "6"},
-                                                                            {"\xe2\x88\x92", "-"},
-                                                                            {"^-1", "-1"},
-                                                                            {"*", " "}})
+  for (const auto& [from, to] : std::initializer_list<std::pair<std::string_view, std::string_view>>{
+           {"\xc2\xb5", "u"},     {"\xce\xbc", "u"},     {"\xc2\xb7", " "},
+           {"\xe2\x8b\x85", " "}, {"\xe2\x88\x99", " "}, {"\xe3\x83\xbb", " "},  // of Japanese keyboards
+           {"\xef\xbd\xa5", " "}, {"\xe2\x80\xa2", " "}, {"\xc3\x97", " "},
+           {"\xc2\xa0", " "},     {"\xe2\x81\xbb", "-"}, {"\xe2\x81\xb0", "0"},
+           {"\xc2\xb9", "1"},     {"\xc2\xb2", "2"},     {"\xc2\xb3", "3"},
+           {"\xe2\x81\xb4", "4"}, {"\xe2\x81\xb5", "5"}, {"\xe2\x81\xb6", "6"},
+           {"\xe2\x88\x92", "-"}, {"^-1", "-1"},         {"*", " "}})
     replace_all(text, from, to);
   return std::string(trimmed(text));
 }

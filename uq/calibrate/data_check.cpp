@@ -59,6 +59,18 @@ std::optional<Finding> other_unit(const InputColumn& column) {
   return {};
 }
 
+/// The unit in which some rows of a column were written, when all of them lie outside its range and fill it in that one.
+std::optional<UnitFactor> unit_of_some(const InputColumn& column, const std::vector<double>& outside) {
+  constexpr std::size_t fewest = 3;
+  if (outside.size() < fewest) return {};
+  InputColumn some = column;
+  some.values = outside;
+  for (const UnitFactor& known : unit_factors())
+    for (const double factor : {known.factor, 1.0 / known.factor})
+      if (share_inside(some, column.low, column.high, factor) == 1.0 && span(some, factor) >= 0.4) return known;
+  return {};
+}
+
 /// Two columns of which each fits the other's range and not both their own.
 std::optional<Finding> exchanged(const InputColumn& a, const InputColumn& b, double share) {
   const double own = std::min(share_inside(a, a.low, a.high), share_inside(b, b.low, b.high));
@@ -182,25 +194,34 @@ std::vector<Finding> check_ranges(const data::Study& study, data::RunTable& tabl
     }
   for (std::size_t a = 0; a < columns.size(); ++a) {
     const InputColumn& column = columns[a];
-    if (!column.is_parameter || told[a]) continue;
-    const data::Parameter& parameter = study.parameters[*study.parameter_index(column.name)];
-    std::vector<std::string> near, far;
-    double least = HUGE_VAL, most = -HUGE_VAL;
+    if (told[a]) continue;
+    const data::Axis axis = column.is_parameter ? study.parameters[*study.parameter_index(column.name)].axis()
+                                                : study.controls[*study.control_index(column.name)].axis();
+    std::vector<data::RunRow*> outside;
+    std::vector<double> values;
     for (data::RunRow& row : table.rows) {
       const double value = row.inputs[input_column(table, column.name)];
       if (row.left_out || is_held(study, row, column.name)) continue;
-      if (parameter.scale == data::Scale::log && !(value > 0.0)) continue;
-      const double u = parameter.axis().to_unit(value);
+      if (axis.scale == data::Scale::log && !(value > 0.0)) continue;
+      const double u = axis.to_unit(value);
       if (u >= -t.outside && u <= 1.0 + t.outside) continue;
-      least = std::min(least, value);
-      most = std::max(most, value);
-      const bool is_far = u < -t.far_outside || u > 1.0 + t.far_outside;
-      (is_far ? far : near).push_back(row.place);
-      if (is_far)
-        row.left_out = {data::LeftOut::Because::it_is_far_off,
-                        fmt::format("{} lies far outside its range", column.name)};
+      outside.push_back(&row);
+      values.push_back(value);
     }
-    if (near.empty() && far.empty()) continue;
+    if (outside.empty()) continue;
+    const auto [least_at, most_at] = std::minmax_element(values.begin(), values.end());
+    const double least = *least_at, most = *most_at;
+    const std::optional<UnitFactor> unit = unit_of_some(column, values);
+    std::vector<std::string> near, far;
+    for (std::size_t i = 0; i < outside.size(); ++i) {
+      const double u = axis.to_unit(values[i]);
+      const bool leave_out = unit || u < -t.far_outside || u > 1.0 + t.far_outside;
+      (leave_out ? far : near).push_back(outside[i]->place);
+      if (leave_out)
+        outside[i]->left_out = {data::LeftOut::Because::it_is_far_off,
+                                fmt::format("{} lies {}", column.name,
+                                            unit ? "in its range in another unit only" : "far outside its range")};
+    }
     std::vector<std::string> places = far;
     places.insert(places.end(), near.begin(), near.end());
     Finding finding = data::about_rows(data::FindingKind::outside_the_range, Severity::warning, places);
@@ -208,10 +229,12 @@ std::vector<Finding> check_ranges(const data::Study& study, data::RunTable& tabl
         "{} of {} rows have {} outside its range, {:.4g} to {:.4g}{} ({}{:.4g})", places.size(), column.values.size(),
         column.name, column.shown(column.low), column.shown(column.high), column.unit_text(),
         least < most ? fmt::format("from {:.4g} to ", column.shown(least)) : "", column.shown(most));
-    if (!far.empty())
+    if (unit)
+      finding.what += fmt::format("; in another unit, {}, they would lie inside, so they are left out", unit->between);
+    else if (!far.empty())
       finding.what += fmt::format("; {} of them further than the range is wide, and left out", far.size());
-    finding.remedy =
-        fmt::format("correct the rows, leave them out ([training] leave_out), or widen parameters.{}", column.name);
+    finding.remedy = fmt::format("correct the rows, leave them out ([training] leave_out), or widen {}.{}",
+                                 column.is_parameter ? "parameters" : "controls", column.name);
     findings.push_back(std::move(finding));
   }
   return findings;

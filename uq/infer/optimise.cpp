@@ -40,7 +40,7 @@ double call(const std::vector<double>& at, std::vector<double>& slope, void* dat
 }  // namespace
 
 Maximum maximise(const Differentiable& function, const Box& box, const Eigen::MatrixXd& starts,
-                 std::optional<Held> held) {
+                 const std::vector<Held>& held) {
   const auto dimension = static_cast<int>(box.lower.size());
   Maximum best;
   int evaluations = 0;
@@ -50,11 +50,13 @@ Maximum maximise(const Differentiable& function, const Box& box, const Eigen::Ma
                     .x = starts.row(row).transpose().cwiseMax(box.lower).cwiseMin(box.upper),
                     .best = {}};
     std::vector<double> lower, upper, at;
+    std::vector<bool> is_held(static_cast<std::size_t>(dimension), false);
+    for (const Held& one : held) {
+      problem.x[one.coordinate] = one.value;
+      is_held[static_cast<std::size_t>(one.coordinate)] = true;
+    }
     for (int k = 0; k < dimension; ++k) {
-      if (held && held->coordinate == k) {
-        problem.x[k] = held->value;
-        continue;
-      }
+      if (is_held[static_cast<std::size_t>(k)]) continue;
       problem.free.push_back(k);
       lower.push_back(box.lower[k]);
       upper.push_back(box.upper[k]);

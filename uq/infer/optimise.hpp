@@ -3,8 +3,8 @@
 // is kept, whatever the optimiser's last word.
 #include <Eigen/Dense>
 #include <functional>
-#include <optional>
 #include <utility>
+#include <vector>
 
 #include "uq/infer/log_density.hpp"
 
@@ -31,7 +31,7 @@ using Differentiable = std::function<Evaluation(const Eigen::VectorXd&)>;
 
 /// Best of all starts (rows of `starts`, moved into the box).
 Maximum maximise(const Differentiable& function, const Box& box, const Eigen::MatrixXd& starts,
-                 std::optional<Held> held = {});
+                 const std::vector<Held>& held = {});
 
 /// Adds a gradient by central differences, one-sided at the box's faces.
 Differentiable with_differences(std::function<double(const Eigen::VectorXd&)> function, const Box& box);

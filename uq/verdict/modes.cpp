@@ -44,47 +44,57 @@ struct Place {
 };
 
 struct Parting {
-  double errors = 0.0;  ///< difference in standard errors, beyond the surrogate's
+  double errors = 0.0;  ///< difference in standard errors of a reading, all that is uncertain of it included
   double first = 0.0, second = 0.0, setting = 0.0;
   Place place;
 };
 
-Parting most_parting(const CaseModel& model, const Mode& a, const Mode& b) {
+/// Mean and variance, SI, of the reading in one row of a group at u, given the readings in the other rows: an error that
+/// they share with it, such as the meter's, is known as far as they tell it.
+struct Reading {
+  double mean = 0.0, variance = 0.0;
+};
+Reading reading_given_others(const CaseModel& model, const RowGroup& group, Eigen::Index row,
+                             const Eigen::VectorXd& u) {
+  GroupLaw law = group_law(model, group, u);
+  law.covariance.diagonal() += law.noise;
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index i = 0; i < law.mean.size(); ++i)
+    if (i != row) others.push_back(i);
+  Reading reading{law.mean[row], law.covariance(row, row)};
+  if (others.empty()) return reading;
+  const Eigen::LLT<Eigen::MatrixXd> among(law.covariance(others, others));
+  if (among.info() != Eigen::Success) return reading;
+  const Eigen::VectorXd between = law.covariance(others, row);
+  const Eigen::VectorXd weights = among.solve(between);
+  reading.mean += weights.dot(group.observed(others) - law.mean(others));
+  reading.variance = std::max(reading.variance - weights.dot(between), law.noise[row]);
+  return reading;
+}
+
+Parting most_parting(const CaseModel& full, const Mode& a, const Mode& b) {
   constexpr int settings = 11;
   constexpr Eigen::Index rows = 4;
+  const CaseModel& model = distinct_rows(full);
   Parting best;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
     const RowGroup& group = model.groups[g];
     const Eigen::Index n = group.base.rows();
-    if (n == 0) continue;
-    const Eigen::VectorXd spread = group_law(model, group, a.point).noise.cwiseSqrt();
     for (std::size_t k = 0; k < group.emulator.inputs.size(); ++k) {
       if (group.emulator.inputs[k].kind != InputKind::control) continue;
       for (Eigen::Index i = 0; i < std::min(rows, n); ++i) {
         const Eigen::Index row = i * n / std::min(rows, n);
-        Eigen::MatrixXd points(2 * settings, group.base.cols());
-        for (int t = 0; t < settings; ++t)
-          for (int which = 0; which < 2; ++which) {
-            Eigen::VectorXd point = group.base.row(row).transpose();
-            for (Eigen::Index c = 0; c < point.size(); ++c)
-              if (const int s = group.unknown(row, c); s >= 0) point[c] = (which == 0 ? a : b).point[s];
-            point[k] = t / (settings - 1.0);
-            points.row(which * settings + t) = point.transpose();
-          }
-        const surrogate::Prediction found = group.emulator.predict(points);
+        RowGroup moved = group;
         for (int t = 0; t < settings; ++t) {
-          const double gap = found.mean[t] - found.mean[settings + t];
-          const double doubt =
-              std::sqrt(std::max(found.covariance(t, t) + found.covariance(settings + t, settings + t) -
-                                     2.0 * found.covariance(t, settings + t),
-                                 0.0));
-          const double errors = (std::abs(gap) - 2.0 * doubt) / spread[row];
+          const double setting = t / (settings - 1.0);
+          moved.base(row, static_cast<Eigen::Index>(k)) = setting;
+          const Reading first = reading_given_others(model, moved, row, a.point),
+                        second = reading_given_others(model, moved, row, b.point);
+          const double errors =
+              std::abs(first.mean - second.mean) / std::sqrt(std::max(first.variance, second.variance));
           if (errors > best.errors)
-            best = {.errors = errors,
-                    .first = found.mean[t],
-                    .second = found.mean[settings + t],
-                    .setting = t / (settings - 1.0),
-                    .place = {g, row, k}};
+            best = {
+                .errors = errors, .first = first.mean, .second = second.mean, .setting = setting, .place = {g, row, k}};
         }
       }
     }

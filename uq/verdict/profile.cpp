@@ -118,7 +118,7 @@ void climb(const CaseModel& model, const Box& box, const Guides& guides, double 
   std::vector<Maximum> all;
   const Eigen::MatrixXd starts = spread_starts(model, box, guides);
   for (Eigen::Index i = 0; i < starts.rows(); ++i) {
-    Maximum one = maximise(profiled(model), box, starts.row(i));
+    Maximum one = maximise_profiled(model, box, starts.row(i), {});
     if (!std::isfinite(one.value)) continue;
     if (one.value > found.best.value || found.best.x.size() == 0) found.best = one;
     all.push_back(std::move(one));
@@ -157,7 +157,7 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
         starts.conservativeResize(starts.rows() + 1, Eigen::NoChange);
         starts.row(starts.rows() - 1) = other.x.transpose();
       }
-    const Maximum found = maximise(profiled(model), box, starts, Held{k, values[i]});
+    const Maximum found = maximise_profiled(model, box, starts, {Held{k, values[i]}});
     level[i] = found.value;
     profile.path.row(i) = found.x.transpose();
   };
@@ -172,7 +172,7 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
     Eigen::VectorXd moved = start;
     moved[k] = values[i];
     if (log_likelihood(model, moved) + log_certificates(model, moved).value <= level[i]) return;
-    const Maximum found = maximise(profiled(model), box, start.transpose(), Held{k, values[i]});
+    const Maximum found = maximise_profiled(model, box, start.transpose(), {Held{k, values[i]}});
     if (found.value <= level[i]) return;
     level[i] = found.value;
     profile.path.row(i) = found.x.transpose();
@@ -194,7 +194,7 @@ Differentiable profiled(const CaseModel& model) {
 }
 
 Maximum maximum_likelihood(const CaseModel& model, const Eigen::MatrixXd& starts) {
-  return maximise(profiled(model), {model.lower(), model.upper()}, starts);
+  return maximise_profiled(model, {model.lower(), model.upper()}, starts, {});
 }
 
 Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const ProfileOptions& options) {

@@ -78,6 +78,12 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
 /// log likelihood of the data and of what calibrated the nuisances.
 Differentiable profiled(const CaseModel& model);
 
+/// The largest of it from each start, with coordinates held. A quasi-Newton search stalls on a thin ridge, where a
+/// nuisance undoes what a parameter does: Gauss-Newton steps, which see the ridge in the data's slopes, go on from there
+/// until they promise less than a thousandth.
+Maximum maximise_profiled(const CaseModel& model, const Box& box, const Eigen::MatrixXd& starts,
+                          const std::vector<Held>& held = {});
+
 /// From log likelihoods along a path (in `deviance`) to deviances and to the interval's parts and ends.
 void finish_profile(const CaseModel& model, const Profiles& all, Profile& profile, const VerdictThresholds& thresholds);
 

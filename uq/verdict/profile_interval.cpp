@@ -33,7 +33,7 @@ Crossing find_crossing(const CaseModel& model, const Box& box, const Profile& pr
   for (int i = 0; i < 14; ++i) {
     const double share = std::clamp(inside.excess / (inside.excess - outside.excess), 0.02, 0.98);
     const double middle = inside.at + share * (outside.at - inside.at);
-    const Maximum found = maximise(profiled(model), box, warm.transpose(), Held{k, middle});
+    const Maximum found = maximise_profiled(model, box, warm.transpose(), {Held{k, middle}});
     const double excess = std::sqrt(std::max(2.0 * (best - found.value), 0.0)) - root;
     if (excess <= 0.0) {
       inside = {middle, excess};
@@ -54,15 +54,7 @@ Crossing find_crossing(const CaseModel& model, const Box& box, const Profile& pr
 /// Least deviance at u_k with `other` held, too.
 double deviance_with_held(const CaseModel& model, const Box& box, Held held, Held other, const Eigen::VectorXd& start,
                           double best) {
-  const Differentiable likelihood = profiled(model);
-  const Differentiable with_other = [&](const Eigen::VectorXd& u) -> Evaluation {
-    Eigen::VectorXd at = u;
-    at[other.coordinate] = other.value;
-    Evaluation found = likelihood(at);
-    found.gradient[other.coordinate] = 0.0;
-    return found;
-  };
-  return 2.0 * (best - maximise(with_other, box, start.transpose(), held).value);
+  return 2.0 * (best - maximise_profiled(model, box, start.transpose(), {held, other}).value);
 }
 
 /// Another unknown that sits at the end of its range, if one does and the interval ends for that.

@@ -43,7 +43,7 @@ Eigen::VectorXd nearest_prediction(const CaseModel& model, const Yardstick& yard
     const double size = distance(at);
     return -size * size + 2.0 * log_certificates(model, at).value;
   };
-  return maximise(with_differences(match, box), box, starts, held).x;
+  return maximise(with_differences(match, box), box, starts, {held}).x;
 }
 
 }  // namespace
