@@ -207,7 +207,9 @@ std::optional<double> dies_at(const TorqueLog& log, const Plateau& plateau) {
   const double before =
       std::abs(median_of(std::vector<double>(dropped - static_cast<std::ptrdiff_t>(plateau.torque.dropped), dropped)));
   if (std::abs(median_of(used_torques(log, plateau))) >= nearly_nothing * before) return {};
-  return log.time[plateau.used_from];
+  std::size_t end = plateau.used_from;
+  while (std::abs(log.torque[end - 1]) < nearly_nothing * before) --end;  // ends: half of the dropped are larger
+  return log.time[end];
 }
 
 std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau) {

@@ -290,7 +290,7 @@ TEST_CASE("a job that sbatch refuses is an error with sbatch's words, and a miss
   options.start = [](const data::ProgramCall&) { return data::ProgramEnd{.start_error = ENOENT}; };
   CHECK_THAT(
       failure_of(site.folder, [&] { run_on_slurm(site.workspace, site.runs, {}, BatchOptions{.jobs = 1}, options); }),
-      Contains("69: sbatch: cannot be run") && Contains("slurm-client"));
+      Contains("69: sbatch: cannot be started") && Contains("slurm-client"));
 }
 
 // Processor time: the machine may be busy with other work.

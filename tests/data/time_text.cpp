@@ -21,6 +21,12 @@ TEST_CASE("times of day and dates are read as loggers stamp them") {
         "3-May-2024 14:02:00", "03 Mai 2024 14:02", "May 3, 2024 2:02:00 PM", "20240503T140200", "20240503 140200.0",
         "2024-05-03 14:02:00 UTC", "2024-05-03T16:02:00+02:00", "2024-05-03T10:02:00-0400", "03.05.24 14:02:00"})
     CHECK(seconds(text) == noon + 50520.0);
+  // A day and a month that only other dates beside them tell apart.
+  CHECK(data::read_time("03/05/2024 14:02:00")->day_or_month);
+  CHECK(data::read_time("03/05/2024 14:02:00", data::DateOrder::day_first)->seconds == noon + 50520.0);
+  CHECK(data::read_time("05/03/2024 14:02:00", data::DateOrder::month_first)->seconds == noon + 50520.0);
+  CHECK(data::read_time("31/05/2024 14:02:00")->order == data::DateOrder::day_first);
+  CHECK(data::read_time("05/31/2024 14:02:00")->order == data::DateOrder::month_first);
   // May 3, 2024 is the Friday of week 18 and day 124, by date -d 2024-05-03 +'%G-W%V-%u %j'.
   for (const std::string text :
        {"2024-W18-5T14:02:00", "2024W185 14:02:00", "2024-124T14:02:00", "2024-05-03 15:02:00 CET",

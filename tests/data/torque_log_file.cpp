@@ -308,6 +308,30 @@ TEST_CASE("a standstill of 200,000 samples takes no longer than its reading") {
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
 }
 
+TEST_CASE("a dead sensor makes no observation, and what it read before is no start-up") {
+  data::TorqueLog log;
+  data::RandomStream random(1, data::Purpose::test);
+  for (int i = 0; i < 400; ++i) {
+    log.time.push_back(0.1 * i);
+    log.torque.push_back(0.0);
+    log.speed.push_back(200.0 * rpm);
+  }
+  const data::Plateau all{.first = 0, .count = 400, .used_from = 0};
+  CHECK(data::saturated_at(log, all) == 0.0);
+  // Alive for 15 s of 40, then the noise of an amplifier.
+  for (int i = 0; i < 400; ++i)
+    log.torque[static_cast<std::size_t>(i)] = (i < 150 ? 7e-3 : 0.0) + 2e-6 * random.normal();
+  const std::vector<data::Plateau> found = data::find_plateaus(log);
+  REQUIRE(found.size() == 1);
+  REQUIRE(found[0].torque.dropped > 0);  // the live part, taken for a start-up
+  REQUIRE(data::dies_at(log, found[0]).has_value());
+  CHECK(*data::dies_at(log, found[0]) == Approx(15.0).margin(1.0));
+  // A start-up from twice the torque is one.
+  for (int i = 0; i < 400; ++i)
+    log.torque[static_cast<std::size_t>(i)] = 3e-3 * (1.0 + std::exp(-i / 20.0)) + 2e-5 * random.normal();
+  for (const data::Plateau& plateau : data::find_plateaus(log)) CHECK_FALSE(data::dies_at(log, plateau).has_value());
+}
+
 TEST_CASE("a torque of two values is a coarse logger's, not a saturated sensor's") {
   data::TorqueLog log;
   for (int i = 0; i < 400; ++i) {

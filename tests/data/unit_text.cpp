@@ -10,7 +10,8 @@ TEST_CASE("units as they are spelled on instruments mean what they can only mean
   };
   for (const std::string text : {"Nm", "N m", "N\xc2\xb7m", "N.m", "N*m", "N\xe2\x8b\x85m"})
     CHECK(factor(text, "N m") == Approx(1.0));
-  for (const std::string text : {"mNm", "mN m", "mN\xc2\xb7m", "mN.m"}) CHECK(factor(text, "N m") == Approx(1e-3));
+  for (const std::string text : {"mNm", "mN m", "mN\xc2\xb7m", "mN.m", "mN\xe3\x83\xbbm"})
+    CHECK(factor(text, "N m") == Approx(1e-3));
   for (const std::string text : {"uNm", "\xc2\xb5Nm", "\xc2\xb5N\xc2\xb7m", "\xce\xbcN m"})
     CHECK(factor(text, "N m") == Approx(1e-6));
   for (const std::string text : {"Ncm", "N cm",

@@ -92,6 +92,7 @@ file = "bench.csv"
 settings = { NAME8 = 200 }
 common_error = 0.02
 uncertainty = { NAME6 = "1 rpm" }
+correlation = [{ between = ["NAME7", "NAME7"], with = "bench", value = 0.5 }]
 [[calibrate]]
 name = "one"
 observe = ["bench"]

@@ -186,6 +186,23 @@ TEST_CASE("rows outside a parameter's range are named, and one far outside is no
   CHECK(static_cast<bool>(looked.table.rows[20].left_out));
 }
 
+TEST_CASE("rows outside a control's range are named, and those that another unit brings inside are not learnt from",
+          "[uq]") {
+  Files files;
+  SECTION("near") {
+    files.runs[4].speed = 330.0;
+    const data::Finding found = only(files, "outside the range");
+    CHECK_THAT(found.what, Contains("1 of 60 rows have speed outside its range, 50 to 300"));
+    CHECK_THAT(found.remedy, Contains("controls.speed"));
+  }
+  SECTION("a third of them in rad/s") {
+    for (std::size_t i = 0; i < 20; ++i) files.runs[i].speed *= 2.0 * 3.14159265358979 / 60.0;
+    const data::Finding found = only(files, "outside the range");
+    CHECK_THAT(found.what, Contains("20 of 60 rows have speed outside its range") && Contains("rad/s") &&
+                               Contains("they are left out"));
+  }
+}
+
 TEST_CASE("a column in another unit is suspected from its range, and refused where it lies outside of it", "[uq]") {
   Files files;
   SECTION("a thousand times smaller: inside, but nowhere") {

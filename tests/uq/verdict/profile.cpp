@@ -173,3 +173,37 @@ TEST_CASE("PUQ's unidentifiable case: its contractions, one parameter known and 
   CHECK(found.parameters[1].verdict == uq::Verdict::identified);
   CHECK(found.traded.empty());
 }
+
+TEST_CASE("a nuisance that undoes a parameter leaves it open in one piece, and the other parameter closed", "[uq]") {
+  // y = 2 + 8 a + o + c z to 0.2 %: a and the offset o trade exactly.
+  const Formula formula = [](const Eigen::VectorXd& p, double z) { return 2.0 + 8.0 * p[0] + p[1] * z; };
+  const Eigen::VectorXd z = Eigen::VectorXd::LinSpaced(6, 0.0, 2.5);
+  for (const double sd : {20.0, 200.0}) {
+    CAPTURE(sd);
+    Eigen::VectorXd y(6);
+    for (int i = 0; i < 6; ++i) y[i] = formula(Eigen::Vector2d(0.4, 1.2), z[i]) * (1.0 + 1e-3 * std::sin(5.0 * i));
+    uq::CaseModel model = make_case({{"a", 0.1, 0.8}, {"c", 0.0, 3.0}}, formula, z, y, 0.002 * y);
+    data::Parameter offset{.name = "offset", .target = "offset", .low = -8.0 * sd, .high = 8.0 * sd};
+    offset.prior = {.kind = data::PriorKind::normal, .low = offset.low, .high = offset.high, .mean = 0.0, .sd = sd};
+    model.unknowns.push_back({.label = "offset",
+                              .prior = uq::ScaledPrior(offset, offset.prior),
+                              .own = false,
+                              .nuisance = uq::Acts::on_mean,
+                              .cut = {}});
+    model.groups[0].measurement.sets = {{.first = 0, .count = 6, .factors = {}, .offsets = {2}, .settings = {}}};
+    uq::find_coordinates(model.groups[0], 3);
+    const uq::Profiles found = profiles(model);
+    const uq::Profile &a = found.profiles[0], &c = found.profiles[1];
+    // The offset takes up all of a's range at a deviance of (8 (a - 0.4) / sd)^2.
+    CHECK(a.deviance.maxCoeff() < 0.1);
+    CHECK(a.parts.size() == 1);
+    CHECK_FALSE(a.low);
+    CHECK_FALSE(a.high);
+    // Weighted least squares with the constant free: the closed form of c's error.
+    const Eigen::ArrayXd weight = (0.002 * y).array().square().inverse();
+    const double mean = (weight * z.array()).sum() / weight.sum();
+    const double error = 1.0 / std::sqrt((weight * (z.array() - mean).square()).sum());
+    const double best = (weight * (z.array() - mean) * y.array()).sum() * error * error;
+    check_interval(model, c, best - 2.0 * error, best + 2.0 * error);
+  }
+}
