@@ -6,7 +6,7 @@ off; --gather only writes the table of what is there. Sweeps:
   friction     0.2, 0.4 and 0.6 without cohesion, six speeds                                (the paper's figure 3)
   hamaker      2e-18 and 9e-18 J at a friction of 0.40, six speeds; 1e-18, 4e-18 and 6e-18 J at two   (its figure 4)
   choices      what the paper does not state, each alone changed, at the slowest and the fastest speed: minimum
-               separation, the load that limits friction, attraction of the walls, stiffness, equal spheres
+               separation, the load that limits friction, attraction of the walls, stiffness
 A point that ends with an error (spheres pressed into each other, say) has a row with its message and no numbers.
 """
 import argparse
@@ -46,9 +46,6 @@ def points():
         for hamaker in ("2e-18", "9e-18"):
             for rpm in ENDS:
                 yield "choices", choice, "spread", 0.4, hamaker, rpm, settings
-    for hamaker in ("0", "2e-18", "9e-18"):
-        for rpm in ENDS:
-            yield "choices", "equal spheres", "equal", 0.4, hamaker, rpm, {}
 
 
 def folder_of(arguments, point):
