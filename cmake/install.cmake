@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS demcal RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 set(without_studies)
-foreach(study developer quick other-code drum-table drum-mcc hydrogel)
+foreach(study developer quick other-code drum-table drum-mcc hydrogel paper)
   install(DIRECTORY data/${study} DESTINATION ${CMAKE_INSTALL_DATADIR}/demcal/data COMPONENT program)
   list(APPEND without_studies PATTERN ${study} EXCLUDE)
 endforeach()
