@@ -345,8 +345,8 @@ const std::vector<StudyKey>& study_keys() {
        "observation set that has the second output; its readings at the same settings belong to this set's, in their "
        "order",
        "\"torque\""},
-      {"observe.correlation.value", "number", "", "above -1 below 1", "",
-       "correlation coefficient of the two errors", "0.5"},
+      {"observe.correlation.value", "number", "", "above -1 below 1", "", "correlation coefficient of the two errors",
+       "0.5"},
       {"observe.uncertainty", "table", "", "", "",
        "how well the settings of this measurement are known, by control, instead of the control's own",
        "{ rpm = \"1 %\" }"},
