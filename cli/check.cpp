@@ -53,8 +53,7 @@ Action add_check(CLI::App& program) {
     StudyRows rows = study_rows(workspace);
     // Runs of one's own come later; those of another code are what the study rests on.
     if (workspace.cases.empty() && !study.training.table.empty()) require_rows(workspace, rows, common->study);
-    for (const std::string& note : rows.notes) say(*common, "note: " + note);
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = rows.notes;
     const std::vector<data::Finding> found =
         uq::check_data(study, rows.table, rows.low, workspace.surrogates->log_outputs);
     rows.findings.insert(rows.findings.end(), found.begin(), found.end());

@@ -145,13 +145,18 @@ Action add_train(CLI::App& program) {
     }
     answer(common, fmt::format("{}, {} in all: {}", data::counted(ledger.finished, "new run"), ledger.table.rows.size(),
                                table));
-    if (workspace.unsteady == Unsteady::use) ledger.unsteady = 0;  // they were asked for
+    const bool short_wanted = workspace.unsteady == Unsteady::use;  // such runs were asked for
+    if (short_wanted) {
+      ledger.unsteady = 0;
+      ledger.warnings.clear();
+    }
     if (ledger.unsteady > 0)
       say(common,
           fmt::format("warning: {} of the new runs are not of the steady flow and train nothing (training.unsteady "
                       "= \"use\" takes them)",
                       ledger.unsteady));
-    const bool clean = foretold.empty() && ledger.failures.empty() && ledger.warnings.empty() && ledger.unsteady == 0;
+    const bool clean = (short_wanted || foretold.empty()) && ledger.failures.empty() && ledger.warnings.empty() &&
+                       ledger.unsteady == 0;
     return clean ? data::ExitStatus::done : data::ExitStatus::warning;
   };
 }

@@ -138,8 +138,9 @@ data::ExitStatus tell(const Common& common, const Workspace& workspace, const Po
   if (campaign.assessed() && !campaign.assessment().settled(options.share))
     answer(common, fmt::format("{}; to go on: {}", share_text(workspace.study, campaign.assessment()),
                                cost_text(campaign, options.jobs)));
-  return totals.failures.empty() && totals.warnings.empty() && unsteady == 0 ? data::ExitStatus::done
-                                                                             : data::ExitStatus::warning;
+  return totals.failures.empty() && (workspace.unsteady == Unsteady::use || totals.warnings.empty()) && unsteady == 0
+             ? data::ExitStatus::done
+             : data::ExitStatus::warning;
 }
 
 }  // namespace
