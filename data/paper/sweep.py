@@ -82,7 +82,8 @@ def row_of(arguments, point):
     found = json.loads(kept.read_text())
     row = {"sweep": sweep, "choice": choice, "material": material, "friction": friction, "hamaker": hamaker, "rpm": rpm}
     if "error" in found:
-        return row | {"state": "failed: " + found["error"]}
+        reason = found["error"].split(" (its last good state")[0]  # a path of the machine that ran it
+        return row | {"state": "failed: " + reason}
     for name in OUTPUTS:
         output = found["outputs"][name]
         row[name] = f"{output['mean']:.6g}"
