@@ -36,7 +36,7 @@ void add_diagnostics(CaseReport& report, const SampledCase& sampled) {
 
 void add_nuisances(CaseReport& report, const SampledCase& sampled) {
   for (int k = 0; k < sampled.model->dimension(); ++k)
-    if (sampled.model->unknowns[k].nuisance != Acts::none) report.nuisances.push_back(summary_of(sampled, k));
+    if (sampled.model->unknowns[k].nuisance) report.nuisances.push_back(summary_of(sampled, k));
 }
 
 /// Separate regions of the posterior, in the study's units. Where the sampler has missed one, it has not converged.
@@ -248,7 +248,7 @@ void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
                     report.name, 100.0 * largest));
   }
   for (const auto& unknown : sampled.model->unknowns)
-    if (unknown.nuisance == Acts::none && unknown.prior.kept_mass() < 0.99)
+    if (!unknown.nuisance && unknown.prior.kept_mass() < 0.99)
       report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
                                             unknown.label, 100.0 * (1.0 - unknown.prior.kept_mass())));
 }
@@ -344,7 +344,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   if (options.quadrature && model.dimension() <= 2 && report.cuts.empty())
     add_quadrature(report, sampled, draws, options);
   report.modes_parted_by = parted_by(study, model, found.modes);
-  Words words = summarise(found, report.modes_parted_by);
+  Words words = summarise(found, report.modes_parted_by, study.training.engine == "demcal");
   const std::optional<LoneReading> lone =
       found.fits ? std::nullopt : lone_reading(study, model, found.best_fit.x, options.identify.thresholds);
   if (!found.fits && !lone) {

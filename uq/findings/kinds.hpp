@@ -8,7 +8,21 @@ namespace uq {
 enum class Verdict { identified, weakly_identified, several_values, not_identified, does_not_fit };
 
 /// Why a parameter is not known (uq/verdict/verdict_words.hpp).
-enum class Reason { structural, practical, surrogate, one_sided, bound, no_influence, unsupported, range_of_another };
+enum class Reason {
+  structural,
+  practical,
+  surrogate,
+  one_sided,
+  bound,
+  no_influence,
+  unsupported,
+  range_of_another,
+  common_error
+};
+
+/// An error that all readings of a case share (uq/posterior/common_share.hpp): a meter's offset or gain that is sampled, or
+/// its common error, the rig's scale, a control's true setting, what the model leaves out.
+enum class CommonErrorKind { offset, gain, scale, setting, meter, discrepancy };
 
 /// How far a surrogate can be trusted (surrogate/validation.hpp).
 enum class SurrogateWord { good, caution, unusable };
@@ -28,7 +42,11 @@ inline constexpr std::array data::texts_of<uq::Verdict> = {"identified", "weakly
                                                            "not identified", "model does not fit"};
 template <>
 inline constexpr std::array data::texts_of<uq::Reason> = {
-    "structural", "practical", "surrogate", "one-sided", "bound", "no influence", "unsupported", "range of another"};
+    "structural",   "practical",   "surrogate",        "one-sided",   "bound",
+    "no influence", "unsupported", "range of another", "common error"};
+template <>
+inline constexpr std::array data::texts_of<uq::CommonErrorKind> = {"offset",  "gain",  "scale",
+                                                                   "setting", "meter", "discrepancy"};
 template <>
 inline constexpr std::array data::texts_of<uq::SurrogateWord> = {"good", "caution", "unusable"};
 template <>

@@ -30,6 +30,12 @@ void visit_fields(Visit&& visit, T& w) {
   visit("probability", w.probability);
 }
 
+template <class Visit, SameAs<CommonError> T>
+void visit_fields(Visit&& visit, T& e) {
+  visit("kind", e.kind);
+  visit.text("name", e.name);
+}
+
 template <class Visit, SameAs<ParameterReport> T>
 void visit_fields(Visit&& visit, T& p) {
   visit("name", p.name);
@@ -68,6 +74,10 @@ void visit_fields(Visit&& visit, T& p) {
     share("surrogate", p.share_surrogate);
     share("structure", p.share_structure);
     share("range", p.share_range);
+  });
+  visit.table("common_errors", [&](auto& common) {
+    common("share", p.common.share);
+    common("errors", p.common.errors);
   });
   visit.table("profile", [&](auto& profile) {
     profile("x", p.profile_x);

@@ -136,6 +136,18 @@ struct PlanReport {
   std::vector<std::string> notes;
 };
 
+/// An error that all readings of a case share.
+struct CommonError {
+  CommonErrorKind kind = CommonErrorKind::offset;
+  std::string name;  ///< of the unknown; empty where the error is integrated out
+};
+
+/// What such errors hold of a parameter's width (uq/posterior/common_share.hpp).
+struct CommonShare {
+  double share = 0.0;               ///< of the posterior variance, 0 to 1
+  std::vector<CommonError> errors;  ///< those that hold a notable part of it
+};
+
 struct ParameterReport {
   std::string name, unit;
   double prior_low = 0.0, prior_high = 0.0, prior_mean = 0.0, prior_sd = 0.0;
@@ -156,6 +168,7 @@ struct ParameterReport {
   std::vector<WordProbability> word_probabilities;        ///< falling; none where they were not asked for
   double share_measurement = 0.0, share_surrogate = 0.0;  ///< of the interval's width, what brings it about
   double share_structure = 0.0, share_range = 0.0;
+  CommonShare common;  ///< part of the width that is in the measurement's, too
 };
 
 /// The draws of one unknown. Of a report: one of the measurement, sampled with the parameters and integrated out.

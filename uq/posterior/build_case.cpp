@@ -24,13 +24,6 @@ using data::ExitStatus;
 using data::Problem;
 using data::Study;
 
-Acts acts_of(data::NuisanceKind kind) {
-  using data::NuisanceKind;
-  const bool mean = kind == NuisanceKind::offset || kind == NuisanceKind::gain || kind == NuisanceKind::scale ||
-                    kind == NuisanceKind::setting;
-  return mean ? Acts::on_mean : Acts::on_spread;
-}
-
 class Builder {
  public:
   Builder(const Study& study, const std::vector<Emulator>& emulators, const CalibrationCase& wanted)
@@ -92,7 +85,7 @@ class Builder {
                 {.label = label_of(item, name),
                  .prior = ScaledPrior(parameter, links_.first_prior(item, name)),
                  .own = &item == &wanted_,
-                 .nuisance = Acts::none,
+                 .nuisance = {},
                  .cut_from = prior.cut ? prior.posterior_of : "",
                  .cut = {}});
   }
@@ -102,7 +95,7 @@ class Builder {
                 {.label = label,
                  .prior = ScaledPrior(nuisance.parameter, nuisance.parameter.prior),
                  .own = false,
-                 .nuisance = acts_of(nuisance.kind),
+                 .nuisance = nuisance.kind,
                  .cut_from = {},
                  .cut = {}});
   }
@@ -306,7 +299,7 @@ class Builder {
 
   void check_unknowns_used(const CaseModel& model) {
     for (int s = 0; s < model.dimension(); ++s) {
-      bool used = model.unknowns[s].nuisance != Acts::none;
+      bool used = model.unknowns[s].nuisance.has_value();
       for (const auto& group : model.groups) used = used || (group.unknown.array() == s).any();
       if (used) continue;
       const CalibrationCase& owner = *homes_[s].owner;

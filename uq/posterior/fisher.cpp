@@ -32,7 +32,7 @@ FisherSpectrum fisher_spectrum(const CaseModel& full, const Eigen::VectorXd& u) 
     const Unknown& unknown = model.unknowns[s];
     slopes.col(s) *= unknown.prior.sd();
     all.push_back(s);
-    if (unknown.nuisance == Acts::none) parameters.push_back(s);
+    if (!unknown.nuisance) parameters.push_back(s);
   }
   const Eigen::MatrixXd every = whiten(slopes, all, covariance);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> known(every.transpose() * every);
@@ -41,7 +41,7 @@ FisherSpectrum fisher_spectrum(const CaseModel& full, const Eigen::VectorXd& u) 
   found.known_directions = static_cast<int>((known.eigenvalues().array() > 1.0).count());
   // The nuisances, integrated out under their priors, are part of what is uncertain of the data.
   for (Eigen::Index s = 0; s < u.size(); ++s)
-    if (model.unknowns[s].nuisance != Acts::none) covariance += slopes.col(s) * slopes.col(s).transpose();
+    if (model.unknowns[s].nuisance) covariance += slopes.col(s) * slopes.col(s).transpose();
   Eigen::MatrixXd unit = whiten(slopes, parameters, covariance);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(unit.transpose() * unit);
   found.eigenvalues = solver.eigenvalues().cwiseMax(0.0);

@@ -196,7 +196,7 @@ LawGradient law_gradient(const Measurement& measurement, const std::vector<Unkno
 
   for (int s = 0; s < static_cast<int>(unknowns.size()); ++s) {
     const Unknown& unknown = unknowns[s];
-    if (unknown.nuisance == Acts::none || contains(along, s)) continue;
+    if (!unknown.nuisance || contains(along, s)) continue;
     const double value = unknown.value(u[s]), slope = unknown.slope(u[s]);
     Eigen::VectorXd factors = Eigen::VectorXd::Zero(rows), offset = Eigen::VectorXd::Zero(rows);
     Eigen::VectorXd noise = Eigen::VectorXd::Zero(rows);

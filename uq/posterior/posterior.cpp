@@ -75,7 +75,7 @@ GroupSlopes differenced(const CaseModel& model, const RowGroup& group, const Eig
   };
   GroupSlopes found{.law = group_law(model, group, u), .slopes = {}};
   for (Eigen::Index s = 0; s < u.size(); ++s) {
-    const bool nuisance = model.unknowns[s].nuisance != Acts::none;
+    const bool nuisance = model.unknowns[s].nuisance.has_value();
     if (!nuisance && !(group.unknown.array() == static_cast<int>(s)).any()) continue;
     Eigen::VectorXd up = u, down = u;
     up[s] += step;
@@ -383,7 +383,7 @@ Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u) {
   for (std::size_t k = 0; k < model.unknowns.size(); ++k) {
     const Unknown& unknown = model.unknowns[k];
     const auto s = static_cast<Eigen::Index>(k);
-    if (unknown.nuisance != Acts::none) {
+    if (unknown.nuisance) {
       sum.value += unknown.prior.log_density(u[s]);
       sum.gradient[s] = unknown.prior.slope(u[s]);
     } else if (unknown.cut) {

@@ -297,7 +297,7 @@ void check_priors(const data::Study& study, const CaseModel& model) {
     Eigen::VectorXd u(d);
     for (Eigen::Index s = 0; s < d; ++s) {
       const Unknown& unknown = model.unknowns[s];
-      u[s] = unknown.nuisance == Acts::none ? random.uniform() : unknown.prior.draw(random);
+      u[s] = unknown.nuisance ? unknown.prior.draw(random) : random.uniform();
     }
     return u;
   });

@@ -4,12 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "data/study.hpp"
 #include "uq/posterior/prior.hpp"
 
 namespace uq {
-
-/// How a nuisance acts on what is read: on its mean (a gain), or only on its spread (a noise scale).
-enum class Acts { none, on_mean, on_spread };
 
 /// A normal law of one unknown, in u.
 struct NormalLaw {
@@ -19,10 +17,17 @@ struct NormalLaw {
 struct Unknown {
   std::string label;  ///< the parameter's name, with the case's in front for another case's own
   ScaledPrior prior;
-  bool own = true;               ///< a parameter that is free in the case itself; else another's, or a nuisance
-  Acts nuisance = Acts::none;    ///< none: a parameter
-  std::string cut_from = {};     ///< case whose posterior it has, without feedback
-  std::optional<NormalLaw> cut;  ///< that posterior's moments, known once that case is sampled
+  bool own = true;  ///< a parameter that is free in the case itself; else another's, or a nuisance
+  std::optional<data::NuisanceKind> nuisance = {};  ///< what it is of the measurement; none: a parameter
+  std::string cut_from = {};                        ///< case whose posterior it has, without feedback
+  std::optional<NormalLaw> cut;                     ///< that posterior's moments, known once that case is sampled
+
+  /// A nuisance that acts on the spread of what is read alone, not on its mean.
+  bool only_widens() const {
+    using data::NuisanceKind;
+    return nuisance && *nuisance != NuisanceKind::offset && *nuisance != NuisanceKind::gain &&
+           *nuisance != NuisanceKind::scale && *nuisance != NuisanceKind::setting;
+  }
 
   /// In SI.
   double value(double u) const { return prior.parameter().axis().from_unit(u); }

@@ -7,7 +7,7 @@
 namespace uq::page {
 
 Markup glossary_section() {
-  static constexpr std::array<std::pair<const char*, const char*>, 15> words{{
+  static constexpr std::array<std::pair<const char*, const char*>, 16> words{{
       {"identified",
        "The data limit the parameter on both sides, to a small part of what was thought possible before."},
       {"weakly identified", "The data limit it on both sides, but not to a small part."},
@@ -17,6 +17,10 @@ Markup glossary_section() {
        "Other parameters can undo each change of this one. A better measurement of the same kind does not "
        "help; another kind of measurement does."},
       {"practical", "The data would limit the parameter if they were more accurate."},
+      {"common error",
+       "An error that all readings share, as a meter's offset, hides it. More readings do not help; to find that error "
+       "by "
+       "itself does."},
       {"surrogate",
        "The error of the surrogate decides. More runs help; until then it is open whether a better "
        "measurement would."},

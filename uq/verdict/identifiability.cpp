@@ -7,6 +7,7 @@
 
 #include "uq/findings/study_units.hpp"
 #include "uq/infer/diagnostics.hpp"
+#include "uq/posterior/common_share.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/support.hpp"
 #include "uq/posterior/surrogate_share.hpp"
@@ -154,6 +155,7 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
   found.check = check_fit(model, draws, all.best.x);
   found.surrogate_to_measurement = surrogate_to_measurement(model, all.best.x);
   const SurrogateShare surrogate = surrogate_share(model, guiding, likelihood);
+  const std::vector<CommonShare> common = common_shares(model, guiding);
   const FitEvidence fit{.predictive_p = found.check.predictive_p, .best_fit_p = found.check.best_fit_p};
   found.fits = fit.fits(thresholds);
 
@@ -189,6 +191,7 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
     if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
     one.unusable = !doubt_of(model).empty();
     one.surrogate_share = surrogate.shares[k];
+    one.common = common[k];
     one.facts.influences = all.influence[k].some || limited(one.facts, thresholds);
     one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);
     words.push_back(word_of(one.facts, thresholds));
@@ -217,11 +220,12 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
     report.share_surrogate = verdict.shares.surrogate;
     report.share_structure = verdict.shares.structure;
     report.share_range = verdict.shares.range;
+    report.common = evidence[k].common;
   }
   return found;
 }
 
-Words summarise(const Identification& found, const std::string& parted_by) {
+Words summarise(const Identification& found, const std::string& parted_by, bool own_engine) {
   if (!found.fits)
     return {.finding = fmt::format("No values of the parameters reproduce the data: chi2 {:.1f} for {} degrees of "
                                    "freedom, posterior predictive p {:.2g}.",
@@ -232,7 +236,8 @@ Words summarise(const Identification& found, const std::string& parted_by) {
   return words_of({.parameters = found.parameters,
                    .traded = found.traded,
                    .parted_by = parted_by,
-                   .collinearity = found.fisher.collinearity});
+                   .collinearity = found.fisher.collinearity,
+                   .own_engine = own_engine});
 }
 
 }  // namespace uq

@@ -46,6 +46,6 @@ struct Identification {
 Identification identify(const CaseModel& model, const Eigen::MatrixXd& draws, const IdentifyOptions& options = {});
 
 /// The case's verdicts in one finding, what follows from it, and what to do. `parted_by`: what would part its modes.
-Words summarise(const Identification& found, const std::string& parted_by = {});
+Words summarise(const Identification& found, const std::string& parted_by = {}, bool own_engine = true);
 
 }  // namespace uq

@@ -116,7 +116,7 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
     Influence& influence = found[k];
     if (!acts_on_emulators(model, k)) {
       // A nuisance of the meter acts without the surrogate; a parameter that no emulator sees does nothing.
-      influence.some = influence.shown = model.unknowns[k].nuisance != Acts::none;
+      influence.some = influence.shown = model.unknowns[k].nuisance.has_value();
       continue;
     }
     double effect = 0.0, doubt = 0.0, ends_effect = 0.0, ends_doubt = 0.0;

@@ -24,7 +24,7 @@ Eigen::MatrixXd curvature(const CaseModel& full, const Eigen::VectorXd& u) {
   Eigen::MatrixXd found = slopes.transpose() * slopes;
   for (Eigen::Index s = 0; s < u.size(); ++s) {
     const Unknown& unknown = full.unknowns[s];
-    if (unknown.nuisance != Acts::none) found(s, s) += 1.0 / std::pow(unknown.prior.sd(), 2);
+    if (unknown.nuisance) found(s, s) += 1.0 / std::pow(unknown.prior.sd(), 2);
     if (unknown.cut) found(s, s) += 1.0 / std::pow(unknown.cut->sd, 2);
   }
   return found;

@@ -39,7 +39,7 @@ Eigen::VectorXd nearest_prediction(const CaseModel& model, const Yardstick& yard
     // What only widens the spread explains nothing, and stays; what a certificate says of a nuisance counts.
     Eigen::VectorXd at = u;
     for (int s = 0; s < model.dimension(); ++s)
-      if (model.unknowns[s].nuisance == Acts::on_spread) at[s] = best[s];
+      if (model.unknowns[s].only_widens()) at[s] = best[s];
     const double size = distance(at);
     return -size * size + 2.0 * log_certificates(model, at).value;
   };

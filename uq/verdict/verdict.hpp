@@ -58,6 +58,7 @@ struct ParameterEvidence {
   std::string conditional_on = {};  ///< another parameter whose range's end decides the value; may be empty
   bool undecided = false;           ///< the surrogate is not sharp enough to tell
   double surrogate_share = 0.0;     ///< of the variance, where two values are compared
+  CommonShare common = {};          ///< held by errors that all readings share
   double silent_sds = 0.0;  ///< of the data's errors: what the surrogate's own error leaves room for, without influence
 };
 

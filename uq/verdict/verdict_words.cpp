@@ -16,6 +16,8 @@ namespace {
 constexpr double mostly = 0.5;
 /// Of the variance: below, a share is not worth a remedy.
 constexpr double notable = 0.1;
+/// Of the variance: from here on a common error is named beside the measurement's own.
+constexpr double a_part = 0.25;
 /// Of the data's errors: the surrogate may hide an effect that the data could see.
 constexpr double hides = 2.0;
 
@@ -44,11 +46,12 @@ struct Remedy {
 
 /// Parameters sorted by what is said of them.
 struct Sorted {
-  Names known, several, weak, unknown;                               ///< by word
-  Names silent, structural, practical, surrogate, one_sided, bound;  ///< by reason
+  Names known, several, weak, unknown;                                       ///< by word
+  Names silent, structural, practical, surrogate, one_sided, bound, common;  ///< by reason
   Names conditional, ends_of;  ///< values that depend on where another's range ends, and whose ranges these are
-  double of_structure = 0.0, of_measurement = 0.0, of_surrogate = 0.0, of_range = 0.0;
+  double of_structure = 0.0, of_measurement = 0.0, of_surrogate = 0.0, of_range = 0.0, of_common = 0.0;
   double largest_surrogate = 0.0;  ///< share of one parameter
+  CommonShare largest_common;      ///< of one that is held by such errors, or partly
 };
 
 Sorted sort_parameters(const std::vector<ParameterReport>& parameters) {
@@ -66,6 +69,7 @@ Sorted sort_parameters(const std::vector<ParameterReport>& parameters) {
     if (parameter.verdict == Verdict::not_identified) sorted.unknown.push_back(name);
     if (!reason) continue;
     (*reason == Reason::structural         ? sorted.structural
+     : *reason == Reason::common_error     ? sorted.common
      : *reason == Reason::practical        ? sorted.practical
      : *reason == Reason::surrogate        ? sorted.surrogate
      : *reason == Reason::one_sided        ? sorted.one_sided
@@ -75,7 +79,9 @@ Sorted sort_parameters(const std::vector<ParameterReport>& parameters) {
     if (*reason == Reason::range_of_another)
       add(sorted.ends_of, parameter.high_pinned_by.empty() ? parameter.low_pinned_by : parameter.high_pinned_by);
     sorted.of_structure += parameter.share_structure;
-    sorted.of_measurement += parameter.share_measurement;
+    (*reason == Reason::common_error ? sorted.of_common : sorted.of_measurement) += parameter.share_measurement;
+    const bool held = *reason == Reason::common_error || *reason == Reason::practical || *reason == Reason::bound;
+    if (held && parameter.common.share > sorted.largest_common.share) sorted.largest_common = parameter.common;
     sorted.of_surrogate += parameter.share_surrogate;
     sorted.largest_surrogate = std::max(sorted.largest_surrogate, parameter.share_surrogate);
     sorted.of_range += parameter.share_range;
@@ -143,7 +149,7 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
   Names poor, wide;
   for (const ParameterReport& parameter : facts.parameters) {
     const bool hidden = parameter.reason == Reason::practical || parameter.reason == Reason::surrogate ||
-                        parameter.reason == Reason::structural;
+                        parameter.reason == Reason::structural || parameter.reason == Reason::common_error;
     if (hidden && facts.traded.empty())
       (parameter.verdict == Verdict::not_identified && parameter.contraction < 0.5 ? poor : wide)
           .push_back(parameter.name);
@@ -155,6 +161,56 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
   if (!sorted.silent.empty())
     say(fmt::format("{} may be anything in {} range.", listed(sorted.silent), one_or(sorted.silent, "its", "their")));
   return text;
+}
+
+/// "the offset zero".
+std::string in_words(const CommonError& error) {
+  switch (error.kind) {
+    case CommonErrorKind::offset:
+      return "the offset " + error.name;
+    case CommonErrorKind::gain:
+      return "the gain " + error.name;
+    case CommonErrorKind::scale:
+      return "the rig's scale";
+    case CommonErrorKind::setting:
+      return "the true " + (error.name.empty() ? "settings" : error.name);
+    case CommonErrorKind::meter:
+      return "the meter's common error";
+    case CommonErrorKind::discrepancy:
+      break;
+  }
+  return "the discrepancy";
+}
+
+/// How it is found by itself.
+std::string found_by(const CommonError& error) {
+  switch (error.kind) {
+    case CommonErrorKind::offset:
+      return fmt::format("read the meter without load (the offset {})", error.name);
+    case CommonErrorKind::gain:
+      return fmt::format("calibrate the meter (the gain {})", error.name);
+    case CommonErrorKind::scale:
+      return "find the rig's scale with a powder whose parameters are known";
+    case CommonErrorKind::setting:
+      return "measure the true " + (error.name.empty() ? "settings" : error.name);
+    case CommonErrorKind::meter:
+      return "calibrate the meter";
+    case CommonErrorKind::discrepancy:
+      break;
+  }
+  return "measure a quantity that the model gives without a discrepancy";
+}
+
+/// `names`: parameters whose width such errors decide; none: they hold a part of some.
+std::string common_remedy(const CommonShare& common, const Names& names) {
+  Names ways;
+  for (const CommonError& error : common.errors) add(ways, found_by(error));
+  return sentence(
+      fmt::format("{}: {}{:.0f} % of the variance{} is held by errors that all readings share, and neither more "
+                  "readings nor smaller "
+                  "errors of each take that away",
+                  listed(ways), names.size() == 1 ? "" : "up to ", 100.0 * common.share,
+                  names.empty() ? "" : " of " + listed(names)));
 }
 
 /// `share`: of the posterior variance, the surrogate's; of the parameter that has most of it.
@@ -201,9 +257,11 @@ std::vector<std::string> find_remedies(const CaseFacts& facts, const Sorted& sor
   if (hidden && (surrogate >= notable || !sorted.surrogate.empty())) {
     const bool first = surrogate >= mostly || !sorted.surrogate.empty();
     remedies.push_back({first ? std::max(sorted.of_surrogate, sorted.of_measurement + 1e-9) : 1e-9,
-                        surrogate < notable ? "Make more training runs (demcal train STUDY --runs N): only a sharper "
-                                              "surrogate shows whether a better measurement would help."
-                        : first             ? surrogate_remedy(sorted.largest_surrogate)
+                        surrogate < notable
+                            ? fmt::format("Make more training runs{}: only a sharper surrogate shows "
+                                          "whether a better measurement would help.",
+                                          facts.own_engine ? " (demcal train STUDY --runs N)" : " with your code")
+                        : first ? surrogate_remedy(sorted.largest_surrogate)
                                 : fmt::format("More training runs would help, too: up to {:.0f} % of the posterior "
                                               "variance is the surrogate's.",
                                               100.0 * sorted.largest_surrogate)});
@@ -217,6 +275,10 @@ std::vector<std::string> find_remedies(const CaseFacts& facts, const Sorted& sor
                                           "independent experiment, or reduce the measurement error.",
                                           together)});
   }
+  const bool part = sorted.common.empty() && sorted.largest_common.share >= a_part;
+  if (!sorted.common.empty() || part)
+    remedies.push_back({part ? sorted.of_measurement * sorted.largest_common.share : sorted.of_common,
+                        common_remedy(sorted.largest_common, sorted.common)});
   if (sorted.practical.empty() && surrogate < mostly)
     if (const std::string together = partners(facts, sorted.surrogate); !together.empty())
       remedies.push_back({sorted.of_measurement,
@@ -266,8 +328,9 @@ std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict ve
   if (verdict != Verdict::not_identified && verdict != Verdict::weakly_identified) return {};
   const WordFacts& facts = parameter.facts;
   if (!facts.influences) return Reason::no_influence;
-  if (!parameter.conditional_on.empty()) return Reason::range_of_another;
+  if (parameter.common.share > mostly && parameter.surrogate_share <= mostly) return Reason::common_error;
   if (parameter.structural) return Reason::structural;
+  if (!parameter.conditional_on.empty()) return Reason::range_of_another;
   if (facts.open_low && !facts.open_high && facts.physical_low) return Reason::bound;
   const bool pinned = !parameter.low_pinned_by.empty() || !parameter.high_pinned_by.empty();
   if (facts.open_low != facts.open_high && !pinned) return Reason::one_sided;
@@ -282,6 +345,11 @@ std::string because(Reason reason, const ParameterEvidence& parameter) {
              "would not help";
     case Reason::practical:
       return "; the measurement's noise hides it";
+    case Reason::common_error: {
+      Names names;
+      for (const CommonError& error : parameter.common.errors) add(names, in_words(error));
+      return fmt::format("; {}, which all readings share, {} it", listed(names), one_or(names, "hides", "hide"));
+    }
     case Reason::surrogate:
       return parameter.surrogate_share > mostly
                  ? "; the surrogate's error hides it"

@@ -4,6 +4,7 @@
 //   reason        because                                                      what can be done
 //   structural    other parameters do the same to all that was measured        another kind of quantity, or fix one
 //   practical     the measurement's error is as large as what would tell       a smaller error, more settings
+//   common error  an error that all readings share: offset, gain, ...          find that error by itself
 //   surrogate     the surrogate's error is                                     training runs
 //   one-sided     the data no longer change towards the range's end            wider range, other settings
 //   bound         it cannot be told from its physical bound                    a smaller error lowers the limit
@@ -48,6 +49,7 @@ struct CaseFacts {
   std::vector<TradedPair> traded;
   std::string parted_by;  ///< uq/verdict/modes.hpp; may be empty
   double collinearity = 1.0;
+  bool own_engine = true;  ///< demcal makes the runs, not another code
 };
 Words words_of(const CaseFacts& facts);
 

@@ -44,7 +44,7 @@ void free_noise(CaseModel& model, bool is_sd) {
   model.unknowns.push_back({.label = "noise",
                             .prior = ScaledPrior(parameter, parameter.prior),
                             .own = false,
-                            .nuisance = Acts::on_spread,
+                            .nuisance = is_sd ? data::NuisanceKind::noise_sd : data::NuisanceKind::noise_scale,
                             .cut = {}});
   RowGroup& group = model.groups[0];
   group.measurement.sets.push_back({.first = 0,

@@ -23,12 +23,12 @@ data::Prior normal_prior(double mean, double sd) {
   return {.kind = data::PriorKind::normal, .low = mean - 8.0 * sd, .high = mean + 8.0 * sd, .mean = mean, .sd = sd};
 }
 
-uq::Unknown nuisance(const std::string& name, uq::Acts acts, double mean, double sd) {
+uq::Unknown nuisance(const std::string& name, data::NuisanceKind kind, double mean, double sd) {
   data::Parameter parameter{.name = name, .target = name, .low = mean - 8.0 * sd, .high = mean + 8.0 * sd};
   return {.label = name,
           .prior = uq::ScaledPrior(parameter, normal_prior(mean, sd)),
           .own = false,
-          .nuisance = acts,
+          .nuisance = kind,
           .cut = {}};
 }
 
@@ -96,12 +96,12 @@ TEST_CASE("the gradient through gain, offset, noise, common errors, settings and
       make_case({{"a"}, {"b"}}, {}, five, Eigen::VectorXd::LinSpaced(5, 1.9, 2.4), Eigen::VectorXd::Constant(5, 0.05));
   uq::RowGroup& group = model.groups[0];
   group.emulator = process_of(group.emulator.inputs);
-  model.unknowns.push_back(nuisance("gain", uq::Acts::on_mean, 1.0, 0.05));
-  model.unknowns.push_back(nuisance("scale", uq::Acts::on_mean, 2.0, 0.1));
-  model.unknowns.push_back(nuisance("offset", uq::Acts::on_mean, 0.1, 0.05));
-  model.unknowns.push_back(nuisance("noise", uq::Acts::on_spread, 1.2, 0.1));
-  model.unknowns.push_back(nuisance("discrepancy_sd", uq::Acts::on_spread, 0.1, 0.01));
-  model.unknowns.push_back(nuisance("discrepancy_length", uq::Acts::on_spread, 0.4, 0.03));
+  model.unknowns.push_back(nuisance("gain", data::NuisanceKind::gain, 1.0, 0.05));
+  model.unknowns.push_back(nuisance("scale", data::NuisanceKind::scale, 2.0, 0.1));
+  model.unknowns.push_back(nuisance("offset", data::NuisanceKind::offset, 0.1, 0.05));
+  model.unknowns.push_back(nuisance("noise", data::NuisanceKind::noise_scale, 1.2, 0.1));
+  model.unknowns.push_back(nuisance("discrepancy_sd", data::NuisanceKind::discrepancy_sd, 0.1, 0.01));
+  model.unknowns.push_back(nuisance("discrepancy_length", data::NuisanceKind::discrepancy_length, 0.4, 0.03));
   uq::ReadSet first = all_rows(3), second = all_rows(2);
   second.first = 3;
   first.factors = {2, 3};
@@ -148,7 +148,7 @@ TEST_CASE("the gradient through gain, offset, noise, common errors, settings and
 
 TEST_CASE("an unknown offset with a normal prior widens the posterior as the closed form says", "[uq]") {
   uq::CaseModel model = line(line_data, 0.05);
-  model.unknowns.push_back(nuisance("offset", uq::Acts::on_mean, 0.2, 0.3));
+  model.unknowns.push_back(nuisance("offset", data::NuisanceKind::offset, 0.2, 0.3));
   uq::ReadSet set = all_rows(5);
   set.offsets = {2};
   model.groups[0].measurement.sets = {set};
@@ -183,7 +183,7 @@ TEST_CASE("a control's error enters by the slope of the model: common to a set, 
 TEST_CASE("a relative common error is a gain that was integrated out: the same posterior to first order", "[uq]") {
   const uq::CaseModel plain = line(line_data, 0.05);
   uq::CaseModel with_gain = plain, with_covariance = plain;
-  with_gain.unknowns.push_back(nuisance("gain", uq::Acts::on_mean, 1.0, 0.03));
+  with_gain.unknowns.push_back(nuisance("gain", data::NuisanceKind::gain, 1.0, 0.03));
   uq::ReadSet set = all_rows(5);
   set.factors = {2};
   with_gain.groups[0].measurement.sets = {set};
@@ -227,7 +227,7 @@ TEST_CASE("an unknown noise scale finds the scatter that the data have, and wide
   model.unknowns.push_back({.label = "noise",
                             .prior = uq::ScaledPrior(parameter, prior),
                             .own = false,
-                            .nuisance = uq::Acts::on_spread,
+                            .nuisance = data::NuisanceKind::noise_scale,
                             .cut = {}});
   uq::ReadSet set = all_rows(20);
   set.noise = 2;
@@ -246,7 +246,7 @@ TEST_CASE(
   const Formula product = [](const Eigen::VectorXd& p, double x) { return p[0] * (1.0 + x); };
   for (const double sd : {0.02, 0.5}) {
     uq::CaseModel model = make_synthetic({{"a", 0.0, 4.0}}, product, five, Eigen::VectorXd::Constant(1, 1.0), 0.03, 1);
-    model.unknowns.push_back(nuisance("gain", uq::Acts::on_mean, 1.0, sd));
+    model.unknowns.push_back(nuisance("gain", data::NuisanceKind::gain, 1.0, sd));
     model.unknowns[1].prior = [&] {
       data::Parameter parameter{
           .name = "gain", .target = "gain", .low = std::max(0.02, 1.0 - 6.0 * sd), .high = 1.0 + 6.0 * sd};

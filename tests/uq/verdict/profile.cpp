@@ -188,7 +188,7 @@ TEST_CASE("a nuisance that undoes a parameter leaves it open in one piece, and t
     model.unknowns.push_back({.label = "offset",
                               .prior = uq::ScaledPrior(offset, offset.prior),
                               .own = false,
-                              .nuisance = uq::Acts::on_mean,
+                              .nuisance = data::NuisanceKind::offset,
                               .cut = {}});
     model.groups[0].measurement.sets = {{.first = 0, .count = 6, .factors = {}, .offsets = {2}, .settings = {}}};
     uq::find_coordinates(model.groups[0], 3);

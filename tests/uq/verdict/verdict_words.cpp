@@ -33,6 +33,7 @@ ParameterReport judged(const std::string& name, const WordFacts& facts, const Pa
   report.share_surrogate = verdict.shares.surrogate;
   report.share_structure = verdict.shares.structure;
   report.share_range = verdict.shares.range;
+  report.common = evidence.common;
   return report;
 }
 
@@ -48,23 +49,25 @@ std::vector<ParameterReport> all_parameters(const std::string& name) {
               for (const bool structural : {false, true})
                 for (const bool undecided : {false, true})
                   for (const double surrogate : {0.0, 0.3, 0.8})
-                    for (const bool pinned : {false, true}) {
-                      ParameterEvidence more;
-                      more.structural = structural;
-                      more.undecided = undecided;
-                      more.surrogate_share = surrogate;
-                      if (pinned && open_high) more.high_pinned_by = "other";
-                      if (pinned && open_low) more.low_pinned_by = "other";
-                      all.push_back(judged(name,
-                                           {.influences = influences,
-                                            .parts = parts,
-                                            .open_low = open_low,
-                                            .open_high = open_high,
-                                            .physical_low = physical,
-                                            .contraction = contraction,
-                                            .contraction_within = contraction},
-                                           more));
-                    }
+                    for (const double common : {0.0, 0.4, 0.9})
+                      for (const bool pinned : {false, true}) {
+                        ParameterEvidence more;
+                        more.structural = structural;
+                        more.undecided = undecided;
+                        more.surrogate_share = surrogate;
+                        more.common = {.share = common, .errors = {{CommonErrorKind::offset, "zero"}}};
+                        if (pinned && open_high) more.high_pinned_by = "other";
+                        if (pinned && open_low) more.low_pinned_by = "other";
+                        all.push_back(judged(name,
+                                             {.influences = influences,
+                                              .parts = parts,
+                                              .open_low = open_low,
+                                              .open_high = open_high,
+                                              .physical_low = physical,
+                                              .contraction = contraction,
+                                              .contraction_within = contraction},
+                                             more));
+                      }
   return all;
 }
 
@@ -84,11 +87,15 @@ void check_words(const std::vector<ParameterReport>& parameters, const Words& wo
     structural = structural || p.reason == Reason::structural;
     // A sentence names one reason.
     CHECK(has(p.sentence, "noise hides it") + has(p.sentence, "surrogate's error") + has(p.sentence, "would not help") +
-              has(p.sentence, "say nothing") <=
+              has(p.sentence, "say nothing") + has(p.sentence, "which all readings share") <=
           1);
     if (has(p.sentence, "is identified")) CHECK(p.verdict == Verdict::identified);
     if (p.reason == Reason::no_influence) CHECK_FALSE(has(p.sentence, "would not help"));
   }
+  // To find a common error is asked for only where it holds a part of a width.
+  if (has(remedy, "errors that all readings share"))
+    CHECK(std::any_of(parameters.begin(), parameters.end(),
+                      [](const ParameterReport& p) { return p.reason && p.common.share > 0.25; }));
   // A smaller error is asked for only where it can help.
   if (!practical) CHECK_FALSE(has(remedy, "educe the measurement error"));
   if (!structural) CHECK_FALSE(has(remedy, "will not part them"));
@@ -110,6 +117,7 @@ TEST_CASE("no combination of two parameters' facts has words that contradict eac
   for (const ParameterReport& parameter : all_parameters("a"))
     if (std::none_of(kinds.begin(), kinds.end(), [&](const ParameterReport& other) {
           return other.verdict == parameter.verdict && other.reason == parameter.reason &&
+                 (other.common.share == parameter.common.share) &&
                  (other.contraction < 0.5) == (parameter.contraction < 0.5) &&
                  (other.share_surrogate > 0.5) == (parameter.share_surrogate > 0.5);
         }))
@@ -134,6 +142,30 @@ TEST_CASE("the first remedy is that of the largest share: training runs where th
   CHECK(words.remedies.front().rfind("Make more training runs", 0) == 0);
   CHECK(has(shown_remedy(words), "up to 80 % of the posterior variance is the surrogate's"));
   CHECK_FALSE(has(shown_remedy(words), "Reduce the measurement error"));
+}
+
+TEST_CASE("a width that an offset holds asks for the offset, not for smaller errors of the readings", "[uq]") {
+  ParameterEvidence more;
+  more.common = {.share = 0.93, .errors = {{CommonErrorKind::offset, "zero"}}};
+  const WordFacts facts{.contraction = 0.3, .contraction_within = 0.3};
+  const ParameterReport held = judged("a", facts, more);
+  CHECK(held.reason == uq::Reason::common_error);
+  CHECK(has(held.sentence, "; the offset zero, which all readings share, hides it"));
+  const Words words = words_of({.parameters = {held}, .traded = {}, .parted_by = {}});
+  CHECK(shown_remedy(words) ==
+        "Read the meter without load (the offset zero): 93 % of the variance of a is held by errors that all readings "
+        "share, and neither more readings nor smaller errors of each take that away.");
+
+  SECTION("a part of it is named beside the readings' errors") {
+    more.common.share = 0.3;
+    const ParameterReport partly = judged("a", facts, more);
+    CHECK(partly.reason == uq::Reason::practical);
+    const Words both = words_of({.parameters = {partly}, .traded = {}, .parted_by = {}});
+    REQUIRE(both.remedies.size() == 2);
+    CHECK(both.remedies[0].rfind("Reduce the measurement error", 0) == 0);
+    CHECK(both.remedies[1].rfind("Read the meter without load (the offset zero): up to 30 % of the variance is", 0) ==
+          0);
+  }
 }
 
 TEST_CASE("of traded parameters another quantity is advised, too, where the surrogate leaves open why", "[uq]") {
