@@ -205,12 +205,13 @@ std::string found_by(const CommonError& error) {
 std::string common_remedy(const CommonShare& common, const Names& names) {
   Names ways;
   for (const CommonError& error : common.errors) add(ways, found_by(error));
+  const std::string part = common.share >= all_of_it
+                               ? "nearly all"
+                               : fmt::format("{}{:.0f} %", names.size() == 1 ? "" : "up to ", 100.0 * common.share);
   return sentence(
-      fmt::format("{}: {}{:.0f} % of the variance{} is held by errors that all readings share, and neither more "
-                  "readings nor smaller "
-                  "errors of each take that away",
-                  listed(ways), names.size() == 1 ? "" : "up to ", 100.0 * common.share,
-                  names.empty() ? "" : " of " + listed(names)));
+      fmt::format("{}: {} of the variance{} is held by errors that all readings share, and neither more "
+                  "readings nor smaller errors of each take that away",
+                  listed(ways), part, names.empty() ? "" : " of " + listed(names)));
 }
 
 /// `share`: of the posterior variance, the surrogate's; of the parameter that has most of it.
