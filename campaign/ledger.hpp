@@ -10,6 +10,15 @@
 
 namespace campaign {
 
+/// Runs of a batch that Slurm has, or is still to get (campaign/slurm.hpp).
+struct LeftWithSlurm {
+  std::size_t there = 0;          ///< runs that are with Slurm
+  std::size_t cancelled = 0;      ///< runs whose tasks somebody cancelled; a later call submits them again
+  std::size_t refused = 0;        ///< runs that a limit of Slurm's kept out; a later call submits them
+  std::vector<std::string> jobs;  ///< numbers of the jobs that are left
+  bool any() const { return there + cancelled + refused > 0; }
+};
+
 struct BatchResult {
   data::RunTable table;               ///< the rows there were, and one for each finished run
   std::size_t finished = 0;           ///< runs
@@ -18,6 +27,7 @@ struct BatchResult {
   std::vector<std::string> failures;  ///< point and reason
   std::vector<std::string> warnings;
   std::exception_ptr error;  ///< of a worker; the others stopped
+  LeftWithSlurm left = {};   ///< none where the runs are made here
 };
 
 class Ledger {

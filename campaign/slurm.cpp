@@ -71,7 +71,7 @@ class Follower {
     }
   }
 
-  SlurmResult follow() {
+  BatchResult follow() {
     collect();
     write_tables(workspace_, ledger_.result.table, batch_.kept);
     int looks = 0;
@@ -345,15 +345,15 @@ class Follower {
     return usual_runs_per_task(seconds, runs);
   }
 
-  SlurmResult result() {
+  BatchResult result() {
     save_slurm_record(workspace_.out, record_);
-    SlurmResult result{std::move(ledger_.result)};
+    BatchResult result = std::move(ledger_.result);
     for (std::size_t i = 0; i < runs_.size(); ++i) {
       if (result.ended[i] || cancelled_.contains(i)) continue;
-      ++(record_.runs.contains(followed_[i].name) ? result.with_slurm : result.refused);
+      ++(record_.runs.contains(followed_[i].name) ? result.left.there : result.left.refused);
     }
-    result.cancelled = cancelled_.size();
-    result.jobs = job_ids(record_);
+    result.left.cancelled = cancelled_.size();
+    result.left.jobs = job_ids(record_);
     if (record_.runs.empty()) remove_empty_logs();
     return result;
   }
@@ -387,7 +387,7 @@ class Follower {
 
 }  // namespace
 
-SlurmResult run_on_slurm(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
+BatchResult run_on_slurm(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                          const BatchOptions& batch, const SlurmOptions& options) {
   SlurmCommands(options.start).require_programs();
   foretell_materials(workspace, runs, 0);

@@ -25,17 +25,10 @@ struct SlurmOptions {
   std::function<data::ProgramEnd(const data::ProgramCall&)> start = data::run_program;
 };
 
-struct SlurmResult : BatchResult {
-  std::size_t with_slurm = 0;     ///< runs that are left there
-  std::size_t cancelled = 0;      ///< runs whose tasks somebody cancelled; a later call submits them again
-  std::size_t refused = 0;        ///< runs that a limit of Slurm's kept out; a later call submits them
-  std::vector<std::string> jobs;  ///< numbers of the jobs that are left
-};
-
 /// Returns when all runs have ended, when `batch.stop` is requested (the jobs stay), or as SlurmOptions::detach says.
 /// `batch.jobs` has no meaning here. While the controller does not answer it waits, and says so. Throws InputError: 69
 /// where Slurm's programs are missing, 64 where sbatch refuses the job, 78 where the rig makes a run nonsense.
-SlurmResult run_on_slurm(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
+BatchResult run_on_slurm(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                          const BatchOptions& batch, const SlurmOptions& options);
 
 /// How many of the runs an earlier call left with Slurm, as OUT/slurm/campaign.json says.

@@ -10,6 +10,7 @@
 
 #include "campaign/verify.hpp"
 #include "cli/calibration.hpp"
+#include "cli/make_runs.hpp"
 #include "cli/train_posterior.hpp"
 #include "data/interrupt.hpp"
 #include "data/number_text.hpp"
@@ -135,16 +136,10 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
     if (!missing.empty()) {
       say(common, fmt::format("verification, round {}: {} at points of the posterior", round,
                               data::counted(missing.size(), "run")));
-      BatchResult batch;
-      {
-        data::Progress progress("verification runs", missing.size(),
-                                {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
-        batch = run_batch(workspace, missing, std::move(rows.all),
-                          {.jobs = options.jobs, .kept = rows.kept, .stop = interrupt.token(), .progress = &progress});
-      }
+      const BatchResult batch = make_runs(common, workspace, missing, std::move(rows.all), rows.kept,
+                                          {.what = "verification runs", .jobs = options.jobs}, interrupt.token());
       rows = rows_to_learn_from(common, workspace);
-      for (const std::string& warning : batch.warnings) say(common, "warning: " + warning);
-      for (const std::string& failure : batch.failures) say(common, "warning: failed: " + failure);
+      say_faults(common, batch.warnings, batch.failures);
       doubtful = doubtful || !batch.warnings.empty() || !batch.failures.empty();
       if (batch.error) std::rethrow_exception(batch.error);
       if (interrupt.interrupted()) {

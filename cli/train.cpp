@@ -7,13 +7,11 @@
 
 #include "campaign/design.hpp"
 #include "campaign/foretell.hpp"
-#include "campaign/run_batch.hpp"
-#include "cli/command.hpp"
+#include "cli/make_runs.hpp"
 #include "cli/train_posterior.hpp"
 #include "cli/train_slurm.hpp"
 #include "data/interrupt.hpp"
 #include "data/number_text.hpp"
-#include "data/progress.hpp"
 
 namespace cli {
 namespace fs = std::filesystem;
@@ -28,6 +26,89 @@ struct TrainOptions {
   double share = 0.1;
   SlurmChoice slurm;
 };
+
+/// Runs where they sharpen the posteriors. `jobs_asked`: as given, 0 for none.
+data::ExitStatus train_posterior(const TrainOptions& options, int jobs_asked, std::optional<SlurmOptions> slurm) {
+  constexpr int batch_of_slurm = 16;
+  PosteriorTraining training{.jobs = options.jobs, .runs = options.runs, .seconds = {}, .share = options.share};
+  if (slurm) {
+    training.jobs = jobs_asked > 0 ? jobs_asked : batch_of_slurm;
+    training.slurm = std::move(slurm);
+  }
+  if (!options.time.empty()) training.seconds = parse_duration(options.time, "--for");
+  return train_until_posterior(options.common, training);
+}
+
+void announce(const Common& common, const Campaign& campaign, std::size_t rows) {
+  const std::size_t missing = campaign.points.size();
+  if (missing == 0) {
+    answer(common, fmt::format("nothing is missing: the table has {}. For more: --runs N", data::counted(rows, "run")));
+  } else {
+    say(common, fmt::format("{} to make{}; the table has {}", data::counted(missing, "run"),
+                            campaign.continues ? ", left by an unfinished campaign" : "", rows));
+  }
+}
+
+/// The answer, its JSON and the exit status. `foretold`: some runs were expected to be too short.
+data::ExitStatus tell_made(const Common& common, const Workspace& workspace, const BatchResult& made,
+                           const SlurmOptions* slurm, bool foretold, bool interrupted) {
+  const std::string table = (fs::path(workspace.out) / "training.csv").string();
+  say_faults(common, made.warnings, made.failures);
+  nlohmann::json json{{"finished", made.finished}, {"failed", made.failures},        {"warnings", made.warnings},
+                      {"unsteady", made.unsteady}, {"rows", made.table.rows.size()}, {"table", table}};
+  if (slurm != nullptr) json["slurm"] = slurm_json(made.left);
+  print_json(common, json);
+  if (const auto status = tell_left(common, made, slurm != nullptr && slurm->detach)) return *status;
+  if (interrupted) {
+    say(common, fmt::format("interrupted after {} of {} runs; the same command does the rest", made.finished,
+                            made.ended.size()));
+    return data::ExitStatus::interrupted;
+  }
+  answer(common,
+         fmt::format("{}, {} in all: {}", data::counted(made.finished, "new run"), made.table.rows.size(), table));
+  if (!made.failures.empty()) return data::ExitStatus::warning;
+  if (workspace.unsteady == Unsteady::use) return data::ExitStatus::done;  // short runs were asked for
+  if (made.unsteady > 0)
+    say(common, fmt::format("warning: {} of the new runs are not of the steady flow and train nothing "
+                            "(training.unsteady = \"use\" takes them)",
+                            made.unsteady));
+  return foretold || !made.warnings.empty() || made.unsteady > 0 ? data::ExitStatus::warning : data::ExitStatus::done;
+}
+
+/// The missing runs of the design, or so many points of the last posteriors.
+data::ExitStatus train_missing(const TrainOptions& options, const std::optional<SlurmOptions>& slurm) {
+  const data::InterruptGuard interrupt;
+  const Common& common = options.common;
+  const Workspace workspace = open_workspace(common);
+  require_rig(workspace);
+  make_out(workspace, "runs");
+  const auto held = hold_out(workspace, Writes::training, "train");
+
+  StudyRows rows = study_rows(workspace);
+  for (const std::string& note : rows.notes) say(common, "note: " + note);
+  const Campaign campaign = options.at_posterior > 0 ? plan_at_posterior(workspace, rows.all, options.at_posterior)
+                                                     : plan_campaign(workspace, rows.all, options.runs);
+  write_design(workspace, campaign.points);
+  announce(common, campaign, rows.all.rows.size());
+  const std::string foretold = too_short(workspace, campaign.points);
+  if (!foretold.empty()) say(common, "warning: " + foretold);
+
+  std::vector<PlannedRun> runs;
+  for (const Point& point : campaign.points) runs.push_back({point, workspace.study.seed});
+  if (const std::size_t elsewhere = slurm ? 0 : runs_with_slurm(workspace, runs); elsewhere > 0)
+    say(common,
+        fmt::format("note: {} of them were left with Slurm, which demcal train --slurm collects; those that are "
+                    "not finished are made here all the same",
+                    elsewhere));
+  const BatchResult made = make_runs(common, workspace, runs, std::move(rows.all), rows.kept,
+                                     {.jobs = options.jobs, .slurm = slurm}, interrupt.token());
+  std::vector<Point> left;
+  for (std::size_t i = 0; i < campaign.points.size(); ++i)
+    if (!made.ended[i]) left.push_back(campaign.points[i]);
+  write_design(workspace, left);
+  if (made.error) std::rethrow_exception(made.error);
+  return tell_made(common, workspace, made, slurm ? &*slurm : nullptr, !foretold.empty(), interrupt.interrupted());
+}
 
 }  // namespace
 
@@ -72,92 +153,11 @@ Action add_train(CLI::App& program) {
   return [options, command] {
     if (!options->slurm.task_list.empty()) return make_task(options->common, options->slurm);
     const int jobs_asked = command->count("--jobs") > 0 ? options->jobs : 0;
-    if (options->until_posterior) {
-      PosteriorTraining training{.jobs = options->jobs, .runs = options->runs, .seconds = {}, .share = options->share};
-      if (options->slurm.slurm) {
-        training.jobs = jobs_asked > 0 ? jobs_asked : 16;
-        training.slurm = slurm_options(options->common, options->slurm, *command);
-      }
-      if (!options->time.empty()) training.seconds = parse_duration(options->time, "--for");
-      return train_until_posterior(options->common, training);
-    }
-    const data::InterruptGuard interrupt;
-    const Common& common = options->common;
-    const Workspace workspace = open_workspace(common);
-    require_rig(workspace);
-    make_out(workspace, "runs");
-    const auto held = hold_out(workspace, Writes::training, "train");
-    StudyRows rows = study_rows(workspace);
-    for (const std::string& note : rows.notes) say(common, "note: " + note);
-    const std::size_t before = rows.all.rows.size();
-    const Campaign campaign = options->at_posterior > 0 ? plan_at_posterior(workspace, rows.all, options->at_posterior)
-                                                        : plan_campaign(workspace, rows.all, options->runs);
-    write_design(workspace, campaign.points);
-    if (campaign.points.empty())
-      answer(common,
-             fmt::format("nothing is missing: the table has {}. For more: --runs N", data::counted(before, "run")));
-    else
-      say(common, fmt::format("{} to make{}; the table has {}", data::counted(campaign.points.size(), "run"),
-                              campaign.continues ? ", left by an unfinished campaign" : "", before));
-    const std::string foretold = too_short(workspace, campaign.points);
-    if (!foretold.empty()) say(common, "warning: " + foretold);
-
-    std::vector<PlannedRun> runs;
-    for (const Point& point : campaign.points) runs.push_back({point, workspace.study.seed});
-    const std::size_t elsewhere = options->slurm.slurm ? 0 : runs_with_slurm(workspace, runs);
-    if (elsewhere > 0)
-      say(common,
-          fmt::format("note: {} of them were left with Slurm, which demcal train --slurm collects; those that are "
-                      "not finished are made here all the same",
-                      elsewhere));
-    SlurmResult ledger;
-    {
-      data::Progress progress("training runs", campaign.points.size(),
-                              {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
-      const BatchOptions batch{
-          .jobs = options->jobs, .kept = rows.kept, .stop = interrupt.token(), .progress = &progress};
-      if (options->slurm.slurm) {
-        SlurmOptions slurm = slurm_options(common, options->slurm, *command);
-        slurm.at_once = jobs_asked;
-        ledger = run_on_slurm(workspace, runs, std::move(rows.all), batch, slurm);
-      } else {
-        static_cast<BatchResult&>(ledger) = run_batch(workspace, runs, std::move(rows.all), batch);
-      }
-    }
-    std::vector<Point> left;
-    for (std::size_t i = 0; i < campaign.points.size(); ++i)
-      if (!ledger.ended[i]) left.push_back(campaign.points[i]);
-    write_design(workspace, left);
-    if (ledger.error) std::rethrow_exception(ledger.error);
-    const std::string table = (fs::path(workspace.out) / "training.csv").string();
-    for (const std::string& warning : ledger.warnings) say(common, "warning: " + warning);
-    for (const std::string& failure : ledger.failures) say(common, "warning: failed: " + failure);
-    nlohmann::json json{{"finished", ledger.finished},      {"failed", ledger.failures},
-                        {"warnings", ledger.warnings},      {"unsteady", ledger.unsteady},
-                        {"rows", ledger.table.rows.size()}, {"table", table}};
-    if (options->slurm.slurm) json["slurm"] = slurm_json(ledger);
-    print_json(common, json);
-    if (const auto status = tell_left(common, ledger, options->slurm.detach)) return *status;
-    if (interrupt.interrupted()) {
-      say(common, fmt::format("interrupted after {} of {} runs; the same command does the rest", ledger.finished,
-                              campaign.points.size()));
-      return data::ExitStatus::interrupted;
-    }
-    answer(common, fmt::format("{}, {} in all: {}", data::counted(ledger.finished, "new run"), ledger.table.rows.size(),
-                               table));
-    const bool short_wanted = workspace.unsteady == Unsteady::use;  // such runs were asked for
-    if (short_wanted) {
-      ledger.unsteady = 0;
-      ledger.warnings.clear();
-    }
-    if (ledger.unsteady > 0)
-      say(common,
-          fmt::format("warning: {} of the new runs are not of the steady flow and train nothing (training.unsteady "
-                      "= \"use\" takes them)",
-                      ledger.unsteady));
-    const bool clean = (short_wanted || foretold.empty()) && ledger.failures.empty() && ledger.warnings.empty() &&
-                       ledger.unsteady == 0;
-    return clean ? data::ExitStatus::done : data::ExitStatus::warning;
+    std::optional<SlurmOptions> slurm;
+    if (options->slurm.slurm) slurm = slurm_options(options->common, options->slurm, *command);
+    if (options->until_posterior) return train_posterior(*options, jobs_asked, std::move(slurm));
+    if (slurm) slurm->at_once = jobs_asked;
+    return train_missing(*options, slurm);
   };
 }
 

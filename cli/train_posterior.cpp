@@ -7,11 +7,10 @@
 
 #include "campaign/design.hpp"
 #include "campaign/posterior_campaign.hpp"
-#include "cli/command.hpp"
+#include "cli/make_runs.hpp"
 #include "cli/train_slurm.hpp"
 #include "data/interrupt.hpp"
 #include "data/number_text.hpp"
-#include "data/progress.hpp"
 
 namespace cli {
 namespace {
@@ -59,19 +58,6 @@ std::string ending_text(CampaignEnding ending, double share) {
   return "too many runs failed";
 }
 
-/// Makes the batch here, or by Slurm.
-SlurmResult make_batch(const Common& common, const Workspace& workspace, PosteriorCampaign& campaign,
-                       const PosteriorTraining& options, const data::InterruptGuard& interrupt) {
-  data::Progress progress("training runs", campaign.batch().size(),
-                          {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
-  const BatchOptions how{
-      .jobs = options.jobs, .kept = campaign.rows().kept, .stop = interrupt.token(), .progress = &progress};
-  if (options.slurm) return run_on_slurm(workspace, campaign.batch(), campaign.hand_over_rows(), how, *options.slurm);
-  SlurmResult made;
-  static_cast<BatchResult&>(made) = run_batch(workspace, campaign.batch(), campaign.hand_over_rows(), how);
-  return made;
-}
-
 nlohmann::json shares_json(const data::Study& study, const Assessment& assessment) {
   nlohmann::json all = nlohmann::json::array();
   for (std::size_t i = 0; i < assessment.shares.size(); ++i)
@@ -109,12 +95,11 @@ data::ExitStatus list_points(const Common& common, const Workspace& workspace, c
 
 /// What the campaign came to, in words and as JSON.
 data::ExitStatus tell(const Common& common, const Workspace& workspace, const PosteriorCampaign& campaign,
-                      const PosteriorTraining& options, const std::optional<SlurmResult>& left_there,
+                      const PosteriorTraining& options, const std::optional<BatchResult>& left_there,
                       bool interrupted) {
   const CampaignTotals& totals = campaign.totals();
   const std::size_t rows = campaign.rows().table.rows.size();
-  for (const std::string& warning : totals.warnings) say(common, "warning: " + warning);
-  for (const std::string& failure : totals.failures) say(common, "warning: failed: " + failure);
+  say_faults(common, totals.warnings, totals.failures);
   const std::size_t unsteady = workspace.unsteady == Unsteady::use ? 0 : totals.unsteady;  // else they were asked for
   if (unsteady > 0)
     say(common, fmt::format("warning: {} of the new runs are not of the steady flow and train nothing", unsteady));
@@ -125,7 +110,7 @@ data::ExitStatus tell(const Common& common, const Workspace& workspace, const Po
                          {"rows", rows},
                          {"share_wanted", options.share}};
   if (campaign.assessed()) json["cases"] = shares_json(workspace.study, campaign.assessment());
-  if (left_there) json["slurm"] = slurm_json(*left_there);
+  if (left_there) json["slurm"] = slurm_json(left_there->left);
   print_json(common, json);
   if (left_there) return *tell_left(common, *left_there, options.slurm->detach);
   if (interrupted) {
@@ -184,7 +169,7 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
                                  : ""));
   }
 
-  std::optional<SlurmResult> left_there;
+  std::optional<BatchResult> left_there;
   while (!campaign.ending() && !left_there && !interrupt.interrupted()) {
     if (campaign.look())
       say(common, fmt::format("{}: {}", data::counted(campaign.rows().table.rows.size(), "run"),
@@ -193,10 +178,11 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
     if (campaign.chosen())
       for (const PlannedRun& run : campaign.batch())
         say(common, fmt::format("  next: {} {}", run.point.material, describe(workspace.study, run.point)));
-    SlurmResult made = make_batch(common, workspace, campaign, options, interrupt);
+    BatchResult made = make_runs(common, workspace, campaign.batch(), campaign.hand_over_rows(), campaign.rows().kept,
+                                 {.jobs = options.jobs, .slurm = options.slurm}, interrupt.token());
     campaign.take(made);
     if (made.error) std::rethrow_exception(made.error);
-    if (made.with_slurm + made.cancelled + made.refused > 0) left_there = std::move(made);
+    if (made.left.any()) left_there = std::move(made);
   }
   return tell(common, workspace, campaign, options, left_there, interrupt.interrupted());
 }

@@ -81,29 +81,28 @@ data::ExitStatus make_task(const Common& common, const SlurmChoice& choice) {
   return outcome.interrupted ? data::ExitStatus::interrupted : data::ExitStatus::done;
 }
 
-std::optional<data::ExitStatus> tell_left(const Common& common, const SlurmResult& result, bool detached) {
-  if (result.with_slurm + result.cancelled + result.refused == 0) return {};
-  const std::string jobs = fmt::format("{}", fmt::join(result.jobs, " "));
+std::optional<data::ExitStatus> tell_left(const Common& common, const BatchResult& result, bool detached) {
+  const LeftWithSlurm& left = result.left;
+  if (!left.any()) return {};
+  const std::string jobs = fmt::format("{}", fmt::join(left.jobs, " "));
   std::string text = fmt::format("{} new runs, {} in all", result.finished, result.table.rows.size());
-  if (result.with_slurm > 0) text += fmt::format("; {} are with Slurm, in the jobs {}", result.with_slurm, jobs);
-  if (result.refused > 0) text += fmt::format("; {} are not submitted yet", result.refused);
-  if (result.cancelled > 0) text += fmt::format("; the tasks of {} were cancelled", result.cancelled);
-  if (detached && result.cancelled == 0) {
+  if (left.there > 0) text += fmt::format("; {} are with Slurm, in the jobs {}", left.there, jobs);
+  if (left.refused > 0) text += fmt::format("; {} are not submitted yet", left.refused);
+  if (left.cancelled > 0) text += fmt::format("; the tasks of {} were cancelled", left.cancelled);
+  if (detached && left.cancelled == 0) {
     answer(common, text + ". The same command collects what is finished; without --detach it follows the rest");
     return data::ExitStatus::done;
   }
   say(common,
-      text + (result.with_slurm > 0
+      text + (left.there > 0
                   ? fmt::format(". The jobs go on, and the same command collects them (scancel {} ends them)", jobs)
                   : ". The same command submits them again"));
   return data::ExitStatus::interrupted;
 }
 
-nlohmann::json slurm_json(const SlurmResult& result) {
-  return {{"with_slurm", result.with_slurm},
-          {"cancelled", result.cancelled},
-          {"not_submitted", result.refused},
-          {"jobs", result.jobs}};
+nlohmann::json slurm_json(const LeftWithSlurm& left) {
+  return {
+      {"with_slurm", left.there}, {"cancelled", left.cancelled}, {"not_submitted", left.refused}, {"jobs", left.jobs}};
 }
 
 }  // namespace cli

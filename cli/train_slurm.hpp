@@ -26,8 +26,8 @@ SlurmOptions slurm_options(const Common& common, const SlurmChoice& choice, cons
 data::ExitStatus make_task(const Common& common, const SlurmChoice& choice);
 
 /// Says which runs are not made, and what becomes of them; the exit status where there are such.
-std::optional<data::ExitStatus> tell_left(const Common& common, const SlurmResult& result, bool detached);
+std::optional<data::ExitStatus> tell_left(const Common& common, const BatchResult& result, bool detached);
 
-nlohmann::json slurm_json(const SlurmResult& result);
+nlohmann::json slurm_json(const LeftWithSlurm& left);
 
 }  // namespace cli

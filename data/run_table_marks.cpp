@@ -76,10 +76,10 @@ void leave_out_zeros(TableRead& read) {
     const Column& column = table.outputs[k];
     Finding finding = about_rows(FindingKind::failed_runs, Severity::warning, places);
     finding.what = fmt::format(
-        "{} {} of {} exactly 0 with a standard error of exactly 0, where the others lie from {:.4g} to {:.4g} {}: runs "
+        "{} {} of {} exactly 0 with a standard error of exactly 0, where the others lie from {:.4g} to {:.4g}{}: runs "
         "that failed, and left out",
         zeros.size(), zeros.size() == 1 ? "row gives a value" : "rows give a value", column.name,
-        column.unit.from_si(low), column.unit.from_si(high), column.unit.symbol);
+        column.unit.from_si(low), column.unit.from_si(high), behind_number(column.unit.symbol));
     finding.remedy = "remove them, write nan, or name them in [training] leave_out";
     read.findings.push_back(std::move(finding));
   }

@@ -36,7 +36,7 @@ struct Display {
   std::string_view symbol;
   std::string text(double si) const {
     const double value = unit != nullptr ? unit->from_si(si) : si;
-    return symbol.empty() || symbol == "1" ? fmt::format("{:.10g}", value) : fmt::format("{:.10g} {}", value, symbol);
+    return fmt::format("{:.10g}{}", value, behind_number(symbol));
   }
 };
 

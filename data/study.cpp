@@ -291,9 +291,10 @@ std::vector<Problem> outside_training_range(const Study& study) {
         if (point.controls[i] >= control.low - slack && point.controls[i] <= control.high + slack) continue;
         problems.push_back(
             {fmt::format("{}:{}: {}", shown_path(set.file), point.line, control.name),
-             fmt::format("{:.10g} {} is outside the training range, {:.10g} to {:.10g} {}",
-                         control.unit.from_si(point.controls[i]), control.unit.symbol,
-                         control.unit.from_si(control.low), control.unit.from_si(control.high), control.unit.symbol),
+             fmt::format("{:.10g}{} is outside the training range, {:.10g} to {:.10g}{}",
+                         control.unit.from_si(point.controls[i]), behind_number(control.unit.symbol),
+                         control.unit.from_si(control.low), control.unit.from_si(control.high),
+                         behind_number(control.unit.symbol)),
              fmt::format("the surrogate extrapolates there: widen controls.{} and train again", control.name)});
       }
     }

@@ -72,8 +72,8 @@ void check_roles(const Section& section, const CalibrationCase& item, const Stud
         const Unit& unit = parameter.unit;
         section.problem(
             "fixed",
-            fmt::format("{} = {:.10g} {} is outside its range, {:.10g} to {:.10g}", name, unit.from_si(fixed->second),
-                        unit.symbol, unit.from_si(parameter.low), unit.from_si(parameter.high)),
+            fmt::format("{} = {:.10g}{} is outside its range, {:.10g} to {:.10g}", name, unit.from_si(fixed->second),
+                        behind_number(unit.symbol), unit.from_si(parameter.low), unit.from_si(parameter.high)),
             "choose a value inside, where there are runs");
       }
     }
@@ -89,8 +89,8 @@ void check_comparison(const Section& section, const CalibrationCase& item, const
                       "compare with a free parameter held at a value");
     if (value < parameter.low || value > parameter.high)
       section.problem("compare",
-                      fmt::format("{} = {:.10g} {} is outside its range, {:.10g} to {:.10g}", name,
-                                  parameter.unit.from_si(value), parameter.unit.symbol,
+                      fmt::format("{} = {:.10g}{} is outside its range, {:.10g} to {:.10g}", name,
+                                  parameter.unit.from_si(value), behind_number(parameter.unit.symbol),
                                   parameter.unit.from_si(parameter.low), parameter.unit.from_si(parameter.high)),
                       "choose a value inside, where there are runs");
   }

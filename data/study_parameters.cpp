@@ -21,7 +21,7 @@ Unit read_unit(const Section& section, const std::string& fallback) {
 
 /// A value in the parameter's unit as a person reads it.
 std::string shown(double si, const Unit& unit) {
-  return fmt::format("{:.10g}{}{}", unit.from_si(si), bare_unit(unit) != nullptr ? " " : "", unit.symbol);
+  return fmt::format("{:.10g}{}", unit.from_si(si), behind_number(unit.symbol));
 }
 
 double read_value(const Section& section, std::string_view key, const Unit& unit, Range range = any_number) {
@@ -75,7 +75,7 @@ void read_mean_and_sd(const Section& section, Prior& prior, const Parameter& par
 
 }  // namespace
 
-const Unit* bare_unit(const Unit& unit) { return unit.symbol.empty() || unit.symbol == "1" ? nullptr : &unit; }
+const Unit* bare_unit(const Unit& unit) { return is_bare(unit.symbol) ? nullptr : &unit; }
 
 Scale read_scale(const Section& section, double low, const Unit& unit) {
   if (section.choice("scale", {"linear", "log"}, "linear") == "linear") return Scale::linear;

@@ -30,6 +30,14 @@ struct Unit {
   std::string digits(double si) const;
 };
 
+/// Whether a number of this unit stands alone.
+inline bool is_bare(std::string_view symbol) { return symbol.empty() || symbol == "1"; }
+
+/// What stands behind a number: " mN m", or nothing.
+inline std::string behind_number(std::string_view symbol) {
+  return is_bare(symbol) ? std::string() : " " + std::string(symbol);
+}
+
 /// Parses a unit. Throws std::invalid_argument when UDUNITS-2 does not know it.
 Unit parse_unit(std::string_view symbol);
 

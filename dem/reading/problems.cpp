@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "data/unit.hpp"
 #include "dem/bed/derived.hpp"
 #include "dem/case/grains.hpp"
 #include "dem/reading/prepare.hpp"
@@ -20,8 +21,10 @@ void check_ranges(const Case& c, Found& found) {
     const double x = get_target(c, name);
     const Target t = target(name);
     if (!(x >= t.low && x <= t.high)) {
-      found.push_back({t.name, fmt::format("is {:g} {}, but must lie in [{:g}, {:g}]", x, t.unit, t.low, t.high),
-                       "choose a value inside it"});
+      found.push_back(
+          {t.name,
+           fmt::format("is {:g}{}, but must lie in [{:g}, {:g}]", x, data::behind_number(t.unit), t.low, t.high),
+           "choose a value inside it"});
     } else if (std::string why = unused_because(c, name); !why.empty()) {  // of a pair
       found.push_back({t.name, std::move(why), "remove it, or choose the law that reads it"});
     }

@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "data/unit.hpp"
 #include "dem/case/coefficients.hpp"
 #include "dem/case/grains.hpp"
 #include "dem/rig/rig.hpp"
@@ -306,9 +307,10 @@ void set_target(Case& c, std::string_view name, double si) {
   }
   const Target& t = b->target;
   if (!(si >= t.low && si <= t.high)) {
-    throw data::InputError(data::ExitStatus::bad_study,
-                           {t.name, fmt::format("is {:g} {}, but must lie in [{:g}, {:g}]", si, t.unit, t.low, t.high),
-                            "choose a value inside it"});
+    throw data::InputError(
+        data::ExitStatus::bad_study,
+        {t.name, fmt::format("is {:g}{}, but must lie in [{:g}, {:g}]", si, data::behind_number(t.unit), t.low, t.high),
+         "choose a value inside it"});
   }
   if (std::string why = b->unused(c); !why.empty())
     throw data::InputError(data::ExitStatus::bad_study,

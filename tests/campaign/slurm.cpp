@@ -34,7 +34,7 @@ struct Site {
     job.tasks[static_cast<std::size_t>(task)].word = "CD";
   }
 
-  SlurmResult follow(SlurmOptions options = {}, std::stop_token stop = {}) {
+  BatchResult follow(SlurmOptions options = {}, std::stop_token stop = {}) {
     options.program = {"demcal", "train", "study"};
     if (options.runs_per_task == 0) options.runs_per_task = 1;
     options.first_wait = 1e-4;
@@ -59,12 +59,12 @@ TEST_CASE("runs are submitted once, collected once, and the table has a row for 
   site.slurm.step = [&](const std::string&, int task, FakeSlurm::Job& job) {
     if (site.slurm.looks > 2 + task && job.tasks[static_cast<std::size_t>(task)].word == "R") site.finish(job, task);
   };
-  const SlurmResult result = site.follow({.runs_per_task = 2});
+  const BatchResult result = site.follow({.runs_per_task = 2});
   CHECK(site.slurm.submissions == 2);  // 5 tasks, 3 in a job
   CHECK(result.finished == 10);
   CHECK(result.table.rows.size() == 10);
   CHECK(result.failures.empty());
-  CHECK(result.with_slurm + result.cancelled + result.refused == 0);
+  CHECK(!result.left.any());
   CHECK(runs_with_slurm(site.workspace, site.runs) == 0);
   std::vector<std::string> notes;
   CHECK(read_own_table(site.workspace, notes).table.rows.size() == 10);
@@ -92,7 +92,7 @@ TEST_CASE("a task that ends before its runs are made is submitted again, run by 
       site.finish(job, task);
     }
   };
-  const SlurmResult result = site.follow({.runs_per_task = 4});
+  const BatchResult result = site.follow({.runs_per_task = 4});
   CHECK(lost == 1);
   CHECK(result.finished == 4);
   CHECK(site.slurm.submissions == 2);
@@ -114,7 +114,7 @@ TEST_CASE("a run whose task never gives a result fails with the end of its log, 
       site.finish(job, task);
     }
   };
-  const SlurmResult result = site.follow({.most_tries = 3});
+  const BatchResult result = site.follow({.most_tries = 3});
   CHECK(site.slurm.submissions == 3);
   CHECK(result.finished == 2);
   REQUIRE(result.failures.size() == 1);
@@ -131,7 +131,7 @@ TEST_CASE("a run that the DEM gives up fails at once, with the DEM's reason") {
                          task == 0 ? dem::RunStatus::failed : dem::RunStatus::done);
     job.tasks[static_cast<std::size_t>(task)].word = "CD";
   };
-  const SlurmResult result = site.follow();
+  const BatchResult result = site.follow();
   CHECK(site.slurm.submissions == 1);
   CHECK(result.finished == 1);
   REQUIRE(result.failures.size() == 1);
@@ -156,7 +156,7 @@ TEST_CASE("a controller that does not answer is waited for, and said once") {
   options.start = answer;
   data::Progress progress(
       "runs", 3, {.style = data::ProgressStyle::lines, .write = [&](const std::string& t) { site.said += t; }});
-  const SlurmResult result = run_on_slurm(site.workspace, site.runs, data::empty_table(site.workspace.study),
+  const BatchResult result = run_on_slurm(site.workspace, site.runs, data::empty_table(site.workspace.study),
                                           {.jobs = 1, .kept = {}, .stop = {}, .progress = &progress}, options);
   CHECK(silences == 20);
   CHECK(result.finished == 3);
@@ -188,22 +188,22 @@ TEST_CASE("a submission whose answer was lost is looked for: neither made twice 
 
 TEST_CASE("a later call follows what an earlier one submitted") {
   Site site(4);
-  const SlurmResult left = site.follow({.detach = true});
-  CHECK(left.with_slurm == 4);
-  CHECK(left.jobs == std::vector<std::string>{"101"});
+  const BatchResult left = site.follow({.detach = true});
+  CHECK(left.left.there == 4);
+  CHECK(left.left.jobs == std::vector<std::string>{"101"});
   CHECK(runs_with_slurm(site.workspace, site.runs) == 4);
   int made = 0;
   SECTION("and collects what was finished in between") {
     for (auto& [name, job] : site.slurm.jobs)
       for (int k = 0; k < 2; ++k) site.finish(job, k);
-    const SlurmResult part = site.follow({.detach = true});
+    const BatchResult part = site.follow({.detach = true});
     CHECK(part.finished == 2);
-    CHECK(part.with_slurm == 2);
+    CHECK(part.left.there == 2);
   }
   SECTION("also when Slurm has forgotten the tasks: those without a result are submitted again") {
     site.slurm.jobs.clear();
-    const SlurmResult again = site.follow({.detach = true});
-    CHECK(again.with_slurm == 4);
+    const BatchResult again = site.follow({.detach = true});
+    CHECK(again.left.there == 4);
     CHECK(site.slurm.submissions == 2);
     made = 1;
   }
@@ -216,10 +216,10 @@ TEST_CASE("a later call follows what an earlier one submitted") {
 
 TEST_CASE("runs of an earlier call that are no longer asked for are remembered while they are in the queue") {
   Site site(4);
-  CHECK(site.follow({.detach = true}).with_slurm == 4);
+  CHECK(site.follow({.detach = true}).left.there == 4);
   const std::vector<PlannedRun> all = site.runs;
   site.runs.resize(1);
-  CHECK(site.follow({.detach = true}).with_slurm == 1);
+  CHECK(site.follow({.detach = true}).left.there == 1);
   CHECK(runs_with_slurm(site.workspace, all) == 4);
   site.slurm.step = [&](const std::string&, int task, FakeSlurm::Job& job) { site.finish(job, task); };
   CHECK(site.follow().table.rows.size() == 1);
@@ -235,8 +235,8 @@ TEST_CASE("interruption leaves the jobs where they are") {
   site.slurm.on_look = [&] {
     if (site.slurm.looks == 3) stop.request_stop();
   };
-  const SlurmResult result = site.follow({}, stop.get_token());
-  CHECK(result.with_slurm == 2);
+  const BatchResult result = site.follow({}, stop.get_token());
+  CHECK(result.left.there == 2);
   CHECK(result.finished == 0);
   CHECK(runs_with_slurm(site.workspace, site.runs) == 2);
 }
@@ -249,10 +249,10 @@ TEST_CASE("what somebody cancels is not submitted again before the next call") {
     else
       site.finish(job, task);
   };
-  const SlurmResult result = site.follow();
+  const BatchResult result = site.follow();
   CHECK(site.slurm.submissions == 1);
   CHECK(result.finished == 2);
-  CHECK(result.cancelled == 1);
+  CHECK(result.left.cancelled == 1);
   site.slurm.step = [&](const std::string&, int task, FakeSlurm::Job& job) { site.finish(job, task); };
   CHECK(site.follow().table.rows.size() == 3);
   CHECK(site.slurm.submissions == 2);
@@ -273,7 +273,7 @@ TEST_CASE("under a limit on submitted tasks the runs are submitted in parts") {
     most = std::max(most, in_queue());
     if (slurm.looks % 3 == 0 && job.tasks[static_cast<std::size_t>(task)].word == "R") site.finish(job, task);
   };
-  const SlurmResult result = site.follow();
+  const BatchResult result = site.follow();
   CHECK(result.finished == 9);
   CHECK(most <= 4);
   CHECK_THAT(site.said, Contains("Slurm takes no more tasks now"));
@@ -305,7 +305,7 @@ TEST_CASE("ten thousand finished runs are collected in under a minute", "[slow]"
     }
     job.tasks[static_cast<std::size_t>(task)].word = "CD";
   };
-  const SlurmResult result = site.follow({.runs_per_task = 10});
+  const BatchResult result = site.follow({.runs_per_task = 10});
   const double seconds = static_cast<double>(std::clock() - made) / CLOCKS_PER_SEC;
   WARN(fmt::format("10,000 runs collected in {:.1f} s of processor time", seconds));
   CHECK(result.finished == 10000);

@@ -141,8 +141,8 @@ void check_control_unit(const data::Study& study, const data::RunTable& table, c
          .place = place_of(set, set.points.front()) + ": " + control.name,
          .severity = Severity::warning,
          .what = fmt::format(
-             "observed from {:.4g} to {:.4g} {}, the runs from {:.4g} to {:.4g}. Is another unit meant, {}?",
-             control.unit.from_si(seen.low), control.unit.from_si(seen.high), control.unit.symbol,
+             "observed from {:.4g} to {:.4g}{}, the runs from {:.4g} to {:.4g}. Is another unit meant, {}?",
+             control.unit.from_si(seen.low), control.unit.from_si(seen.high), behind_number(control.unit.symbol),
              control.unit.from_si(runs.low), control.unit.from_si(runs.high), known->between),
          .remedy = fmt::format("write both in the study's unit, or set controls.{}.unit", control.name),
          .places = {}});
@@ -250,15 +250,15 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
                     .places = {}};
     if (too_small) {
       finding.what = fmt::format(
-          "the readings scatter {:.3g} times more than their standard errors ({:.3g} {}) say; as shares of the value "
+          "the readings scatter {:.3g} times more than their standard errors ({:.3g}{}) say; as shares of the value "
           "they would fit. Are they relative?",
-          scatter, error.mean(), output.unit.symbol);
+          scatter, error.mean(), behind_number(output.unit.symbol));
       finding.remedy = fmt::format("multiply the column by {}", output.name);
     } else {
       finding.what = fmt::format(
-          "the readings scatter {:.3g} times less than their standard errors ({:.3g} {}, {:.0f} % of the value) say; "
+          "the readings scatter {:.3g} times less than their standard errors ({:.3g}{}, {:.0f} % of the value) say; "
           "as percentages they would fit. Are they in percent?",
-          1.0 / scatter, error.mean(), output.unit.symbol, 100.0 * (error / value).mean());
+          1.0 / scatter, error.mean(), behind_number(output.unit.symbol), 100.0 * (error / value).mean());
       finding.remedy = fmt::format("multiply the column by {} / 100", output.name);
     }
     findings.push_back(std::move(finding));

@@ -215,10 +215,10 @@ std::string reading_in_words(const data::Study& study, const RowOrigin& origin) 
   const data::Output& output = study.outputs[origin.output];
   std::string at;
   for (std::size_t c = 0; c < study.controls.size(); ++c)
-    at += fmt::format("{} {} {:.4g}", at.empty() ? " at" : ",", study.controls[c].name,
-                      study.controls[c].unit.from_si(point.controls[c]));
-  return fmt::format("{} {:.4g} {}{} ({})", output.name, output.unit.from_si(point.values[column]), output.unit.symbol,
-                     at, line_of(study, origin));
+    at += fmt::format("{} {} {:.4g}{}", at.empty() ? " at" : ",", study.controls[c].name,
+                      study.controls[c].unit.from_si(point.controls[c]), behind_number(study.controls[c].unit.symbol));
+  return fmt::format("{} {:.4g}{}{} ({})", output.name, output.unit.from_si(point.values[column]),
+                     behind_number(output.unit.symbol), at, line_of(study, origin));
 }
 
 /// A fit that is not refused, and that data of the model's own would seldom give.

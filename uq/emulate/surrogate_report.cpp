@@ -37,9 +37,9 @@ void add_levels(SurrogateReport& report, const FittedSurrogate& fitted, const da
       report.notes.begin(),
       fmt::format(
           "two levels: {} runs over {} of the cheaper level (Q2 {:.4f} left out); output = rho times the cheaper "
-          "level's plus a discrepancy, rho {:.3g} +- {:.2g}, discrepancy sd {:.3g} {}",
+          "level's plus a discrepancy, rho {:.3g} +- {:.2g}, discrepancy sd {:.3g}{}",
           report.runs, report.low_runs, q2_low, report.rho, report.rho_sd,
-          two.parameters().discrepancy_sd / output.unit.factor, output.unit.symbol));
+          two.parameters().discrepancy_sd / output.unit.factor, behind_number(output.unit.symbol)));
   for (const std::string& note : surrogate::fit_notes(two.low().diagnostics()))
     report.notes.push_back("cheaper level: " + note);
 }
@@ -277,10 +277,11 @@ std::vector<std::string> extrapolation_notes(const data::Study& study, const Tra
     }
     if (outside > 0) {
       const auto& [from, to] = rows.control_range.at(input.index);
-      notes.push_back(fmt::format(
-          "{} of {} observed points lie outside the runs' {}, {:.4g} to {:.4g} {}: the "
-          "surrogate extrapolates there",
-          outside, points, control.name, control.unit.from_si(from), control.unit.from_si(to), control.unit.symbol));
+      notes.push_back(
+          fmt::format("{} of {} observed points lie outside the runs' {}, {:.4g} to {:.4g}{}: the "
+                      "surrogate extrapolates there",
+                      outside, points, control.name, control.unit.from_si(from), control.unit.from_si(to),
+                      behind_number(control.unit.symbol)));
     }
   }
   return notes;

@@ -25,10 +25,6 @@ inline std::map<std::string, double> named_controls(const data::Study& study, st
   return named;
 }
 
-/// Whether a number of this unit stands alone.
-inline bool is_bare(std::string_view unit) { return unit.empty() || unit == "1"; }
-
-/// What stands behind a number: " mN m", or nothing.
-inline std::string behind_number(std::string_view unit) { return is_bare(unit) ? "" : " " + std::string(unit); }
+using data::behind_number, data::is_bare;
 
 }  // namespace uq

@@ -267,9 +267,9 @@ class Entry {
         const data::Unit& unit = study_.controls[c].unit;
         for (const double value : values)
           if (!within_reach(study_.controls[c], value, {low, high}))
-            problem(fmt::format("{} {:g} {} is outside the runs of this material, which reach from {:g} to {:g} {}",
-                                study_.controls[c].name, unit.from_si(value), unit.symbol, unit.from_si(low),
-                                unit.from_si(high), unit.symbol),
+            problem(fmt::format("{} {:g}{} is outside the runs of this material, which reach from {:g} to {:g}{}",
+                                study_.controls[c].name, unit.from_si(value), behind_number(unit.symbol),
+                                unit.from_si(low), unit.from_si(high), behind_number(unit.symbol)),
                     "choose a setting inside, or make runs there");
       }
       std::vector<std::vector<double>> next;

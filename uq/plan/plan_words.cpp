@@ -93,7 +93,8 @@ std::string error_text(const data::Study& study, const Candidate& candidate) {
     std::string text;
     if (error.relative > 0.0) text = fmt::format("{:.3g} %", 100.0 * error.relative);
     if (error.absolute > 0.0)
-      text += fmt::format("{}{:.3g} {}", text.empty() ? "" : " and ", error.absolute / unit.factor, unit.symbol);
+      text += fmt::format("{}{:.3g}{}", text.empty() ? "" : " and ", error.absolute / unit.factor,
+                          behind_number(unit.symbol));
     if (std::find(parts.begin(), parts.end(), text) == parts.end()) parts.push_back(text);
   }
   return fmt::format("{}", fmt::join(parts, ", "));

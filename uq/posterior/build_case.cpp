@@ -246,8 +246,8 @@ class Builder {
     const double scaled = parameter.axis().to_unit(*value);
     if (!(scaled >= -1e-9 && scaled <= 1.0 + 1e-9))
       problem(item.place,
-              fmt::format("case '{}' fixes {} at {:g} {}, outside the range of its runs [{:g}, {:g}]", item.name,
-                          parameter.name, parameter.unit.from_si(*value), parameter.unit.symbol,
+              fmt::format("case '{}' fixes {} at {:g}{}, outside the range of its runs [{:g}, {:g}]", item.name,
+                          parameter.name, parameter.unit.from_si(*value), data::behind_number(parameter.unit.symbol),
                           parameter.unit.from_si(parameter.low), parameter.unit.from_si(parameter.high)),
               "fix it inside the range, or train in a wider one");
     return {.unknown = -1, .scaled = scaled};

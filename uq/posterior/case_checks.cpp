@@ -50,11 +50,12 @@ class BesideRuns {
     for (const data::Observation& point : set_.points) {
       const double value = point.controls[index];
       if (within_reach(control, value, {low, high})) continue;
-      problem(fmt::format("{}:{}", set_.file, point.line),
-              fmt::format("{} is {:g} {}, but the runs of this material reach from {:g} to {:g} {}", control.name,
-                          control.unit.from_si(value), control.unit.symbol, control.unit.from_si(low),
-                          control.unit.from_si(high), control.unit.symbol),
-              "leave the point out, or make runs there (of ours: demcal train STUDY --until posterior)");
+      problem(
+          fmt::format("{}:{}", set_.file, point.line),
+          fmt::format("{} is {:g}{}, but the runs of this material reach from {:g} to {:g}{}", control.name,
+                      control.unit.from_si(value), data::behind_number(control.unit.symbol), control.unit.from_si(low),
+                      control.unit.from_si(high), data::behind_number(control.unit.symbol)),
+          "leave the point out, or make runs there (of ours: demcal train STUDY --until posterior)");
     }
   }
 
@@ -62,7 +63,7 @@ class BesideRuns {
   /// nor be free where another material's runs vary it.
   void check_constant(const data::Parameter& parameter, double constant) {
     const auto value = [&](double si) {
-      return fmt::format("{:g} {}", parameter.unit.from_si(si), parameter.unit.symbol);
+      return fmt::format("{:g}{}", parameter.unit.from_si(si), data::behind_number(parameter.unit.symbol));
     };
     const data::Material& material = study_.material(set_.material);
     const auto in_material = material.fixed.find(parameter.name);
@@ -108,10 +109,11 @@ class BesideRuns {
     if (lines.empty()) return;
     problem(fmt::format("{}:{}", data::shown_path(set_.file), lines.front()),
             fmt::format(
-                "{} of {} points are measured at {} from {:g} to {:g} {}, but every run of this material has {:g} "
-                "{}: the runs say nothing of another {}",
+                "{} of {} points are measured at {} from {:g} to {:g}{}, but every run of this material has {:g}{}: "
+                "the runs say nothing of another {}",
                 lines.size(), set_.points.size(), control.name, control.unit.from_si(low), control.unit.from_si(high),
-                control.unit.symbol, control.unit.from_si(constant), control.unit.symbol, control.name),
+                data::behind_number(control.unit.symbol), control.unit.from_si(constant),
+                data::behind_number(control.unit.symbol), control.name),
             "leave the points out, or add runs at other values");
   }
 

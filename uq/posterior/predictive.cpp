@@ -309,12 +309,13 @@ void check_priors(const data::Study& study, const CaseModel& model) {
     const data::Unit& unit = study.outputs[from[i].output].unit;
     std::string names;
     for (const auto& unknown : model.unknowns) names += (names.empty() ? "" : ", ") + unknown.label;
-    problems.push_back({fmt::format("{}:{}", set.file, set.points[from[i].point].line),
-                        fmt::format("case '{}': the priors of {} only allow {:.4g} to {:.4g} {}, but {:.4g} {} was "
-                                    "measured; the parameters' ranges would allow it",
-                                    model.name, names, unit.from_si(prior.lowest[i]), unit.from_si(prior.highest[i]),
-                                    unit.symbol, unit.from_si(y[i]), unit.symbol),
-                        "widen or move the priors"});
+    problems.push_back(
+        {fmt::format("{}:{}", set.file, set.points[from[i].point].line),
+         fmt::format("case '{}': the priors of {} only allow {:.4g} to {:.4g}{}, but {:.4g}{} was "
+                     "measured; the parameters' ranges would allow it",
+                     model.name, names, unit.from_si(prior.lowest[i]), unit.from_si(prior.highest[i]),
+                     data::behind_number(unit.symbol), unit.from_si(y[i]), data::behind_number(unit.symbol)),
+         "widen or move the priors"});
   }
   if (!problems.empty()) throw data::InputError(data::ExitStatus::bad_study, problems);
 }

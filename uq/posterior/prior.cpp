@@ -42,9 +42,9 @@ ScaledPrior::ScaledPrior(const data::Parameter& parameter, const data::Prior& pr
     throw data::InputError(
         data::ExitStatus::bad_study,
         {where,
-         fmt::format("the prior of {} lies in [{:g}, {:g}] {}, outside the parameter's range [{:g}, {:g}]",
-                     parameter.name, unit.from_si(prior.low), unit.from_si(prior.high), unit.symbol,
-                     unit.from_si(parameter.low), unit.from_si(parameter.high)),
+         fmt::format("the prior of {} lies in [{:g}, {:g}]{}, outside the parameter's range [{:g}, {:g}]",
+                     parameter.name, unit.from_si(prior.low), unit.from_si(prior.high),
+                     data::behind_number(unit.symbol), unit.from_si(parameter.low), unit.from_si(parameter.high)),
          "let prior and range overlap"});
   low_ = std::clamp(parameter.axis().to_unit(low), 0.0, 1.0);
   high_ = std::clamp(parameter.axis().to_unit(high), 0.0, 1.0);
@@ -57,8 +57,8 @@ ScaledPrior::ScaledPrior(const data::Parameter& parameter, const data::Prior& pr
   if (!(mass > 1e-300))
     throw data::InputError(data::ExitStatus::bad_study,
                            {where,
-                            fmt::format("the prior of {} has no mass inside the range [{:g}, {:g}] {}", parameter.name,
-                                        unit.from_si(low), unit.from_si(high), unit.symbol),
+                            fmt::format("the prior of {} has no mass inside the range [{:g}, {:g}]{}", parameter.name,
+                                        unit.from_si(low), unit.from_si(high), data::behind_number(unit.symbol)),
                             "move the prior's mean or widen its sd or the range"});
   log_mass_ = std::log(mass);
   // What the range cuts off of the prior as the user stated it, its own bounds included.
