@@ -137,6 +137,12 @@ struct ErrorCorrelation {
   std::string place = {};
 };
 
+/// A set whose points were read at the settings of another set's, from which it was split.
+struct ReadTogether {
+  std::string set;         ///< name
+  std::size_t points = 0;  ///< the first of either set
+};
+
 struct ObservationSet {
   std::string name;
   std::string material;
@@ -148,6 +154,7 @@ struct ObservationSet {
   std::vector<CommonError> common_errors;
   std::vector<ErrorCorrelation> correlations = {};
   std::vector<SettingError> setting_errors;
+  std::optional<ReadTogether> together = {};
   bool of_machine = false;          ///< measured on the whole machine, of which the runs simulate a slice
   bool assumed = false;             ///< stands for a measurement before any is made (uq/plan/unmeasured.hpp)
   std::vector<std::string> header;  ///< the comment lines at the head of the file, without '#'

@@ -191,6 +191,7 @@ class Entry {
     base.cost = entry_.cost;
     base.readings = entry_.readings;
     base.common_error = entry_.common_error;
+    base.stated_error = entry_.error.has_value();
     bool measured = false;
     for (const std::size_t output : base.outputs) {
       const std::optional<double> stated = stated_error(study_, sets_, output);

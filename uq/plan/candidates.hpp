@@ -21,6 +21,7 @@ struct Candidate {
   std::vector<data::Spread> error;            ///< of one reading, per output
   std::optional<data::Spread> common_error;   ///< of a meter that has not measured yet
   std::string meter;                          ///< candidates of one name share its error; may be one that has measured
+  bool stated_error = false;                  ///< the plan states its error
   bool assumed_error = false;                 ///< nobody stated one
   bool model_only = false;                    ///< the output need not mean the same in the real powder
   int readings = 1;

@@ -34,6 +34,7 @@ std::vector<std::size_t> sets_of_one_output(Study& study, std::size_t case_index
     if (has_unknown_setting(whole)) continue;
     for (std::size_t column = 0; column < whole.outputs.size(); ++column) {
       data::ObservationSet one = whole;
+      one.together = data::ReadTogether{whole.name, whole.points.size()};
       one.outputs = {whole.outputs[column]};
       for (data::Observation& point : one.points) {
         point.values = {point.values[column]};
@@ -65,28 +66,64 @@ std::optional<std::size_t> host_of(const Study& study, const std::vector<std::si
   return {};
 }
 
-/// A set for readings of `output` that no set of the case has a place for: of the candidate's meter, or of the one that the
-/// case reads the material with.
+/// A set that reads an output with the meter a candidate has when it names none: one of the case and the material
+/// before others of the case, and these before all others.
+const data::ObservationSet* usual_reading(const Study& study, std::size_t case_index, const std::string& material,
+                                          std::size_t output) {
+  const std::vector<std::size_t> own = own_sets(study, case_index);
+  const data::ObservationSet* found = nullptr;
+  int best = 0;
+  for (std::size_t i = 0; i < study.observations.size(); ++i) {
+    const data::ObservationSet& set = study.observations[i];
+    if (std::find(set.outputs.begin(), set.outputs.end(), output) == set.outputs.end()) continue;
+    const bool of_case = std::find(own.begin(), own.end(), i) != own.end();
+    const int rank = 1 + (of_case ? 2 : 0) + (set.material == material ? 1 : 0);
+    if (rank <= best) continue;
+    best = rank;
+    found = &set;
+  }
+  return found;
+}
+
+/// How well the settings of further readings of a material are known: as those of the case's own, or as the study says of its
+/// controls. A new reading is set anew, so no error of it is one of the case's unknowns.
+std::vector<data::SettingError> setting_errors_of(const Study& study, std::size_t case_index,
+                                                  const std::string& material) {
+  std::vector<data::SettingError> errors;
+  for (std::size_t c = 0; c < study.controls.size(); ++c)
+    if (study.controls[c].uncertainty) {
+      errors.push_back(*study.controls[c].uncertainty);
+      errors.back().control = c;
+    }
+  for (const std::size_t own : own_sets(study, case_index))
+    if (const data::ObservationSet& known = study.observations[own]; known.material == material && !known.assumed)
+      errors = known.setting_errors;
+  for (data::SettingError& error : errors) error.unknown = false;
+  return errors;
+}
+
+/// A set for readings of `output` that no set of the case has a place for: of the candidate's meter, or of the one that has
+/// read the output.
 data::ObservationSet new_set(const Study& study, std::size_t case_index, const Candidate& candidate, std::size_t output,
                              std::string name) {
   data::ObservationSet set{.name = std::move(name), .material = candidate.material, .outputs = {output}};
-  const bool meter_of_case = !candidate.common_error && candidate.meter.empty();
-  for (const std::size_t own : own_sets(study, case_index)) {
-    const data::ObservationSet& known = study.observations[own];
-    if (known.material != candidate.material) continue;
-    set.of_machine = known.of_machine && output == 0;
-    if (!meter_of_case) continue;
-    set.meter = known.meter;
-    set.common_errors = known.common_errors;
-  }
+  set.setting_errors = setting_errors_of(study, case_index, candidate.material);
+  for (const std::size_t own : own_sets(study, case_index))
+    if (study.observations[own].material == candidate.material)
+      set.of_machine = study.observations[own].of_machine && output == 0;
+  const auto take_errors = [&](const data::ObservationSet& read) {
+    std::copy_if(read.common_errors.begin(), read.common_errors.end(), std::back_inserter(set.common_errors),
+                 [&](const data::CommonError& error) { return error.output == output; });
+  };
   if (candidate.common_error) {
     set.common_errors = {{output, *candidate.common_error}};
   } else if (!candidate.meter.empty()) {
     set.meter = candidate.meter;
     for (const data::ObservationSet& read : study.observations)
-      if (read.meter == candidate.meter && set.common_errors.empty())
-        std::copy_if(read.common_errors.begin(), read.common_errors.end(), std::back_inserter(set.common_errors),
-                     [&](const data::CommonError& error) { return error.output == output; });
+      if (read.meter == candidate.meter && set.common_errors.empty()) take_errors(read);
+  } else if (const data::ObservationSet* const read = usual_reading(study, case_index, candidate.material, output)) {
+    set.meter = read->meter;
+    take_errors(*read);
   }
   return set;
 }
@@ -131,13 +168,38 @@ Homes add_planned(Study& wider, const Study& study, std::size_t case_index, cons
   return homes;
 }
 
+/// Whether the readings have an unknown sd in the place of standard errors.
+bool has_unknown_sd(const Measurement& measurement, Index row) {
+  return std::any_of(measurement.sets.begin(), measurement.sets.end(), [row](const ReadSet& set) {
+    return set.noise_is_sd && row >= set.first && row < set.first + set.count;
+  });
+}
+
+/// A discrepancy is a share of what is read. Of outputs that the case has not read that is the model's prediction.
+void scale_new_discrepancies(CaseModel& model, const CaseModel& sampled, const Eigen::VectorXd& prediction) {
+  Index first = 0;
+  for (RowGroup& group : model.groups) {
+    const bool read = std::any_of(sampled.groups.begin(), sampled.groups.end(), [&](const RowGroup& other) {
+      return other.emulator.material == group.emulator.material && other.emulator.output == group.emulator.output;
+    });
+    if (!read)
+      for (DiscrepancyRows& part : group.measurement.discrepancies)
+        part.magnitude = std::sqrt(prediction.segment(first + part.first, part.count).array().square().mean());
+    first += group.observed.size();
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXd ExtendedCase::noise_at(const Eigen::VectorXd& mean, const Eigen::VectorXd& noise) const {
   Eigen::VectorXd scaled = noise;
   for (Index i = 0; i < noise.size(); ++i) {
     const auto variance = [&](double m) { return std::pow(absolute[i], 2) + std::pow(relative[i] * m, 2); };
-    if (relative[i] > 0.0 && variance(reference[i]) > 0.0)
+    if (sd_unknown[i] > 0.0)
+      scaled[i] = noise[i] / sd_unknown[i];
+    else if (sd_replaced[i] > 0.0)
+      scaled[i] = std::max(variance(mean[i]), 1e-300) / sd_replaced[i];
+    else if (relative[i] > 0.0 && variance(reference[i]) > 0.0)
       scaled[i] *= std::max(variance(mean[i]) / variance(reference[i]), 1e-12);
   }
   return scaled;
@@ -146,13 +208,14 @@ Eigen::VectorXd ExtendedCase::noise_at(const Eigen::VectorXd& mean, const Eigen:
 ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
                     const CaseModel& sampled, const std::vector<Candidate>& candidates, const Eigen::VectorXd& u) {
   Study wider = study;
-  for (data::ObservationSet& set : wider.observations) condense(set);
+  for (data::ObservationSet& set : wider.observations) condense(set, study.cases[case_index]);
   const Homes homes = add_planned(wider, study, case_index, candidates);
   ExtendedCase found{.model = with_more_data(wider, emulators, case_index, sampled), .measured = {}, .planned = {}};
   CaseModel& model = found.model;
   const StackedPrediction prediction = predict(model, u);
   found.planned.resize(candidates.size());
   found.absolute = found.relative = Eigen::VectorXd::Zero(prediction.mean.size());
+  found.sd_unknown = found.sd_replaced = found.absolute;
   found.reference = prediction.mean;
   Index row = 0;
   for (RowGroup& group : model.groups)
@@ -168,8 +231,11 @@ ExtendedCase extend(const Study& study, const std::vector<Emulator>& emulators, 
       found.absolute[row] = error.absolute;
       found.relative[row] = error.relative;
       group.variance[r] = std::max(sd * sd, 1e-300) / candidate.readings;
+      if (has_unknown_sd(group.measurement, static_cast<Index>(r)))
+        (candidate.stated_error ? found.sd_replaced : found.sd_unknown)[row] = candidate.readings;
       found.planned[planned->second.candidate].push_back(row);
     }
+  scale_new_discrepancies(model, sampled, prediction.mean);
   // A planned reading is one of its own: nothing says that its error goes with another's.
   const auto is_measured = [&](Index at) {
     return std::binary_search(found.measured.begin(), found.measured.end(), at);

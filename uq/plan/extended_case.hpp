@@ -15,6 +15,8 @@ struct ExtendedCase {
   std::vector<Eigen::Index> measured;              ///< rows of the data, pooled and thinned where there are many
   std::vector<std::vector<Eigen::Index>> planned;  ///< per candidate, its rows
   Eigen::VectorXd absolute, relative;              ///< errors of each row's reading; 0 of the measured
+  /// Readings of a planned row whose noise is an unknown sd, or whose stated error stands in that sd's place; 0 elsewhere.
+  Eigen::VectorXd sd_unknown, sd_replaced;
   Eigen::VectorXd reference;  ///< SI, mean at which the model's variances of planned rows were taken
 
   /// The rows' noise variances where their means are `mean`: an error in per cent is that of the reading itself.

@@ -60,6 +60,20 @@ int parameter_index(const Study& study, std::size_t case_index, const CaseModel&
                           fmt::format("choose one of: {}", fmt::join(names, ", "))});
 }
 
+/// A reading would not change what is cut, and what it tells of the rest would hang on the cut parameter's own law.
+void refuse_cut(const Study& study, std::size_t case_index, const CaseModel& model) {
+  for (const Unknown& unknown : model.unknowns)
+    if (!unknown.cut_from.empty())
+      throw data::InputError(
+          data::ExitStatus::bad_study,
+          {study.cases[case_index].place,
+           fmt::format("case '{}' takes {} cut from case '{}', so that no reading of it changes that parameter; a plan "
+                       "for such a case is not made",
+                       study.cases[case_index].name, unknown.label, unknown.cut_from),
+           fmt::format("plan for case '{}', or plan without `cut` in the prior of {}", unknown.cut_from,
+                       unknown.label)});
+}
+
 VectorXd prior_means(const CaseModel& model) {
   VectorXd means(model.dimension());
   for (Index s = 0; s < means.size(); ++s) means[s] = model.unknowns[s].prior.mean();
@@ -82,6 +96,7 @@ PlanBasis::PlanBasis(const Study& of_study, const std::vector<Emulator>& emulato
     found = identify(model, draws, {.thresholds = options.thresholds, .unsupported = {}});
     if (!found->fits) throw misfit(study, case_index, *found);
   }
+  refuse_cut(study, case_index, model);
   about = parameter_index(study, case_index, model, options.about.empty() ? section.about : options.about,
                           found ? &*found : nullptr);
   candidates = candidates_of(study, emulators, case_index, section, options.candidates);

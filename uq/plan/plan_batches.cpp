@@ -1,6 +1,7 @@
 #include "uq/plan/plan_batches.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "uq/infer/parallel.hpp"
@@ -24,8 +25,9 @@ double cost_of(const PlanBasis& basis, const std::vector<std::size_t>& members) 
   for (const std::size_t i : members) sum += basis.candidates[i].cost;
   return sum;
 }
-bool affordable(const PlanBasis& basis, const std::vector<std::size_t>& members) {
-  return !basis.options.budget || cost_of(basis, members) <= *basis.options.budget * (1.0 + 1e-9);
+/// With `left` for members that are still to be chosen.
+bool affordable(const PlanBasis& basis, const std::vector<std::size_t>& members, double left) {
+  return !basis.options.budget || cost_of(basis, members) + left <= *basis.options.budget * (1.0 + 1e-9);
 }
 
 /// Information about the parameter asked for, by some of the draws.
@@ -40,13 +42,14 @@ double quick_information(const PlanBasis& basis, const std::vector<std::size_t>&
   return information(all, {.seed = basis.options.seed, .noise = {}}).about.front().information.value;
 }
 
-/// The member at `position` (or one more) that is best beside the others; none where no other is affordable.
-std::optional<std::size_t> best_at(const PlanBasis& basis, std::vector<std::size_t> members, std::size_t position) {
+/// The member at `position` that is best beside the others; none where no other is affordable.
+std::optional<std::size_t> best_at(const PlanBasis& basis, std::vector<std::size_t> members, std::size_t position,
+                                   double left = 0.0) {
   std::vector<double> value(basis.candidates.size(), -1.0);
   for_each_index(static_cast<int>(basis.candidates.size()), basis.options.threads, [&](int i) {
     std::vector<std::size_t> tried = members;
     tried[position] = static_cast<std::size_t>(i);
-    if (!basis.candidates[tried[position]].model_only && affordable(basis, tried))
+    if (!basis.candidates[tried[position]].model_only && affordable(basis, tried, left))
       value[i] = quick_information(basis, tried);
   });
   const auto best = std::max_element(value.begin(), value.end());
@@ -54,17 +57,33 @@ std::optional<std::size_t> best_at(const PlanBasis& basis, std::vector<std::size
   return static_cast<std::size_t>(best - value.begin());
 }
 
+/// Adds the best member beside those that are there, until there are `size`; each leaves what the cheapest of the rest cost.
+/// Nothing: the budget does not reach so far.
+std::optional<std::vector<std::size_t>> greedily(const PlanBasis& basis, std::vector<std::size_t> members, int size) {
+  double cheapest = HUGE_VAL;
+  for (const Candidate& one : basis.candidates)
+    if (!one.model_only) cheapest = std::min(cheapest, one.cost);
+  while (std::ssize(members) < size) {
+    const auto more = static_cast<double>(size - 1 - std::ssize(members));
+    members.push_back(0);
+    const std::optional<std::size_t> next =
+        best_at(basis, members, members.size() - 1, more > 0.0 ? more * cheapest : 0.0);
+    if (!next) return {};
+    members.back() = *next;
+  }
+  return members;
+}
+
 }  // namespace
 
 std::vector<PlanBatch> batches_of(const PlanBasis& basis) {
   std::vector<PlanBatch> batches;
   std::vector<std::size_t> greedy;
-  for (int size = 1; size <= basis.options.batch; ++size) {
-    greedy.push_back(0);
-    const std::optional<std::size_t> next = best_at(basis, greedy, greedy.size() - 1);
-    if (!next) return batches;
-    greedy.back() = *next;
-    if (size < 2) continue;
+  for (int size = 2; size <= basis.options.batch; ++size) {
+    // A budget may not reach beyond the members of a smaller batch, so that each size is begun anew.
+    const auto chosen = greedily(basis, basis.options.budget ? std::vector<std::size_t>() : greedy, size);
+    if (!chosen) return batches;
+    greedy = *chosen;
     std::vector<std::size_t> members = greedy;
     for (int sweep = 0; sweep < 2; ++sweep) {
       bool changed = false;

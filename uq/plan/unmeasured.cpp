@@ -51,6 +51,12 @@ void assume_reading(data::Study& study, const std::vector<Emulator>& emulators, 
                            .outputs = {output},
                            .assumed = true,
                            .place = item.place};
+  for (std::size_t c = 0; c < study.controls.size(); ++c)
+    if (study.controls[c].uncertainty) {
+      set.setting_errors.push_back(*study.controls[c].uncertainty);
+      set.setting_errors.back().control = c;
+      set.setting_errors.back().unknown = false;  // of a reading that is not made
+    }
   set.points.push_back(
       {.controls = controls, .values = {mean_at(study, *emulator, controls)}, .standard_errors = {1.0}});
   item.observe.push_back(set.name);

@@ -48,6 +48,7 @@ class Builder {
         part.magnitude = std::sqrt(group.observed.segment(part.first, part.count).array().square().mean());
     }
     link_errors(model);
+    link_settings(model);
     stop_on_problems();
     pool_rows(model);
     refuse_too_many_settings(study_, model);
@@ -280,6 +281,45 @@ class Builder {
           place,
           fmt::format("the correlations of case '{}' contradict each other: no errors can have them all", wanted_.name),
           "state them as estimated from the same readings, or smaller ones");
+  }
+
+  /// Where a group's rows were read: the set whose settings they have, and how many of its points.
+  struct Settings {
+    data::ReadTogether together;
+    std::size_t group = 0, setting = 0;
+    const ReadSet* rows = nullptr;
+    const SettingShift* shift = nullptr;
+  };
+
+  /// Outputs that were read at the same settings, where a setting has an error.
+  void link_settings(CaseModel& model) const {
+    std::vector<Settings> all;
+    for (std::size_t g = 0; g < model.groups.size(); ++g) {
+      std::size_t setting = 0;
+      for (const ReadSet& rows : model.groups[g].measurement.sets)
+        for (const SettingShift& shift : rows.settings) {
+          const data::ObservationSet& set = study_.observations[model.groups[g].origin[rows.first].set];
+          all.push_back({.together = set.together.value_or(data::ReadTogether{set.name, set.points.size()}),
+                         .group = g,
+                         .setting = setting++,
+                         .rows = &rows,
+                         .shift = &shift});
+        }
+    }
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t j = i + 1; j < all.size(); ++j) {
+        const Settings &a = all[i], &b = all[j];
+        if (a.group == b.group || a.together.set != b.together.set || a.shift->control != b.shift->control) continue;
+        model.linked_settings.push_back(
+            {.first_group = a.group,
+             .second_group = b.group,
+             .first_setting = a.setting,
+             .second_setting = b.setting,
+             .first_row = a.rows->first,
+             .second_row = b.rows->first,
+             .rows = static_cast<Eigen::Index>(std::min(a.together.points, b.together.points)),
+             .common = a.shift->common && b.shift->common});
+      }
   }
 
   /// Points of two sets at equal settings, the first of one with the first of the other, and so on.

@@ -22,7 +22,7 @@ std::optional<int> column_of(const Emulator& emulator, std::size_t control) {
 SettingShift shift_of(const data::Control& control, const data::ObservationSet& set, const data::SettingError& error,
                       int column) {
   const auto rows = static_cast<Eigen::Index>(set.points.size());
-  SettingShift shift{.column = column, .error = Eigen::VectorXd(rows)};
+  SettingShift shift{.control = error.control, .column = column, .error = Eigen::VectorXd(rows)};
   for (Eigen::Index i = 0; i < rows; ++i) {
     const double value = set.points[i].controls[error.control];
     const data::Axis axis = control.axis();

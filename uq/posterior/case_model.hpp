@@ -62,6 +62,15 @@ struct LinkedErrors {
   double correlation = 0.0;
 };
 
+/// A control's error that rows of two emulators share, since both were read at the same settings.
+struct LinkedSettings {
+  std::size_t first_group = 0, second_group = 0;
+  std::size_t first_setting = 0, second_setting = 0;  ///< in GroupLaw::settings
+  Eigen::Index first_row = 0, second_row = 0;         ///< of either set, in its group
+  Eigen::Index rows = 0;                              ///< so many of either were read together
+  bool common = true;                                 ///< one error of all of them, else one of each pair
+};
+
 /// Adds the covariance of own errors with these variances.
 void add_own_errors(const Eigen::VectorXd& variance, const std::vector<LinkedErrors>& linked,
                     Eigen::MatrixXd& covariance);
@@ -74,10 +83,13 @@ struct CaseModel {
   std::vector<Unknown> unknowns;  ///< the case's own parameters first, in its order, then its nuisances
   std::vector<RowGroup> groups;
   std::vector<LinkedErrors> linked_errors = {};
+  std::vector<LinkedSettings> linked_settings = {};
   std::vector<std::string> linked;                 ///< names of the other cases that are sampled with it
   std::vector<std::string> observed_sets;          ///< of the case itself
   std::shared_ptr<const CaseModel> distinct = {};  ///< rows of equal settings as one; none where all differ
 
+  /// Whether the emulators' numbers depend on each other, given the unknowns.
+  bool joint() const { return !linked_errors.empty() || !linked_settings.empty(); }
   int dimension() const { return static_cast<int>(unknowns.size()); }
   int own_count() const;  ///< parameters free in the case itself
   int row_count() const;

@@ -146,7 +146,7 @@ RowGroup pool_group(const RowGroup& group, const Classes& classes) {
 
 void pool_rows(CaseModel& model) {
   model.distinct.reset();
-  if (!model.linked_errors.empty()) return;  // a mean over repeats would have errors linked to those of other means
+  if (model.joint()) return;  // a mean over repeats would have errors linked to those of other means
   auto pooled = std::make_shared<CaseModel>(model);
   bool fewer = false;
   for (std::size_t g = 0; g < model.groups.size(); ++g) {

@@ -167,6 +167,7 @@ GroupLaw law_of(const Measurement& measurement, const std::vector<Unknown>& unkn
   for_each_setting(measurement, [&](const ReadSet& set, std::size_t q, const SettingShift& setting) {
     const Eigen::VectorXd t = f.cwiseProduct(half_change(prediction.mean, rows, q));
     add_pair(law.covariance, set, t, t, 0.5, setting.common);
+    law.settings.emplace_back(t.segment(set.first, set.count));
   });
   for (const DiscrepancyRows& part : measurement.discrepancies)
     law.covariance.block(part.first, part.first, part.count, part.count) +=

@@ -8,7 +8,8 @@
 //                that of a meter which several sets name is an unknown gain and offset (uq/posterior/set_unknowns.hpp)
 //   setting      t_i t_j, t_i = f_i (m(x_i + e_i) - m(x_i - e_i)) / 2: a control known to a standard error e enters
 //                to first order, by the slope over +- one e. Within a set it is common to all rows where the control
-//                has one value (a fill), and each row's own (i = j only) where it is set anew (a speed)
+//                has one value (a fill), and each row's own (i = j only) where it is set anew (a speed). Outputs
+//                read at one setting share its error: t_i t_j between their groups, too (CaseModel::linked_settings)
 //   discrepancy  a^2 q^2 M(d_ij / L) within a case: M. C. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63:425 (2001); Matern
 //                5/2, d the distance of the controls in their ranges, q the root mean square of the measured values
 // o, k, s, a, L and the factors of f may be unknowns with priors. The discrepancy itself is integrated out; it is
@@ -23,9 +24,10 @@ namespace uq {
 
 /// A control's error in one observation set.
 struct SettingShift {
-  int column = 0;         ///< of the emulator's inputs
-  Eigen::VectorXd error;  ///< per row of the set, in unit-cube lengths
-  bool common = true;     ///< to all rows
+  std::size_t control = 0;  ///< in Study::controls
+  int column = 0;           ///< of the emulator's inputs
+  Eigen::VectorXd error;    ///< per row of the set, in unit-cube lengths
+  bool common = true;       ///< to all rows
 };
 
 /// Rows of one observation set in a group.
@@ -65,6 +67,8 @@ struct GroupLaw {
   Eigen::VectorXd mean;        ///< SI
   Eigen::MatrixXd covariance;  ///< SI^2, without the noise
   Eigen::VectorXd noise;       ///< SI^2, variances
+  /// SI, what an error of one of a control does: of each set's rows, for each uncertain control, in the order of both.
+  std::vector<Eigen::VectorXd> settings = {};
 };
 
 /// What the meter makes of the prediction at one row: reading = factor * m + offset.

@@ -50,11 +50,17 @@ data::Study without_new_unknowns(data::Study study, std::size_t case_index, cons
 
 }  // namespace
 
-/// Points measured again at the same controls become one, and of very many some stand for all.
-void condense(data::ObservationSet& set) {
+void condense(data::ObservationSet& set, const data::CalibrationCase& wanted) {
+  const bool unknown_sd = std::any_of(wanted.nuisances.begin(), wanted.nuisances.end(), [](const data::Nuisance& one) {
+    return one.kind == data::NuisanceKind::noise_sd;
+  });
   std::map<std::vector<double>, std::vector<const data::Observation*>> at;
   for (const data::Observation& point : set.points) at[point.controls].push_back(&point);
   std::vector<data::Observation> points;
+  if (unknown_sd || !set.setting_errors.empty()) {
+    points = set.points;
+    at.clear();
+  }
   for (const auto& [controls, same] : at) {
     data::Observation one = *same.front();
     for (std::size_t c = 0; c < one.values.size(); ++c) {

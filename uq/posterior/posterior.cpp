@@ -191,6 +191,21 @@ double log_linked_density(const CaseModel& model, const std::vector<GroupLaw>& l
   return log_normal(observed(model) - stacked.mean, stacked.total());
 }
 
+/// With central differences along all unknowns: what a setting's error does to two outputs changes with the predictions'
+/// second derivatives, which no emulator gives.
+Evaluation differenced_likelihood(const CaseModel& model, const Eigen::VectorXd& u) {
+  constexpr double step = 1e-5;
+  const auto at = [&](const Eigen::VectorXd& point) { return log_linked_density(model, laws_at(model, point), point); };
+  Evaluation found{.value = at(u), .gradient = Eigen::VectorXd(u.size())};
+  for (Eigen::Index s = 0; s < u.size(); ++s) {
+    Eigen::VectorXd up = u, down = u;
+    up[s] += step;
+    down[s] -= step;
+    found.gradient[s] = (at(up) - at(down)) / (2.0 * step);
+  }
+  return found;
+}
+
 }  // namespace
 
 Eigen::Index rows_asked(const RowGroup& group) { return group.base.rows() * (1 + group.measurement.shifts()); }
@@ -214,6 +229,7 @@ GroupLaw group_law(const CaseModel& model, const RowGroup& group, const Eigen::V
 
 StackedPrediction stack(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u) {
   const Eigen::Index rows = model.row_count();
+  std::vector<Eigen::Index> begins;
   StackedPrediction stacked{.mean = Eigen::VectorXd(rows),
                             .covariance = Eigen::MatrixXd::Zero(rows, rows),
                             .noise = Eigen::VectorXd(rows),
@@ -222,6 +238,7 @@ StackedPrediction stack(const CaseModel& model, const std::vector<GroupLaw>& law
   for (std::size_t g = 0; g < model.groups.size(); ++g) {
     const RowGroup& group = model.groups[g];
     const Eigen::Index count = group.observed.size();
+    begins.push_back(first);
     if (model.distinct) {
       stacked.mean.segment(first, count) = laws[g].mean(group.distinct_row);
       stacked.covariance.block(first, first, count, count) = laws[g].covariance(group.distinct_row, group.distinct_row);
@@ -231,6 +248,19 @@ StackedPrediction stack(const CaseModel& model, const std::vector<GroupLaw>& law
     }
     stacked.noise.segment(first, count) = noise_of(group.measurement, model.unknowns, group.variance, u);
     first += count;
+  }
+  for (const LinkedSettings& link : model.linked_settings) {
+    const Eigen::VectorXd& a = laws[link.first_group].settings[link.first_setting];
+    const Eigen::VectorXd& b = laws[link.second_group].settings[link.second_setting];
+    const Eigen::Index row = begins[link.first_group] + link.first_row;
+    const Eigen::Index column = begins[link.second_group] + link.second_row;
+    Eigen::MatrixXd shared = a * b.transpose();
+    if (!link.common) {
+      shared.setZero();
+      shared.diagonal().head(link.rows) = a.head(link.rows).cwiseProduct(b.head(link.rows));
+    }
+    stacked.covariance.block(row, column, a.size(), b.size()) += shared;
+    stacked.covariance.block(column, row, b.size(), a.size()) += shared.transpose();
   }
   return stacked;
 }
@@ -304,7 +334,7 @@ Evaluation log_prior_gradient(const CaseModel& model, const Eigen::VectorXd& u) 
 
 double log_likelihood(const CaseModel& full, const Eigen::VectorXd& u) {
   const CaseModel& model = distinct_rows(full);
-  if (!model.linked_errors.empty()) return log_linked_density(model, laws_at(model, u), u);
+  if (model.joint()) return log_linked_density(model, laws_at(model, u), u);
   double sum = 0.0;
   for (const auto& group : model.groups)
     sum += log_group_density(model, group, group.emulator.predict(rows_at(group, u)), u);
@@ -314,6 +344,7 @@ double log_likelihood(const CaseModel& full, const Eigen::VectorXd& u) {
 Evaluation log_likelihood_gradient(const CaseModel& full, const Eigen::VectorXd& u) {
   const CaseModel& model = distinct_rows(full);
   Evaluation sum{.value = 0.0, .gradient = Eigen::VectorXd::Zero(u.size())};
+  if (!model.linked_settings.empty()) return differenced_likelihood(model, u);
   if (!model.linked_errors.empty()) {
     add_linked(model, u, sum);
     return sum;
@@ -332,7 +363,7 @@ Evaluation log_likelihood_gradient(const CaseModel& full, const Eigen::VectorXd&
 Eigen::VectorXd log_likelihoods(const CaseModel& full, const Eigen::MatrixXd& points) {
   const CaseModel& model = distinct_rows(full);
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(points.rows());
-  if (!model.linked_errors.empty()) {
+  if (model.joint()) {
     for_each_law(model, points, [&](Eigen::Index point, const std::vector<GroupLaw>& laws) {
       sums[point] = log_linked_density(model, laws, points.row(point).transpose());
     });

@@ -8,7 +8,8 @@
 // the next, and counting it as independent would make posteriors too narrow. Gradient, with r = y - mean, a = S^-1 r:
 //   dlogL/dk = a' dmean/dk + 1/2 (a' dS/dk a - tr(S^-1 dS/dk))
 // Where errors of different outputs are correlated (observe.correlation), the likelihood is log N(y | mean(u), S(u)) of
-// all numbers together, with r_ij n_i n_j between numbers i and j whose own errors have the sds n. Deviation: the bands of
+// all numbers together, with r_ij n_i n_j between numbers i and j whose own errors have the sds n. So it is where outputs
+// share the error of a setting; the gradient is then one of differences. Deviation: the bands of
 // a discrepancy, the part of a Bayes factor that is the surrogate's (held.hpp) and the choice of further runs take the
 // outputs one by one.
 #include <Eigen/Dense>

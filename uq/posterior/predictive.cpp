@@ -146,6 +146,15 @@ Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws,
   for_each_law(model, draws, [&](Eigen::Index i, const std::vector<GroupLaw>& laws) {
     const Eigen::VectorXd u = draws.row(i).transpose();
     Eigen::VectorXd own(made.cols()), variance(made.cols());
+    if (!model.linked_settings.empty()) {  // what the outputs share is drawn once
+      const StackedPrediction all = stack(model, laws, u);
+      Eigen::VectorXd shared(made.cols());
+      for (double& value : shared) value = random.normal();
+      for (double& value : own) value = random.normal();
+      shared = all.mean + semidefinite_root(all.covariance, "replicate data") * shared;
+      made.row(i) = (shared + own_errors(all.noise, model.linked_errors, own)).transpose();
+      return;
+    }
     Eigen::Index first = 0;
     for (std::size_t g = 0; g < laws.size(); ++g) {
       // What rows of equal settings share, then each row's own noise.

@@ -104,7 +104,8 @@ PredictionReport predict_unused(const data::Study& study, const std::vector<Emul
                                 const data::UnusedData& wanted, const CaseModel& sampled, const MatrixXd& draws) {
   data::Study wider = study;
   for (data::ObservationSet& set : wider.observations)
-    if (std::find(wanted.observe.begin(), wanted.observe.end(), set.name) == wanted.observe.end()) condense(set);
+    if (std::find(wanted.observe.begin(), wanted.observe.end(), set.name) == wanted.observe.end())
+      condense(set, study.cases.at(wanted.case_index));
   auto& observe = wider.cases.at(wanted.case_index).observe;
   observe.insert(observe.end(), wanted.observe.begin(), wanted.observe.end());
   const CaseModel model = with_more_data(wider, emulators, wanted.case_index, sampled);

@@ -12,7 +12,8 @@
 namespace uq {
 namespace {
 
-constexpr double far = 40.0;  // deviance beyond which a path's point plays no part, whatever the noise
+constexpr double least_log_prior = -200.0;  // below, as good as impossible
+constexpr double far = 40.0;                // deviance beyond which a path's point plays no part, whatever the noise
 constexpr std::array possible_words = {Verdict::identified, Verdict::weakly_identified, Verdict::several_values,
                                        Verdict::not_identified};
 
@@ -30,7 +31,9 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
     if (!all && !end && profile.deviance.segment(from, count).minCoeff() > far) continue;
     const Eigen::VectorXd u = profile.path.row(i).transpose();
     const StackedPrediction prediction = predict(model, u);
+    const ScaledPrior& prior = model.unknowns[profile.unknown].prior;
     PathPoint point{.u = profile.u[i],
+                    .log_prior = std::max(prior.log_density(profile.u[i]), least_log_prior),
                     .doubt = difference(judged, yardstick, u, best).doubt,
                     .mean = prediction.mean,
                     .covariance = prediction.covariance,
@@ -63,8 +66,13 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
 PathWords::PathWords(const std::vector<PathPoint>& points, const std::vector<Eigen::Index>& rows,
                      const Eigen::VectorXd& noise_share) {
   for (const PathPoint& point : points) {
-    Local local{
-        .u = point.u, .doubt = point.doubt, .mean = point.mean(rows), .covariance = {}, .slopes = {}, .bent = {}};
+    Local local{.u = point.u,
+                .log_prior = point.log_prior,
+                .doubt = point.doubt,
+                .mean = point.mean(rows),
+                .covariance = {},
+                .slopes = {},
+                .bent = {}};
     Eigen::MatrixXd covariance = point.covariance(rows, rows);
     add_own_errors(point.noise(rows).cwiseProduct(noise_share), linked_among(point.linked_errors, rows), covariance);
     local.covariance.compute(covariance);
@@ -108,17 +116,22 @@ Eigen::VectorXd PathWords::deviances(const Eigen::VectorXd& y) const {
   return deviance;
 }
 
-/// Variance of u under exp(-deviance / 2), the deviance between points along straight lines; parts apart when asked.
+/// Variance of u under prior x exp(-deviance / 2), both logarithms between points along straight lines; parts apart when
+/// asked.
 double PathWords::variance(const Eigen::VectorXd& deviance, const Parts& parts, bool within) const {
   constexpr int cells = 12;
   const auto count = static_cast<std::size_t>(std::max(parts.count, 1));
+  double highest = least_log_prior;
+  for (const Local& point : points_) highest = std::max(highest, point.log_prior);
   std::vector<std::array<double, 3>> sums(within ? count : 1, {0.0, 0.0, 0.0});
   for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double width = points_[i + 1].u - points_[i].u;
     for (int c = 0; c < cells; ++c) {
       const double share = (c + 0.5) / cells;
-      const double mass = std::exp(-0.5 * (deviance[k] + share * (deviance[k + 1] - deviance[k]))) * width / cells;
+      const double prior = points_[i].log_prior + share * (points_[i + 1].log_prior - points_[i].log_prior) - highest;
+      const double mass =
+          std::exp(prior - 0.5 * (deviance[k] + share * (deviance[k + 1] - deviance[k]))) * width / cells;
       const double u = points_[i].u + share * width;
       auto& sum = sums[within ? parts.of[share < 0.5 ? i : i + 1] : 0];
       sum[0] += mass;

@@ -7,7 +7,7 @@
 // springs P about the path,
 //   deviance'_i = |r|^2 - r' A (A' A + P)^-1 A' r + log |S_i|    (less its least over i).
 // From it come the open sides, the parts, and the contraction: 1 - contraction changes as the variance of
-// exp(-deviance' / 2) does. A hole that two of the surrogate's sds explain is none. What does not hang on the data's
+// prior x exp(-deviance' / 2) does. A hole that two of the surrogate's sds explain is none. What does not hang on the data's
 // noise stays as found: influence, structure, a side that another parameter's range ends. An unknown at the end of its
 // range on the path stays there.
 #include <cstdint>
@@ -36,7 +36,8 @@ struct FoundFacts {
 /// The model about one point of a profile's path: the law of its rows, and how the other unknowns move it.
 struct PathPoint {
   double u = 0.0;
-  double doubt = 0.0;  ///< of the surrogate, against the best fit, in data errors
+  double log_prior = 0.0;  ///< of the profiled parameter, there
+  double doubt = 0.0;      ///< of the surrogate, against the best fit, in data errors
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;  ///< without the noise
   Eigen::VectorXd noise;       ///< variances
@@ -69,7 +70,7 @@ class PathWords {
 
  private:
   struct Local {
-    double u = 0.0, doubt = 0.0;
+    double u = 0.0, log_prior = 0.0, doubt = 0.0;
     Eigen::VectorXd mean;
     Eigen::LLT<Eigen::MatrixXd> covariance;
     double log_determinant = 0.0;

@@ -15,6 +15,7 @@ constexpr Eigen::Index many_rows = 300;  // beyond, the typical row stands for t
 /// The case without all that is uncertain of the data but the emulators and the noise.
 CaseModel emulators_alone(const CaseModel& model) {
   CaseModel alone = distinct_rows(model);
+  alone.linked_settings.clear();
   for (auto& group : alone.groups) {
     group.measurement.discrepancies.clear();
     for (auto& set : group.measurement.sets) {

@@ -9,6 +9,7 @@
 #include "data/random.hpp"
 #include "tests/uq/formula_study.hpp"
 #include "uq/plan/outlook.hpp"
+#include "uq/posterior/posterior.hpp"
 
 using uq::PlanCandidate;
 using uq::PlanReport;
@@ -267,6 +268,136 @@ TEST_CASE("a plan that cannot be is refused with its place and remedy", "[plan]"
   data::Study misfit = study;
   misfit.observations[0].points[0].values[0] += 10.0;
   CHECK_THROWS_WITH(plan_of(misfit, formula::emulators(), {}, {}), Catch::Contains("does not fit"));
+}
+
+namespace {
+
+/// One unknown a with prior sd 0.1, the torque read once with an sd of 0.1.
+data::Study one_unknown() {
+  data::Study study = formula::study({0.5}, {formula::torque(0.5, 0.5, 0.5)}, 0.1);
+  study.cases[0].free = {"a"};
+  study.cases[0].fixed = {{"b", 0.5}};
+  for (data::Parameter& one : study.parameters)
+    one.prior = {.kind = data::PriorKind::normal, .low = 0.0, .high = 1.0, .mean = 0.5, .sd = 0.1};
+  return study;
+}
+
+data::PlanEntry reading_of(std::size_t output, double sd) {
+  return {.name = "next",
+          .material = {},
+          .outputs = {output},
+          .settings = {{0.5}},
+          .error = data::Spread{.absolute = sd},
+          .common_error = {},
+          .place = {}};
+}
+
+/// What an angle of this variance teaches after the torque, all laws normal.
+double taught_by_angle(double variance) {
+  const double slope = 5.0 + 0.3 * 0.5, before = 100.0 + slope * slope / 0.01;
+  return 0.5 * std::log(1.0 + 9.0 / variance / before);
+}
+
+}  // namespace
+
+TEST_CASE("a reading of an output that has no set yet is made at settings of the same error", "[plan]") {
+  data::Study study = one_unknown();
+  const data::SettingError speed{.control = 0, .spread = {.absolute = 0.2}};  // moves the angle by 0.4
+  study.controls[0].uncertainty = speed;
+  study.observations[0].setting_errors = {speed};
+  for (const bool sampled : {false, true}) {
+    study.observations[0].setting_errors[0].unknown = sampled;
+    const PlanReport plan = plan_of(study, formula::emulators(), {.candidates = {reading_of(1, 0.1)}}, {.about = "a"});
+    const auto& about = plan.candidates.front().parameters[0];
+    CHECK(about.information == Approx(taught_by_angle(0.01 + 0.16)).margin(about.information_error + 0.005));
+  }
+}
+
+TEST_CASE("a candidate that names no meter is read with the one that has read its output elsewhere", "[plan]") {
+  data::Study study = one_unknown();
+  data::ObservationSet other{.name = "other", .file = "other.csv", .outputs = {1}, .meter = "camera"};
+  other.points = {{.controls = {0.5}, .values = {10.0}, .standard_errors = {0.1}}};
+  other.common_errors = {{1, {.absolute = 0.4}}};
+  study.observations.push_back(other);  // no set of the case
+  const PlanReport plan = plan_of(study, formula::emulators(), {.candidates = {reading_of(1, 0.1)}}, {.about = "a"});
+  const auto& about = plan.candidates.front().parameters[0];
+  CHECK(about.information == Approx(taught_by_angle(0.01 + 0.16)).margin(about.information_error + 0.005));
+}
+
+TEST_CASE("the discrepancy of an output that is not read yet is a share of what the model predicts", "[plan]") {
+  data::Study study = measured(0.5, 0.5, 0.1, 1);
+  data::Parameter size{.name = "sd", .target = "sd", .low = 0.01, .high = 0.1};
+  size.prior = {.low = 0.01, .high = 0.1};
+  data::Parameter length = size;
+  length.name = length.target = "length";
+  study.cases[0].nuisances = {{data::NuisanceKind::discrepancy_sd, {}, size},
+                              {data::NuisanceKind::discrepancy_length, {}, length}};
+  const std::vector<uq::Emulator> emulators = formula::emulators();
+  const uq::CaseModel model = uq::build_case(study, emulators, 0);
+  const std::vector<uq::plan::Candidate> candidates =
+      uq::plan::candidates_of(study, emulators, 0, {.candidates = {reading_of(1, 0.1)}});
+  const Eigen::VectorXd u = Eigen::Vector4d(0.4, 0.6, 0.5, 0.5);
+  const uq::plan::ExtendedCase extended = uq::plan::extend(study, emulators, 0, model, candidates, u);
+  REQUIRE(extended.model.groups.size() == 2);
+  CHECK(extended.model.groups[1].measurement.discrepancies.at(0).magnitude ==
+        Approx(formula::angle(0.4, 0.6, 0.5)).epsilon(1e-9));
+}
+
+TEST_CASE("where the readings' sd is an unknown, a candidate's own error and the number of its readings count",
+          "[plan]") {
+  data::Study study = measured(0.5, 0.5, 0.1, 1);
+  data::Parameter sd{.name = "sd", .target = "sd", .low = 0.01, .high = 1.0};
+  sd.prior = {.low = 0.01, .high = 1.0};
+  study.cases[0].nuisances = {{data::NuisanceKind::noise_sd, {}, sd}};
+  const std::vector<uq::Emulator> emulators = formula::emulators();
+  const uq::CaseModel model = uq::build_case(study, emulators, 0);
+  std::vector<uq::plan::Candidate> candidates =
+      uq::plan::candidates_of(study, emulators, 0, {.candidates = {reading_of(0, 0.05), reading_of(0, 0.05)}});
+  candidates[0].readings = candidates[1].readings = 4;
+  candidates[1].stated_error = false;
+  const Eigen::VectorXd u = Eigen::Vector3d(0.5, 0.5, 0.2);
+  const uq::plan::ExtendedCase extended = uq::plan::extend(study, emulators, 0, model, candidates, u);
+  const uq::StackedPrediction all = uq::predict(extended.model, u);
+  const Eigen::VectorXd noise = extended.noise_at(all.mean, all.noise);
+  const double unknown = extended.model.unknowns[2].value(0.2);
+  CHECK(noise[extended.planned[0].front()] == Approx(0.05 * 0.05 / 4.0).epsilon(1e-9));
+  CHECK(noise[extended.planned[1].front()] == Approx(unknown * unknown / 4.0).epsilon(1e-9));
+  for (const Eigen::Index row : extended.measured) CHECK(noise[row] == Approx(unknown * unknown).epsilon(1e-9));
+}
+
+TEST_CASE("a narrow prior takes part in the words that a plan forecasts", "[plan]") {
+  // The prior's sd is 0.5 in torque. A reading of sd 1.3 and one of 0.4 leave a contraction of 0.6.
+  data::Study study = one_unknown();
+  study.observations[0].points[0].standard_errors = {1.3};
+  const PlanReport plan = plan_of(study, formula::emulators(), {.candidates = {reading_of(0, 0.4)}}, {.about = "a"});
+  const PlanCandidate& next = plan.candidates.front();
+  const double left = next.parameters[0].sd_after / 0.1;
+  CHECK(1.0 - left * left == Approx(0.6).margin(0.05));
+  CHECK(chance(next, 0, uq::Verdict::identified) == 0.0);
+}
+
+TEST_CASE("a batch within a budget is found where the best single reading would take all of it", "[plan]") {
+  const data::Study study = one_unknown();
+  data::PlanEntry dear = reading_of(1, 0.30), cheap = reading_of(1, 0.32);
+  dear.name = "dear";
+  dear.cost = 10.0;
+  cheap.cost = 2.0;
+  const PlanReport plan =
+      plan_of(study, formula::emulators(), {.candidates = {dear, cheap}}, {.about = "a", .budget = 10.0, .batch = 3});
+  REQUIRE(plan.batches.size() == 2);
+  CHECK(plan.batches[1].candidates == std::vector<std::string>{"next", "next", "next"});
+  CHECK(plan.batches[1].cost == 6.0);
+}
+
+TEST_CASE("a plan for a case of a cut parameter is refused", "[plan]") {
+  const data::Study study = one_unknown();
+  const std::vector<uq::Emulator> emulators = formula::emulators();
+  uq::SampledCase sampled = uq::sample_case(study, emulators, 0, {.seed = 1});
+  uq::CaseModel model = *sampled.model;
+  model.unknowns[0].cut_from = "other";
+  sampled.model = std::make_shared<const uq::CaseModel>(model);
+  CHECK_THROWS_WITH(uq::plan::make_plan(study, emulators, 0, sampled, {}, {}),
+                    Catch::Contains("takes a cut from case 'other'") && Catch::Contains("plan for case 'other'"));
 }
 
 TEST_CASE("widths and words that a plan forecasts come true", "[plan][slow]") {

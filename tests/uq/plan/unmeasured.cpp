@@ -69,6 +69,23 @@ TEST_CASE("without data a reading of one unknown teaches what the closed form sa
   CHECK(about.information == Approx(0.5 * std::log(1.0 + 4.0)).margin(2.0 * about.information_error + 0.003));
 }
 
+TEST_CASE("without data the error of a setting is in what a reading teaches", "[plan]") {
+  // The angle goes with the speed by 2 and with a by 3: a speed known to +- 0.2 adds 0.4 to the reading's error.
+  data::Study study = uq::plan::with_cases(without_data());
+  study.cases[0].free = {"a"};
+  study.cases[0].fixed = {{"b", 0.5}};
+  study.controls[0].uncertainty = data::SettingError{.control = 0, .spread = {.absolute = 0.2}};
+  for (data::Parameter& one : study.parameters)
+    one.prior = {.kind = data::PriorKind::normal, .low = 0.0, .high = 1.0, .mean = 0.5, .sd = 0.1};
+  data::PlanSection section = readings(0.1);
+  section.candidates.erase(section.candidates.begin());
+  section.candidates[0].settings = {{0.5}};
+  const uq::PlanReport plan = prior_plan(study, section);
+  const uq::PlannedParameter& about = plan.candidates.front().parameters.front();
+  CHECK(about.information ==
+        Approx(0.5 * std::log(1.0 + 9.0 * 0.01 / (0.01 + 0.16))).margin(2.0 * about.information_error + 0.003));
+}
+
 TEST_CASE("a study without cases has one per material, which frees what the material does not fix", "[plan]") {
   data::Study study = without_data();
   study.materials = {{.name = "glass", .fixed = {{"b", 0.3}}, .runs = {}, .place = {}},
