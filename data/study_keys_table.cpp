@@ -133,8 +133,14 @@ const std::vector<StudyKey>& study_keys() {
        "\"steel\""},
       {"rig.mesh.file", "text", "", "", "", "the STL file, text or binary", "\"paddle.stl\""},
       {"rig.mesh.unit", "text", "", "", "", "unit of the file's coordinates", "\"mm\""},
-      {"rig.mesh.axis", "list of quantities", "", "", "", "axis about which it turns", "[1, 0, 0]"},
-      {"rig.mesh.point", "list of quantities", "m", "", "", "a point on that axis", "[\"0 mm\", \"0 mm\", \"0 mm\"]"},
+      {"rig.mesh.axis", "list of quantities", "", "", "",
+       "axis about which it turns and its torque is taken; missing: along x where it turns, else, for its torque, that "
+       "of "
+       "its swing or the one about which the others turn or swing",
+       "[1, 0, 0]"},
+      {"rig.mesh.point", "list of quantities", "m", "", "",
+       "a point on that axis; missing: that of the axis it takes over, else the origin",
+       "[\"0 mm\", \"0 mm\", \"0 mm\"]"},
       {"rig.mesh.speed_ratio", "number", "", "", "0", "its speed over the study's rpm; 0 stands still", "-1"},
       {"rig.mesh.rpm", "quantity", "rad/s", "", "", "a speed of its own, whatever rpm is", "\"60 rpm\""},
       {"rig.mesh.programme", "table", "", "", "",

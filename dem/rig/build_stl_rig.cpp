@@ -85,9 +85,7 @@ bool one_axis(const Case& c) {
   const StlRig& rig = *c.rig.stl;
   const Motion first = measured_motion(c, 0);
   for (std::size_t k = 1; k < rig.measured.size(); ++k) {
-    const Motion other = measured_motion(c, k);
-    if (!parallel(first.axis, other.axis) || length(offset_between(first, other)) > 1e-6 * length(rig.high - rig.low))
-      return false;
+    if (!same_line(first, measured_motion(c, k), 1e-6 * length(rig.high - rig.low))) return false;
   }
   return true;
 }

@@ -99,7 +99,9 @@ void read_motion(const Section& s, RigMesh& mesh) {
   for (const Section& o : s.array("oscillation")) mesh.motion.oscillations.push_back(read_oscillation(o));
 }
 
-void read_meshes(const Section& rig, const std::string& folder, StlRig& r) {
+/// The tables of the meshes that were read, in their order.
+std::vector<Section> read_meshes(const Section& rig, const std::string& folder, StlRig& r) {
+  std::vector<Section> tables;
   for (const Section& s : rig.array("mesh")) {
     RigMesh mesh;
     mesh.name = s.text("name");
@@ -122,7 +124,9 @@ void read_meshes(const Section& rig, const std::string& folder, StlRig& r) {
       continue;
     }
     r.meshes.push_back(std::move(mesh));
+    tables.push_back(s);
   }
+  return tables;
 }
 
 void read_box(const Section& s, StlRig& r) {
@@ -205,6 +209,49 @@ void choose_measured(const Section& s, StlRig& r) {
   }
 }
 
+bool turns_by_speed(const RigMesh& m) {
+  return m.speed_ratio != 0.0 || std::any_of(m.motion.programme.begin(), m.motion.programme.end(),
+                                             [](const SpeedPoint& p) { return p.angular_velocity != 0.0; });
+}
+
+/// The axes about which a mesh turns, or swings where it does not turn.
+std::vector<Motion> axes_of(const RigMesh& m) {
+  if (turns_by_speed(m)) return {m.motion};
+  std::vector<Motion> axes;
+  for (const Oscillation& o : m.motion.oscillations)
+    if (o.kind == OscillationKind::about) axes.push_back({.point = m.motion.point, .axis = o.axis});
+  return axes;
+}
+
+/// The axis of the torque of a measured mesh that neither gives one nor turns: its own where it swings, else that about
+/// which the others turn or swing, where they share one.
+void choose_axis(const Section& s, RigMesh& mesh, const StlRig& r) {
+  std::vector<Motion> axes = axes_of(mesh);
+  if (axes.empty()) {
+    for (const RigMesh& other : r.meshes)
+      for (const Motion& axis : axes_of(other)) axes.push_back(axis);
+  }
+  const double tolerance = 1e-6 * length(r.high - r.low);
+  const bool one = !axes.empty() && std::all_of(axes.begin(), axes.end(),
+                                                [&](const Motion& m) { return same_line(axes.front(), m, tolerance); });
+  if (one) {
+    mesh.motion.axis = axes.front().axis;
+    if (!s.has("point")) mesh.motion.point = axes.front().point;
+    return;
+  }
+  s.problem("axis",
+            fmt::format("is missing, but the torque of '{}' is measured, and {}", mesh.name,
+                        axes.empty() ? "no mesh turns whose axis it could take" : "what turns has no axis in common"),
+            R"(add lines like axis = [0, 0, 1] and point = ["0 mm", "0 mm", "0 mm"])");
+}
+
+void choose_axes(const std::vector<Section>& tables, StlRig& r) {
+  for (const std::size_t k : r.measured) {
+    if (k < r.meshes.size() && !tables[k].has("axis") && !turns_by_speed(r.meshes[k]))
+      choose_axis(tables[k], r.meshes[k], r);
+  }
+}
+
 /// Identity of what came from files, so that runs are made again when a file changes.
 std::string hash_content(const StlRig& r) {
   std::string bytes;
@@ -227,10 +274,11 @@ std::shared_ptr<const StlRig> read_stl_rig(const Section& s, const std::string& 
   StlRig r;
   read_box(s.child("box"), r);
   r.down = read_direction(s, "down", r.down);
-  read_meshes(s, folder, r);
+  const std::vector<Section> tables = read_meshes(s, folder, r);
   read_region(s.child("region"), r);
   read_packing(s, folder, r);
   choose_measured(s, r);
+  if (tables.size() == s.array("mesh").size()) choose_axes(tables, r);
   r.content = hash_content(r);
   return std::make_shared<const StlRig>(std::move(r));
 }

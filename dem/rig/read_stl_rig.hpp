@@ -2,7 +2,8 @@
 // The keys of [rig] with kind = "stl":
 //
 // [[rig.mesh]]  name, file (STL, from the study's folder), unit (what 1 in the file stands for: "mm"); axis = [1, 0, 0]
-//               and point = ["0 mm", "0 mm", "0 mm"] of its rotation; one of
+//               and point = ["0 mm", "0 mm", "0 mm"] of its rotation and its torque (a measured mesh at rest that gives
+//               none has the axis that all have in common which turn or swing); one of
 //                 speed_ratio (constant speed over the rig's rpm; 1 for a mixer that the study's rpm drives),
 //                 rpm (constant speed of its own), programme = { time = ["0 s", "1 s"], speed = ["0 rpm", "60 rpm"] }
 //               (linear between, constant beyond); and [[rig.mesh.oscillation]] along or about = [0, 0, 1], amplitude,

@@ -221,6 +221,51 @@ speed_ratio = 1
       Catch::Contains("names the mesh 'mixer' twice"));
 }
 
+TEST_CASE(
+    "the torque of a mesh at rest is about the axis of what turns, and one that swings is measured about its own") {
+  using Catch::Contains;
+  const SliceFolder folder;
+  const std::string about_z = "axis = [0, 0, 1]\npoint = [\"3 mm\", \"1 mm\", \"0 mm\"]\n";
+  const auto text = [&](const std::string& measured, const std::string& mixer, const std::string& trough) {
+    std::string t = replaced(rig, "periodic = [\"x\"]", "");
+    t = replaced(t, "rpm = \"150 rpm\"", "rpm = \"150 rpm\"\ntorque_of = " + measured);
+    return replaced(t, "speed_ratio = 1\n", mixer) + trough + rest;
+  };
+  const auto sensor_axis = [&](const std::string& study, std::size_t body) {
+    const dem::Case c = dem::read_case(folder.study(study), "steel");
+    const dem::BuiltRig built = dem::build_rig(c, 1);
+    REQUIRE(built.sensor.driven.back().body == body);
+    return std::pair{built.sensor.driven.back().torque_axis, built.bodies[body].motion.point};
+  };
+  const auto is_that_of_the_mixer = [&](const std::string& study, std::size_t body) {
+    const auto [axis, point] = sensor_axis(study, body);
+    CHECK(axis.z == 1.0);
+    CHECK(dem::length(point - dem::Vec3{3e-3, 1e-3, 0.0}) < 1e-12);
+  };
+  const std::string swing =
+      "[[rig.mesh.oscillation]]\nabout = [0, 0, 2]\namplitude = \"1 degree\"\nfrequency = \"5 Hz\"\n";
+  is_that_of_the_mixer(text("\"trough\"", about_z + "speed_ratio = 1\n", ""), 1);
+  is_that_of_the_mixer(text("[\"mixer\", \"trough\"]", about_z + "rpm = \"30 rpm\"\n", ""), 1);
+  is_that_of_the_mixer(text("\"trough\"", "point = [\"3 mm\", \"1 mm\", \"0 mm\"]\n" + swing, ""), 1);
+  is_that_of_the_mixer(text("\"mixer\"", "point = [\"3 mm\", \"1 mm\", \"0 mm\"]\n" + swing, ""), 0);
+  const auto given = sensor_axis(text("\"trough\"", about_z + "speed_ratio = 1\n", "axis = [0, 1, 0]\n"), 1);
+  CHECK(given.first.y == 1.0);
+  CHECK(given.second.x == 0.0);
+  const auto refused = [&](const std::string& study) { return said(folder, study); };
+  CHECK_THAT(refused(text("\"trough\"", "", "")),
+             Contains("rig.mesh") && Contains("axis: is missing") && Contains("'trough'") && Contains("no mesh turns"));
+  CHECK_THAT(refused(text("\"mixer\"", "speed_ratio = 1\n" + swing, "")), !Contains("is missing"));
+  CHECK_THAT(refused(text("\"trough\"", about_z + "speed_ratio = 1\n", R"(
+[[rig.mesh]]
+name = "second"
+file = "mixer.stl"
+unit = "m"
+axis = [0, 0, 1]
+rpm = "9 rpm"
+)")),
+             Contains("'trough'") && Contains("no axis in common") && Contains("add lines like axis"));
+}
+
 TEST_CASE("a programme and oscillations are read with their units") {
   const SliceFolder folder;
   const std::string text = replaced(rig, "speed_ratio = 1", R"(
