@@ -213,7 +213,7 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
   const Motion first = sensor.driven.empty() ? Motion{} : built.bodies[sensor.driven.front().body].motion;
   sensor.flow_axis = first.axis;
   sensor.flow_length = extent_along(first.axis, rig.high - rig.low);
-  sensor.period = period(first);
+  sensor.period = turn_of(c);
   sensor.picture = {{}, {}, -rig.down};  // bodies about several axes have no side on which they rise
   if (!sensor.driven.empty() && one_axis(c))
     sensor.picture = picture_along(-sensor.driven.front().torque_axis, first.point, rig.down);
