@@ -106,7 +106,7 @@ const std::vector<StudyKey>& study_keys() {
       {"rig.down", "list of quantities", "", "", "", "direction of gravity", "[0, 0, -1]"},
       {"rig.packing", "text", "", "", "none",
        "CSV of the spheres' first positions (x, y, z; vx, vy, vz; frozen), instead of filling", "\"packing.csv\""},
-      {"rig.packing_unit", "text", "", "", "m", "unit of these positions", "\"mm\""},
+      {"rig.packing_unit", "text", "", "", "m", "unit of these positions, where their headings give none", "\"mm\""},
       {"rig.torque_of", "list of texts", "", "", "the first that moves",
        "meshes whose torques, summed, are the output; one needs no list", "\"paddle\""},
       {"rig.box", "table", "", "", "", "the simulated box",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -39,15 +40,14 @@ Vec3 read_direction(const Section& s, std::string_view key, Vec3 fallback) {
   return fallback;
 }
 
-/// The length that a unit's 1 stands for [m].
-double read_unit(const Section& s, std::string_view key, const std::optional<std::string>& fallback) {
+data::Unit read_unit(const Section& s, std::string_view key, const std::optional<std::string>& fallback) {
   const std::string name = s.text(key, fallback);
   try {
-    if (data::convertible(name, "m")) return data::parse_unit(name).factor;
+    if (data::convertible(name, "m")) return data::parse_unit(name);
   } catch (const std::invalid_argument&) {
   }
   if (!name.empty()) s.problem(key, fmt::format("'{}' is not a length", name), "give a unit like \"mm\"");
-  return 1.0;
+  return data::parse_unit("m");
 }
 
 std::string from_folder(const std::string& folder, const std::string& file) {
@@ -111,7 +111,7 @@ std::vector<Section> read_meshes(const Section& rig, const std::string& folder, 
     }
     mesh.material = s.text("material", "wall");
     const std::string file = s.text("file");
-    const double scale = read_unit(s, "unit", {});
+    const double scale = read_unit(s, "unit", {}).factor;
     read_motion(s, mesh);
     if (file.empty()) continue;
     try {
@@ -157,20 +157,34 @@ void read_region(const Section& s, StlRig& r) {
 }
 
 void read_packing(const Section& s, const std::string& folder, StlRig& r) {
-  const double scale = read_unit(s, "packing_unit", "m");
+  const data::Unit usual = read_unit(s, "packing_unit", "m");
   const std::string file = s.text("packing", "");
   if (file.empty()) return;
   try {
     const data::Csv csv = data::read_csv(from_folder(folder, file));
-    const auto vector = [&](const data::CsvRow& row, const std::string& prefix) {
-      const auto at = [&](const char* axis) { return csv.number(row, csv.column(prefix + axis)); };
-      return Vec3{at("x"), at("y"), at("z")};
+    struct Column {
+      std::size_t at = 0;
+      data::Unit unit;
     };
+    const auto columns = [&](const std::string& prefix, const data::Unit& unit) {
+      std::array<Column, 3> found;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t at = csv.column(prefix + "xyz"[k]);
+        found[k] = {at, csv.unit(at, unit)};
+      }
+      return found;
+    };
+    const auto vector = [&](const data::CsvRow& row, const std::array<Column, 3>& in) {
+      const auto value = [&](const Column& c) { return c.unit.to_si(csv.number(row, c.at)); };
+      return Vec3{value(in[0]), value(in[1]), value(in[2])};
+    };
+    const std::array<Column, 3> place = columns("", usual);
     const bool moving = csv.find("vx") || csv.find("vy") || csv.find("vz");
+    const std::array<Column, 3> speed = moving ? columns("v", data::parse_unit("m/s")) : place;
     const std::optional<std::size_t> frozen = csv.find("frozen");
     for (const data::CsvRow& row : csv.rows) {
-      r.packing.push_back(scale * vector(row, ""));
-      if (moving) r.velocity.push_back(vector(row, "v"));
+      r.packing.push_back(vector(row, place));
+      if (moving) r.velocity.push_back(vector(row, speed));
       if (!frozen) continue;
       const double flag = csv.number(row, *frozen);
       if (flag != 0.0 && flag != 1.0)

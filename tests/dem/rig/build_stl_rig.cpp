@@ -151,6 +151,27 @@ TEST_CASE("spheres start where a CSV says, and one outside the box or inside a m
   CHECK_THAT(said(folder, text), Catch::Contains("at.csv"));
 }
 
+TEST_CASE("a packing is read in the units of its headings, and in packing_unit and m/s where they have none") {
+  const SliceFolder folder;
+  const std::string text = replaced(rig, "fill = 400", "packing = \"at.csv\"\npacking_unit = \"mm\"") + rest;
+  const auto read = [&](const std::string& heading) {
+    folder.write("at.csv", heading + "\n6,5.5,2,3,4,5\n");
+    return *dem::read_case(folder.study(text), "steel").rig.stl;
+  };
+  const dem::StlRig bare = read("x,y,z,vx,vy,vz");
+  CHECK(bare.packing[0].x == Approx(6e-3));
+  CHECK(bare.velocity[0].x == Approx(3.0));
+  const dem::StlRig with = read("x [um],y [m],z,vx [mm/s],vy [m/s],vz [cm/s]");
+  CHECK(with.packing[0].x == Approx(6e-6));
+  CHECK(with.packing[0].y == Approx(5.5));
+  CHECK(with.packing[0].z == Approx(2e-3));
+  CHECK(with.velocity[0].x == Approx(3e-3));
+  CHECK(with.velocity[0].y == Approx(4.0));
+  CHECK(with.velocity[0].z == Approx(5e-2));
+  folder.write("at.csv", "x,y,z,vx [mm],vy,vz\n6,5.5,2,3,4,5\n");
+  CHECK_THAT(said(folder, text), Catch::Contains("at.csv:1: vx") && Catch::Contains("does not measure"));
+}
+
 TEST_CASE("the rig's speed drives its meshes, its dimensions do not exist, and its settings name all that it is") {
   const SliceFolder folder;
   dem::Case c = dem::read_case(folder.study(rig + rest), "steel");
