@@ -40,6 +40,7 @@ struct StlRig {
   Vec3 down{0.0, 0.0, -1.0};  ///< unit, direction of gravity
   FillRegion region;
   std::vector<Vec3> packing;          ///< m, where the spheres start; empty: the region is filled
+  std::vector<int> packing_line;      ///< of the packing, in its file
   std::vector<Vec3> velocity;         ///< m/s, of the packing; empty: at rest
   std::vector<std::uint8_t> frozen;   ///< of the packing, 1: keeps its velocity whatever the load; empty: none
   std::vector<std::string> warnings;  ///< of the meshes' check

@@ -184,6 +184,7 @@ void read_packing(const Section& s, const std::string& folder, StlRig& r) {
     const std::optional<std::size_t> frozen = csv.find("frozen");
     for (const data::CsvRow& row : csv.rows) {
       r.packing.push_back(vector(row, place));
+      r.packing_line.push_back(row.line);
       if (moving) r.velocity.push_back(vector(row, speed));
       if (!frozen) continue;
       const double flag = csv.number(row, *frozen);

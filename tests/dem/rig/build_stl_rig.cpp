@@ -1,4 +1,5 @@
 // Rigs of the user's own meshes: what a study says reaches the run, packings keep clear, mistakes are named.
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 
 #include "data/error.hpp"
@@ -170,6 +171,30 @@ TEST_CASE("a packing is read in the units of its headings, and in packing_unit a
   CHECK(with.velocity[0].z == Approx(5e-2));
   folder.write("at.csv", "x,y,z,vx [mm],vy,vz\n6,5.5,2,3,4,5\n");
   CHECK_THAT(said(folder, text), Catch::Contains("at.csv:1: vx") && Catch::Contains("does not measure"));
+}
+
+TEST_CASE("spheres of a packing that overlap are named with their lines, also over a periodic face") {
+  const SliceFolder folder;
+  const std::string text = replaced(rig, "fill = 400", "packing = \"at.csv\"\npacking_unit = \"mm\"") + rest;
+  const auto build = [&](const std::string& rows) {
+    folder.write("at.csv", "x,y,z,frozen\n" + rows);
+    return dem::build_rig(dem::read_case(folder.study(text), "steel"), 1);
+  };
+  using Catch::Contains;  // spheres of 1.4 mm, of which a tenth of a radius is 0.07 mm
+  CHECK_NOTHROW(build("6,0,20,0\n6,1.34,20,0\n"));
+  CHECK_THROWS_WITH(build("6,0,20,0\n6,0,30,0\n6,1.32,20,0\n"),
+                    Contains("spheres 1 and 3 (lines 2 and 4)") && Contains("0.114 of a radius"));
+  CHECK_THROWS_WITH(build("6,0,20,0\n6,0,20,1\n"), Contains("lines 2 and 3") && Contains("2 of a radius"));
+  CHECK_THROWS_WITH(build("0.1,0,20,0\n11.9,0,20,0\n"), Contains("lines 2 and 3"));
+  CHECK_NOTHROW(build("6,-6,20,0\n6,6,20,0\n"));
+  CHECK_NOTHROW(build("6,0,20,1\n6,1,20,1\n"));  // both are held
+  std::string lattice;                           // all pairs of many cells, of which one overlaps
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j)
+      for (int k = 0; k < 20; ++k)
+        lattice += fmt::format("{},{},{},0\n", 0.75 + 1.5 * i, -5.25 + 1.5 * j, 10.0 + 1.5 * k);
+  CHECK_NOTHROW(build(lattice));
+  CHECK_THROWS_WITH(build(lattice + "3.75,-2.25,17,0\n"), Contains("and 1281"));
 }
 
 TEST_CASE("the rig's speed drives its meshes, its dimensions do not exist, and its settings name all that it is") {
