@@ -227,6 +227,25 @@ TEST_CASE("the rig's speed drives its meshes, its dimensions do not exist, and i
   }
 }
 
+TEST_CASE(
+    "a speed that drives no mesh has no effect, nor has a wall's coefficient where each wall has one of its own") {
+  using Catch::Contains;
+  const SliceFolder folder;
+  const auto why = [&](const std::string& text, const char* target) {
+    return dem::without_effect(dem::read_case(folder.study(text + rest), "steel"), target);
+  };
+  const auto pair = [](const std::string& body) {
+    return "[[contact.pair]]\nbetween = [\"steel\", \"" + body + "\"]\nfriction = 0.1\n";
+  };
+  CHECK(why(rig, "rig.rpm") == "");
+  CHECK_THAT(why(replaced(rig, "speed_ratio = 1", "rpm = \"9 rpm\""), "rpm"), Contains("none has a speed_ratio"));
+  CHECK(why(rig, "contact.wall_friction") == "");
+  CHECK(why(rig + pair("mixer"), "contact.wall_friction") == "");
+  CHECK_THAT(why(rig + pair("mixer") + pair("trough"), "contact.wall_friction"), Contains("friction is given"));
+  CHECK_THAT(why(rig + pair("wall"), "wall_friction"), Contains("contact.pair"));
+  CHECK(why(rig + pair("wall"), "contact.friction") == "");
+}
+
 TEST_CASE("the torques of several meshes are summed, and two that turn side by side have channels") {
   const SliceFolder folder;
   const std::string two = replaced(rig, "speed_ratio = 1", R"(speed_ratio = 1
