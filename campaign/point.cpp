@@ -62,6 +62,7 @@ Point parse_point(const Workspace& workspace, const std::string& material, const
     const auto fixed = rows.fixed.find(input.name);
     point.inputs.push_back(fixed != rows.fixed.end() ? fixed->second : 0.5 * (input.axis.low + input.axis.high));
   }
+  std::vector<std::string> set;
   for (const std::string& assignment : at) {
     const std::size_t equals = assignment.find('=');
     const std::string name = assignment.substr(0, equals);
@@ -71,6 +72,9 @@ Point parse_point(const Workspace& workspace, const std::string& material, const
       throw usage("--at", fmt::format("'{}' sets no parameter or control", assignment),
                   fmt::format("write NAME=VALUE with one of: {}", names_of(inputs)));
     const std::string place = "--at " + name;
+    if (std::find(set.begin(), set.end(), name) != set.end())
+      throw usage(place, fmt::format("is set twice, the second time by '{}'", assignment), "keep one of them");
+    set.push_back(name);
     const double value = parse_value(assignment.substr(equals + 1), *found, place);
     const dem::Target target = dem::target(found->target);
     if (!(value >= target.low && value <= target.high))

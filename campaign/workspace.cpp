@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -49,6 +50,34 @@ void check_target(const data::Section& section, const data::Input& input) {
   outside("high", input.axis.high);
 }
 
+/// What a target sets: the names of the bed's amount are of one quantity.
+std::string quantity_set_by(const data::Input& input) {
+  const std::string name = dem::target(input.target).name;
+  return name == "rig.fill_mass" || name == "rig.level" ? "rig.fill" : name;
+}
+
+/// Each parameter and control must set a quantity of its own, and one that a run depends on.
+void check_effects(const Workspace& workspace, const std::vector<data::Input>& inputs,
+                   const std::vector<data::Section>& sections) {
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    if (!dem::find_target(inputs[k].target)) continue;  // said already
+    for (std::size_t other = 0; other < k; ++other) {
+      if (!dem::find_target(inputs[other].target) || quantity_set_by(inputs[other]) != quantity_set_by(inputs[k]))
+        continue;
+      sections[k].problem("target",
+                          fmt::format("is {}, which {} sets too, as {}", inputs[k].target, sections[other].place(),
+                                      inputs[other].target),
+                          "keep one of them, or give one another target");
+    }
+    std::string why;
+    for (const auto& [material, of] : workspace.cases)
+      if (why = dem::without_effect(of, inputs[k].target); why.empty()) break;
+    if (!why.empty())
+      sections[k].problem("target", fmt::format("{} {}", dem::target(inputs[k].target).name, why),
+                          "choose another target, or leave it out");
+  }
+}
+
 std::string default_out(const data::Study& study) {
   return fs::absolute(study.name + "-results").lexically_normal().string();
 }
@@ -69,10 +98,14 @@ Workspace open_workspace(const StudyOptions& options) {
   if (file.root().child("rig").exists()) {
     for (const data::Material& material : study.materials)
       workspace.cases[material.name] = dem::read_case(file, material.name);
-    for (const data::Input& input : data::inputs_of(study)) {
+    const std::vector<data::Input> inputs = data::inputs_of(study);
+    std::vector<data::Section> sections;
+    for (const data::Input& input : inputs) {
       const char* const kind = study.parameter_index(input.name) ? "parameters" : "controls";
-      check_target(file.root().child(kind).child(input.name), input);
+      sections.push_back(file.root().child(kind).child(input.name));
+      check_target(sections.back(), input);
     }
+    check_effects(workspace, inputs, sections);
     for (const data::Output& output : study.outputs) {
       const data::Section outputs = file.root().child("outputs");
       if (!dem::has_output(output.name)) {

@@ -1,10 +1,12 @@
 // demcal render: a frame of a run as a picture.
 #include <fmt/core.h>
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 
 #include "cli/command.hpp"
+#include "data/error.hpp"
 #include "data/terminal.hpp"
 #include "dem/run/picture.hpp"
 
@@ -40,6 +42,10 @@ Action add_render(CLI::App& program) {
                                                               {"speed", dem::ColourBy::speed},
                                                               {"coordination", dem::ColourBy::coordination},
                                                               {"force", dem::ColourBy::force}};
+    if (const auto& d = options->from; !(std::hypot(d[0], d[1], d[2]) > 0.0) || !std::isfinite(d[0] + d[1] + d[2]))
+      throw data::InputError(data::ExitStatus::usage,
+                             {"--from", fmt::format("{:g},{:g},{:g} is no direction", d[0], d[1], d[2]),
+                              "give three finite numbers that are not all 0, like -1,-2,1.2"});
     dem::draw_frame(options->frame, png,
                     {.from = {options->from[0], options->from[1], options->from[2]},
                      .by = colours.at(options->by),

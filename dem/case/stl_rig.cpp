@@ -15,6 +15,11 @@ std::vector<Vec3> periods(const StlRig& rig) {
   return found;
 }
 
+bool same_line(const Motion& one, const Motion& other, double tolerance) {
+  const Vec3 apart = other.point - one.point;
+  return length(cross(one.axis, other.axis)) < 1e-6 && length(apart - dot(apart, one.axis) * one.axis) <= tolerance;
+}
+
 Motion motion_of(const RigMesh& mesh, double angular_velocity) {
   Motion motion = mesh.motion;
   if (mesh.speed_ratio != 0.0) motion.programme = {{0.0, mesh.speed_ratio * angular_velocity}};

@@ -18,7 +18,7 @@ struct RigMesh {
   std::string material = "wall";  ///< by which [[contact.pair]] names it
   TriangleMesh mesh;              ///< m, checked, one box length of it where the box is periodic
   double tolerance = 0.0;         ///< m, of its welding
-  Motion motion;                  ///< with its own programme, or none
+  Motion motion;                  ///< with its own programme, or none; of one that rests, the axis of its torque
   double speed_ratio = 0.0;       ///< constant speed / the rig's angular velocity, instead of a programme
 };
 
@@ -40,6 +40,7 @@ struct StlRig {
   Vec3 down{0.0, 0.0, -1.0};  ///< unit, direction of gravity
   FillRegion region;
   std::vector<Vec3> packing;          ///< m, where the spheres start; empty: the region is filled
+  std::vector<int> packing_line;      ///< of the packing, in its file
   std::vector<Vec3> velocity;         ///< m/s, of the packing; empty: at rest
   std::vector<std::uint8_t> frozen;   ///< of the packing, 1: keeps its velocity whatever the load; empty: none
   std::vector<std::string> warnings;  ///< of the meshes' check
@@ -48,6 +49,9 @@ struct StlRig {
 
 /// Edges of the box along its periodic axes [m].
 std::vector<Vec3> periods(const StlRig& rig);
+
+/// Whether two motions have their axes, which may point either way, on one line to within `tolerance` [m].
+bool same_line(const Motion& one, const Motion& other, double tolerance);
 
 /// The mesh's motion at this speed of the rig [rad/s].
 Motion motion_of(const RigMesh& mesh, double angular_velocity);

@@ -61,6 +61,13 @@ void say_impacts(const Case& c, const Derived& d, Forecast& f) {
   }
 }
 
+void say_samples(const Case& c, const Derived& d, Forecast& f) {
+  if (c.run.sample_interval >= d.time_step * (1.0 - 1e-9)) return;
+  f.warnings.push_back(fmt::format(
+      "run.sample_interval, {:g} s, is shorter than a time step, {:.3g} s, and each step makes a sample (lengthen it)",
+      c.run.sample_interval, d.time_step));
+}
+
 Forecast with_outlook(Forecast f, RigOutlook seen) {
   f.fill = seen.fill;
   f.surface = seen.surface;
@@ -82,6 +89,7 @@ Forecast forecast(const PreparedCase& prepared, std::uint64_t seed) {
   Forecast f{.spheres = bed.spheres, .mass = bed.mass, .largest = bed.largest};
   say_density(c, f);
   say_impacts(c, prepared.derived(), f);
+  say_samples(c, prepared.derived(), f);
   const RigKind& kind = kind_of(c);
   f = kind.outlook != nullptr ? with_outlook(std::move(f), kind.outlook(c)) : forecast_of_meshes(c, seed, std::move(f));
   std::sort(f.gaps.begin(), f.gaps.end(), [](const NamedGap& a, const NamedGap& b) { return a.width < b.width; });

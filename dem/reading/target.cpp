@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <span>
 #include <stdexcept>
 
@@ -295,6 +296,30 @@ std::optional<Target> find_target(std::string_view name) {
 Target target(std::string_view name) { return binding(name).target; }
 
 std::string unused_because(const Case& c, std::string_view name) { return binding(name).unused(c); }
+
+std::string without_effect(const Case& c, std::string_view name) {
+  const std::string full = target(name).name;
+  if (full == "rig.rpm" && c.rig.stl) {
+    const std::vector<RigMesh>& meshes = c.rig.stl->meshes;
+    const bool driven =
+        std::any_of(meshes.begin(), meshes.end(), [](const RigMesh& m) { return m.speed_ratio != 0.0; });
+    return driven ? "" : "drives no mesh of this rig: none has a speed_ratio";
+  }
+  constexpr std::string_view of_walls = "contact.wall_";
+  if (!full.starts_with(of_walls)) return "";
+  const auto key = std::find_if(std::begin(pair_keys), std::end(pair_keys),
+                                [&](const PairKey& k) { return k.key == full.substr(of_walls.size()); });
+  if (key == std::end(pair_keys)) return "";
+  for (const std::string& grain : grain_names(c)) {
+    for (const BodyLabel& body : body_labels(c)) {
+      const bool own = std::any_of(c.pairs.begin(), c.pairs.end(), [&](const PairContact& p) {
+        return p.*key->field && holds_for(c, p, {grain, body.name});
+      });
+      if (!own) return "";
+    }
+  }
+  return fmt::format("has no effect: every wall's {} is given by contact.pair", key->key);
+}
 
 void set_target(Case& c, std::string_view name, double si) {
   const std::optional<Binding> b = find_binding(name);

@@ -37,6 +37,10 @@ double get_target(const Case& c, std::string_view name);
 /// Why setting the quantity would change nothing in this case; empty where it would.
 std::string unused_because(const Case& c, std::string_view name);
 
+/// Why the quantity, which the case's laws read, has no effect on its runs, as where every wall has a coefficient of its
+/// own; empty where it has one.
+std::string without_effect(const Case& c, std::string_view name);
+
 /// Names of all quantities set in this case: those of targets() that it uses, its components' and its pairs'.
 std::vector<std::string> quantities_of(const Case& c);
 

@@ -13,6 +13,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <unordered_map>
 
 #include "dem/rig/drive.hpp"
 #include "dem/rig/grow.hpp"
@@ -35,6 +37,76 @@ bool outside(const StlRig& rig, Vec3 p) {
 
 [[noreturn]] void fail(std::string place, std::string what, std::string remedy) {
   throw data::InputError(data::ExitStatus::bad_study, {std::move(place), std::move(what), std::move(remedy)});
+}
+
+/// Of a box, cells at least as wide as a sphere, so that spheres that touch lie in neighbouring ones.
+class Cells {
+ public:
+  Cells(const StlRig& rig, double width) : low_(rig.low), size_(rig.high - rig.low), periodic_(rig.periodic) {
+    const auto size = components(size_);
+    for (std::size_t a = 0; a < 3; ++a) count_[a] = std::clamp(std::floor(size[a] / width), 1.0, most_cells);
+  }
+
+  using Cell = std::array<std::int64_t, 3>;
+  Cell cell_of(Vec3 p) const {
+    const auto at = components(p - low_), size = components(size_);
+    Cell cell{};
+    for (std::size_t a = 0; a < 3; ++a)
+      cell[a] = static_cast<std::int64_t>(std::clamp(std::floor(at[a] / size[a] * count_[a]), 0.0, count_[a] - 1.0));
+    return cell;
+  }
+  /// Of the cell next to it; none beyond a closed face.
+  std::optional<std::int64_t> key(Cell cell, const Cell& step) const {
+    std::int64_t key = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto n = static_cast<std::int64_t>(count_[a]);
+      std::int64_t at = cell[a] + step[a];
+      if (periodic_[a]) at = (at + n) % n;
+      if (at < 0 || at >= n) return {};
+      key = key * n + at;
+    }
+    return key;
+  }
+  double distance(Vec3 p, Vec3 q) const {
+    auto apart = components(p - q);
+    const auto size = components(size_);
+    for (std::size_t a = 0; a < 3; ++a)
+      if (periodic_[a]) apart[a] = std::remainder(apart[a], size[a]);
+    return std::hypot(apart[0], apart[1], apart[2]);
+  }
+
+ private:
+  static constexpr double most_cells = 1e6;  // along an axis, so that keys fit
+  Vec3 low_, size_;
+  std::array<bool, 3> periodic_;
+  std::array<double, 3> count_{};
+};
+
+/// Given positions must keep clear of each other, but for what ends a run. Spheres that are held press on nothing.
+void check_overlaps(const StlRig& rig, double radius, double limit) {
+  const Cells cells(rig, 2.0 * radius);
+  std::unordered_map<std::int64_t, std::vector<std::size_t>> in;
+  const auto held = [&](std::size_t k) { return !rig.frozen.empty() && rig.frozen[k] != 0; };
+  for (std::size_t k = 0; k < rig.packing.size(); ++k) {
+    const Vec3 p = rig.packing[k];
+    const Cells::Cell cell = cells.cell_of(p);
+    for (int step = 0; step < 27; ++step) {
+      const auto key = cells.key(cell, {step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1});
+      const auto there = key ? in.find(*key) : in.end();
+      if (there == in.end()) continue;
+      for (const std::size_t other : there->second) {
+        const double overlap = 2.0 - cells.distance(p, rig.packing[other]) / radius;
+        if (!(overlap > limit) || (held(k) && held(other))) continue;
+        fail(
+            "rig.packing",
+            fmt::format("has spheres {} and {} (lines {} and {}) that overlap by {:.3g} of a radius at {} m, more than "
+                        "run.overlap_limit, {:g}",
+                        other + 1, k + 1, rig.packing_line[other], rig.packing_line[k], overlap, short_text(p), limit),
+            "move them apart, remove one, or correct packing_unit or the diameter");
+      }
+    }
+    in[*cells.key(cell, {0, 0, 0})].push_back(k);
+  }
 }
 
 /// Given positions must lie in the box and clear of the meshes, but for a tenth of a radius.
@@ -85,9 +157,7 @@ bool one_axis(const Case& c) {
   const StlRig& rig = *c.rig.stl;
   const Motion first = measured_motion(c, 0);
   for (std::size_t k = 1; k < rig.measured.size(); ++k) {
-    const Motion other = measured_motion(c, k);
-    if (!parallel(first.axis, other.axis) || length(offset_between(first, other)) > 1e-6 * length(rig.high - rig.low))
-      return false;
+    if (!same_line(first, measured_motion(c, k), 1e-6 * length(rig.high - rig.low))) return false;
   }
   return true;
 }
@@ -203,6 +273,7 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
   } else {
     built.grains = draw_grains(c, seed);
     check_packing(rig, built.bodies, built.grains.radius[0]);
+    check_overlaps(rig, built.grains.radius[0], c.run.overlap_limit);
     built.position = rig.packing;
     built.velocity = rig.velocity;
     built.frozen = rig.frozen;
@@ -215,7 +286,7 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
   const Motion first = sensor.driven.empty() ? Motion{} : built.bodies[sensor.driven.front().body].motion;
   sensor.flow_axis = first.axis;
   sensor.flow_length = extent_along(first.axis, rig.high - rig.low);
-  sensor.period = period(first);
+  sensor.period = turn_of(c);
   sensor.picture = {{}, {}, -rig.down};  // bodies about several axes have no side on which they rise
   if (!sensor.driven.empty() && one_axis(c))
     sensor.picture = picture_along(-sensor.driven.front().torque_axis, first.point, rig.down);

@@ -25,8 +25,18 @@ bool drive_sign_corrected(const Case& c) {
 }
 
 double turn_of(const Case& c) {
-  if (c.rig.stl && !c.rig.stl->meshes.empty())
-    return period(motion_of(c.rig.stl->meshes[c.rig.stl->measured.front()], c.rig.angular_velocity));
+  if (c.rig.stl && !c.rig.stl->meshes.empty()) {
+    const StlRig& rig = *c.rig.stl;
+    if (const double own = period(motion_of(rig.meshes[rig.measured.front()], c.rig.angular_velocity)); own > 0.0)
+      return own;
+    double slowest = 0.0, slowest_swing = 0.0;
+    for (const RigMesh& m : rig.meshes) {
+      const Motion motion = motion_of(m, c.rig.angular_velocity);
+      double& longest = motion.programme.empty() ? slowest_swing : slowest;
+      longest = std::max(longest, period(motion));
+    }
+    return slowest > 0.0 ? slowest : slowest_swing;
+  }
   const double speed = std::abs(c.rig.angular_velocity);
   return speed > 0.0 ? 2.0 * std::numbers::pi / speed : 0.0;
 }

@@ -14,7 +14,8 @@ double drive_sign(const Motion& motion, const RunControl& run);
 /// rig are not those of before.
 bool drive_sign_corrected(const Case& c);
 
-/// Time of a turn of the first measured body, 0 when it does not move [s].
+/// Time of a turn of the first measured body [s]; where it rests, of the body that turns the slowest, else of the slowest
+/// oscillation; 0 where nothing moves.
 double turn_of(const Case& c);
 
 }  // namespace dem

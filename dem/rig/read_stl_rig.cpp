@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -39,15 +40,14 @@ Vec3 read_direction(const Section& s, std::string_view key, Vec3 fallback) {
   return fallback;
 }
 
-/// The length that a unit's 1 stands for [m].
-double read_unit(const Section& s, std::string_view key, const std::optional<std::string>& fallback) {
+data::Unit read_unit(const Section& s, std::string_view key, const std::optional<std::string>& fallback) {
   const std::string name = s.text(key, fallback);
   try {
-    if (data::convertible(name, "m")) return data::parse_unit(name).factor;
+    if (data::convertible(name, "m")) return data::parse_unit(name);
   } catch (const std::invalid_argument&) {
   }
   if (!name.empty()) s.problem(key, fmt::format("'{}' is not a length", name), "give a unit like \"mm\"");
-  return 1.0;
+  return data::parse_unit("m");
 }
 
 std::string from_folder(const std::string& folder, const std::string& file) {
@@ -99,7 +99,9 @@ void read_motion(const Section& s, RigMesh& mesh) {
   for (const Section& o : s.array("oscillation")) mesh.motion.oscillations.push_back(read_oscillation(o));
 }
 
-void read_meshes(const Section& rig, const std::string& folder, StlRig& r) {
+/// The tables of the meshes that were read, in their order.
+std::vector<Section> read_meshes(const Section& rig, const std::string& folder, StlRig& r) {
+  std::vector<Section> tables;
   for (const Section& s : rig.array("mesh")) {
     RigMesh mesh;
     mesh.name = s.text("name");
@@ -109,7 +111,7 @@ void read_meshes(const Section& rig, const std::string& folder, StlRig& r) {
     }
     mesh.material = s.text("material", "wall");
     const std::string file = s.text("file");
-    const double scale = read_unit(s, "unit", {});
+    const double scale = read_unit(s, "unit", {}).factor;
     read_motion(s, mesh);
     if (file.empty()) continue;
     try {
@@ -122,7 +124,9 @@ void read_meshes(const Section& rig, const std::string& folder, StlRig& r) {
       continue;
     }
     r.meshes.push_back(std::move(mesh));
+    tables.push_back(s);
   }
+  return tables;
 }
 
 void read_box(const Section& s, StlRig& r) {
@@ -153,20 +157,35 @@ void read_region(const Section& s, StlRig& r) {
 }
 
 void read_packing(const Section& s, const std::string& folder, StlRig& r) {
-  const double scale = read_unit(s, "packing_unit", "m");
+  const data::Unit usual = read_unit(s, "packing_unit", "m");
   const std::string file = s.text("packing", "");
   if (file.empty()) return;
   try {
     const data::Csv csv = data::read_csv(from_folder(folder, file));
-    const auto vector = [&](const data::CsvRow& row, const std::string& prefix) {
-      const auto at = [&](const char* axis) { return csv.number(row, csv.column(prefix + axis)); };
-      return Vec3{at("x"), at("y"), at("z")};
+    struct Column {
+      std::size_t at = 0;
+      data::Unit unit;
     };
+    const auto columns = [&](const std::string& prefix, const data::Unit& unit) {
+      std::array<Column, 3> found;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t at = csv.column(prefix + "xyz"[k]);
+        found[k] = {at, csv.unit(at, unit)};
+      }
+      return found;
+    };
+    const auto vector = [&](const data::CsvRow& row, const std::array<Column, 3>& in) {
+      const auto value = [&](const Column& c) { return c.unit.to_si(csv.number(row, c.at)); };
+      return Vec3{value(in[0]), value(in[1]), value(in[2])};
+    };
+    const std::array<Column, 3> place = columns("", usual);
     const bool moving = csv.find("vx") || csv.find("vy") || csv.find("vz");
+    const std::array<Column, 3> speed = moving ? columns("v", data::parse_unit("m/s")) : place;
     const std::optional<std::size_t> frozen = csv.find("frozen");
     for (const data::CsvRow& row : csv.rows) {
-      r.packing.push_back(scale * vector(row, ""));
-      if (moving) r.velocity.push_back(vector(row, "v"));
+      r.packing.push_back(vector(row, place));
+      r.packing_line.push_back(row.line);
+      if (moving) r.velocity.push_back(vector(row, speed));
       if (!frozen) continue;
       const double flag = csv.number(row, *frozen);
       if (flag != 0.0 && flag != 1.0)
@@ -205,6 +224,49 @@ void choose_measured(const Section& s, StlRig& r) {
   }
 }
 
+bool turns_by_speed(const RigMesh& m) {
+  return m.speed_ratio != 0.0 || std::any_of(m.motion.programme.begin(), m.motion.programme.end(),
+                                             [](const SpeedPoint& p) { return p.angular_velocity != 0.0; });
+}
+
+/// The axes about which a mesh turns, or swings where it does not turn.
+std::vector<Motion> axes_of(const RigMesh& m) {
+  if (turns_by_speed(m)) return {m.motion};
+  std::vector<Motion> axes;
+  for (const Oscillation& o : m.motion.oscillations)
+    if (o.kind == OscillationKind::about) axes.push_back({.point = m.motion.point, .axis = o.axis});
+  return axes;
+}
+
+/// The axis of the torque of a measured mesh that neither gives one nor turns: its own where it swings, else that about
+/// which the others turn or swing, where they share one.
+void choose_axis(const Section& s, RigMesh& mesh, const StlRig& r) {
+  std::vector<Motion> axes = axes_of(mesh);
+  if (axes.empty()) {
+    for (const RigMesh& other : r.meshes)
+      for (const Motion& axis : axes_of(other)) axes.push_back(axis);
+  }
+  const double tolerance = 1e-6 * length(r.high - r.low);
+  const bool one = !axes.empty() && std::all_of(axes.begin(), axes.end(),
+                                                [&](const Motion& m) { return same_line(axes.front(), m, tolerance); });
+  if (one) {
+    mesh.motion.axis = axes.front().axis;
+    if (!s.has("point")) mesh.motion.point = axes.front().point;
+    return;
+  }
+  s.problem("axis",
+            fmt::format("is missing, but the torque of '{}' is measured, and {}", mesh.name,
+                        axes.empty() ? "no mesh turns whose axis it could take" : "what turns has no axis in common"),
+            R"(add lines like axis = [0, 0, 1] and point = ["0 mm", "0 mm", "0 mm"])");
+}
+
+void choose_axes(const std::vector<Section>& tables, StlRig& r) {
+  for (const std::size_t k : r.measured) {
+    if (k < r.meshes.size() && !tables[k].has("axis") && !turns_by_speed(r.meshes[k]))
+      choose_axis(tables[k], r.meshes[k], r);
+  }
+}
+
 /// Identity of what came from files, so that runs are made again when a file changes.
 std::string hash_content(const StlRig& r) {
   std::string bytes;
@@ -227,10 +289,11 @@ std::shared_ptr<const StlRig> read_stl_rig(const Section& s, const std::string& 
   StlRig r;
   read_box(s.child("box"), r);
   r.down = read_direction(s, "down", r.down);
-  read_meshes(s, folder, r);
+  const std::vector<Section> tables = read_meshes(s, folder, r);
   read_region(s.child("region"), r);
   read_packing(s, folder, r);
   choose_measured(s, r);
+  if (tables.size() == s.array("mesh").size()) choose_axes(tables, r);
   r.content = hash_content(r);
   return std::make_shared<const StlRig>(std::move(r));
 }

@@ -33,7 +33,7 @@ struct Sensor {
   std::vector<Driven> driven;  ///< whose torques, together, are the output
   Vec3 flow_axis;              ///< axial flow = flow_axis . momentum / flow_length
   double flow_length = 1.0;    ///< m, of the box along that axis
-  double period = 0.0;         ///< s of a turn of those bodies, 0 when they do not move
+  double period = 0.0;         ///< s, as turn_of says
   Picture picture;
   bool circulates = false;  ///< the flow is that of both BuiltRig::channels, and flow_length both their lengths
 };

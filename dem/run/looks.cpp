@@ -43,7 +43,7 @@ LookRule look_rule(const RunControl& run, double time, double turn) {
   rule.start_up = std::min(samples_in(std::max(run.start_up, run.start_up_turns * turn), time), rule.longest - 1);
   rule.shortest = std::max<std::size_t>(1, samples_in(std::max(run.shortest, run.shortest_turns * turn), time));
   rule.standard_error = run.standard_error;
-  rule.window = samples_in_window(run);
+  rule.window = samples_in_window(run, time);
   for (std::size_t k = 0; k < outputs().size(); ++k)
     if (std::find(run.known.begin(), run.known.end(), outputs()[k].name) != run.known.end()) rule.known.push_back(k);
   return rule;

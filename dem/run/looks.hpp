@@ -44,7 +44,7 @@ double turning_missed(const RunControl& run, double turn);
 inline constexpr double drift_level = 0.05;
 
 /// Of this file's rule: raised when it comes to stop elsewhere, so that runs kept in files are judged again.
-inline constexpr int look_rule_version = 2;
+inline constexpr int look_rule_version = 3;
 
 /// What a look finds.
 struct Measured {

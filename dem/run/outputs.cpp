@@ -86,8 +86,8 @@ const std::vector<CameraOutput>& camera_outputs() {
   return all;
 }
 
-std::size_t samples_in_window(const RunControl& run) {
-  return static_cast<std::size_t>(std::max(1.0, std::round(run.window / run.sample_interval)));
+std::size_t samples_in_window(const RunControl& run, double time) {
+  return static_cast<std::size_t>(std::max(1.0, std::round(run.window / time)));
 }
 
 const std::vector<Output>& outputs() {

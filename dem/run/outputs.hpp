@@ -41,7 +41,8 @@ struct CameraOutput {
 };
 const std::vector<CameraOutput>& camera_outputs();
 
-/// Samples in a window of RunControl::window.
-std::size_t samples_in_window(const RunControl& run);
+/// Samples in a window of RunControl::window. `time` is that of a sample [s], a whole number of steps, which
+/// RunControl::sample_interval need not be.
+std::size_t samples_in_window(const RunControl& run, double time);
 
 }  // namespace dem

@@ -42,6 +42,7 @@ std::uint64_t steps_in(double duration, double time_step) {
 /// The run's plan in whole steps.
 struct Plan {
   std::uint64_t settle = 0, sample = 1, check = 1;  ///< all but settle count from turning
+  double sample_time = 0.0;                         ///< s
   std::uint64_t window = 1, picture = 1;            ///< samples
   LookRule rule;
 };
@@ -54,10 +55,11 @@ Plan make_plan(const Case& c, const Derived& d, double turn) {
   p.sample = std::max<std::uint64_t>(1, steps_in(r.sample_interval, dt));
   p.settle = steps_in(r.settle, dt);
   p.check = std::max<std::uint64_t>(1, steps_in(check_interval, dt) / p.sample) * p.sample;
-  p.window = samples_in_window(r);
+  p.sample_time = static_cast<double>(p.sample) * dt;
+  p.window = samples_in_window(r, p.sample_time);
   p.picture = std::max<std::uint64_t>(1, p.window / pictures_in_window);
   while ((p.window + p.picture - 1) / p.picture % 2 == 0) ++p.picture;
-  p.rule = look_rule(r, static_cast<double>(p.sample) * dt, turn);
+  p.rule = look_rule(r, p.sample_time, turn);
   return p;
 }
 
@@ -228,7 +230,7 @@ class Course {
     }
     result_.series = now().series;
     if (looks_.last.count == 0) looks_.last = measure(plan_.rule, now().series, now().series.time.size());
-    result_.summary = summarise(case_, sensor_.period, now().series, looks_);
+    result_.summary = summarise(case_, plan_.sample_time, sensor_.period, now().series, looks_);
     result_.summary.cpu_seconds = now().under_way.cpu_seconds;
     add_diagnostics();
     add_warnings();

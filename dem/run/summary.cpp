@@ -130,11 +130,10 @@ std::vector<data::SeriesMean> means_of(const Series& s, std::size_t first, std::
   return means;
 }
 
-Summary summarise(const Case& c, double turn, const Series& s, const Looks& looks) {
+Summary summarise(const Case& c, double sample, double turn, const Series& s, const Looks& looks) {
   const Measured& m = looks.last;
   Summary summary;
-  const double sample = c.run.sample_interval;
-  summary.mean = means_of(s, m.first, m.count, samples_in_window(c.run));
+  summary.mean = means_of(s, m.first, m.count, samples_in_window(c.run, sample));
   const data::SeriesMean& torque = summary.mean.front();
   summary.reached_target = torque.standard_error <= c.run.standard_error * std::abs(torque.mean);
   summary.state = m.state;

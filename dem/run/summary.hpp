@@ -8,8 +8,9 @@ namespace dem {
 /// outputs(). Not a number where a series has none of them.
 std::vector<data::SeriesMean> means_of(const Series& series, std::size_t first, std::size_t count, std::size_t window);
 
-/// Of a run whose looks are these; all but the processor time.
-Summary summarise(const Case& c, double turn, const Series& series, const Looks& looks);
+/// Of a run whose looks are these; all but the processor time. `sample` is the time of a sample, `turn` that of a turn of
+/// the tool, 0 when it has none [s].
+Summary summarise(const Case& c, double sample, double turn, const Series& series, const Looks& looks);
 
 /// What of the summary its reader must know, one sentence each.
 std::vector<std::string> warnings_of(const Case& c, const Summary& summary);

@@ -73,6 +73,22 @@ TEST_CASE("a study without training runs says how to get them") {
   CHECK_THAT(folder.says({"calibrate", "study"}, 66), Contains("demcal train"));
 }
 
+TEST_CASE("two parameters of one quantity, and one without effect, are refused by name") {
+  const Folder folder;
+  const std::string more = "[parameters.f2]\ntarget = \"friction\"\nlow = 0.1\nhigh = 0.5\n";
+  folder.study("quick");
+  folder.replace("study/study.toml", "[controls.rpm]", more + "[controls.rpm]");
+  CHECK_THAT(folder.says({"check", "study"}, 78), Contains("parameters.f2.target") &&
+                                                      Contains("parameters.friction sets too, as contact.friction") &&
+                                                      Contains("keep one"));
+  folder.replace("study/study.toml", "target = \"friction\"", "target = \"contact.wall_friction\"");
+  CHECK_THAT(folder.demcal({"check", "study"}).err, !Contains("sets too"));
+  folder.replace("study/study.toml", "[controls.rpm]",
+                 "[[contact.pair]]\nbetween = [\"powder\", \"wall\"]\nfriction = 0.1\n[controls.rpm]");
+  CHECK_THAT(folder.says({"check", "study"}, 78),
+             Contains("parameters.f2.target") && Contains("contact.wall_friction has no effect"));
+}
+
 TEST_CASE("a study with nothing to calibrate against is refused with what to add") {
   const Folder folder;
   folder.study("other-code");

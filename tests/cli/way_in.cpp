@@ -41,6 +41,16 @@ TEST_CASE("a mistyped command, option or value is answered with the one that was
   CHECK_THAT(said({"zzzzzzzz"}), Contains("demcal --help lists them"));
 }
 
+TEST_CASE("a quantity set twice at a point, and a camera that stands nowhere, are refused before anything is read") {
+  const Folder folder;
+  const std::string quick = DEMCAL_SOURCE_DIR "/data/quick";
+  CHECK_THAT(folder.says({"simulate", quick, "--at", "friction=0.5,rpm=150,friction=0.6"}, 64),
+             Contains("--at friction") && Contains("set twice") && Contains("keep one"));
+  for (const char* from : {"0,0,0", "nan,1,1", "inf,0,0"})
+    CHECK_THAT(folder.says({"render", "no.vtkhdf", "--from", from}, 64),
+               Contains("--from") && Contains("no direction"));
+}
+
 TEST_CASE("the answer of a command is on stdout, and its progress and warnings are on stderr") {
   const Folder folder;
   CHECK_THAT(folder.demcal({"new", "my-mixer"}).out, Contains("my-mixer/study.toml: edit it"));

@@ -1,4 +1,5 @@
 // Rigs of the user's own meshes: what a study says reaches the run, packings keep clear, mistakes are named.
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 
 #include "data/error.hpp"
@@ -151,6 +152,51 @@ TEST_CASE("spheres start where a CSV says, and one outside the box or inside a m
   CHECK_THAT(said(folder, text), Catch::Contains("at.csv"));
 }
 
+TEST_CASE("a packing is read in the units of its headings, and in packing_unit and m/s where they have none") {
+  const SliceFolder folder;
+  const std::string text = replaced(rig, "fill = 400", "packing = \"at.csv\"\npacking_unit = \"mm\"") + rest;
+  const auto read = [&](const std::string& heading) {
+    folder.write("at.csv", heading + "\n6,5.5,2,3,4,5\n");
+    return *dem::read_case(folder.study(text), "steel").rig.stl;
+  };
+  const dem::StlRig bare = read("x,y,z,vx,vy,vz");
+  CHECK(bare.packing[0].x == Approx(6e-3));
+  CHECK(bare.velocity[0].x == Approx(3.0));
+  const dem::StlRig with = read("x [um],y [m],z,vx [mm/s],vy [m/s],vz [cm/s]");
+  CHECK(with.packing[0].x == Approx(6e-6));
+  CHECK(with.packing[0].y == Approx(5.5));
+  CHECK(with.packing[0].z == Approx(2e-3));
+  CHECK(with.velocity[0].x == Approx(3e-3));
+  CHECK(with.velocity[0].y == Approx(4.0));
+  CHECK(with.velocity[0].z == Approx(5e-2));
+  folder.write("at.csv", "x,y,z,vx [mm],vy,vz\n6,5.5,2,3,4,5\n");
+  CHECK_THAT(said(folder, text), Catch::Contains("at.csv:1: vx") && Catch::Contains("does not measure"));
+}
+
+TEST_CASE("spheres of a packing that overlap are named with their lines, also over a periodic face") {
+  const SliceFolder folder;
+  const std::string text = replaced(rig, "fill = 400", "packing = \"at.csv\"\npacking_unit = \"mm\"") + rest;
+  const auto build = [&](const std::string& rows) {
+    folder.write("at.csv", "x,y,z,frozen\n" + rows);
+    return dem::build_rig(dem::read_case(folder.study(text), "steel"), 1);
+  };
+  using Catch::Contains;  // spheres of 1.4 mm, of which a tenth of a radius is 0.07 mm
+  CHECK_NOTHROW(build("6,0,20,0\n6,1.34,20,0\n"));
+  CHECK_THROWS_WITH(build("6,0,20,0\n6,0,30,0\n6,1.32,20,0\n"),
+                    Contains("spheres 1 and 3 (lines 2 and 4)") && Contains("0.114 of a radius"));
+  CHECK_THROWS_WITH(build("6,0,20,0\n6,0,20,1\n"), Contains("lines 2 and 3") && Contains("2 of a radius"));
+  CHECK_THROWS_WITH(build("0.1,0,20,0\n11.9,0,20,0\n"), Contains("lines 2 and 3"));
+  CHECK_NOTHROW(build("6,-6,20,0\n6,6,20,0\n"));
+  CHECK_NOTHROW(build("6,0,20,1\n6,1,20,1\n"));  // both are held
+  std::string lattice;                           // all pairs of many cells, of which one overlaps
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j)
+      for (int k = 0; k < 20; ++k)
+        lattice += fmt::format("{},{},{},0\n", 0.75 + 1.5 * i, -5.25 + 1.5 * j, 10.0 + 1.5 * k);
+  CHECK_NOTHROW(build(lattice));
+  CHECK_THROWS_WITH(build(lattice + "3.75,-2.25,17,0\n"), Contains("and 1281"));
+}
+
 TEST_CASE("the rig's speed drives its meshes, its dimensions do not exist, and its settings name all that it is") {
   const SliceFolder folder;
   dem::Case c = dem::read_case(folder.study(rig + rest), "steel");
@@ -179,6 +225,25 @@ TEST_CASE("the rig's speed drives its meshes, its dimensions do not exist, and i
     INFO(to);
     CHECK(dem::settings_text(other) != before);
   }
+}
+
+TEST_CASE(
+    "a speed that drives no mesh has no effect, nor has a wall's coefficient where each wall has one of its own") {
+  using Catch::Contains;
+  const SliceFolder folder;
+  const auto why = [&](const std::string& text, const char* target) {
+    return dem::without_effect(dem::read_case(folder.study(text + rest), "steel"), target);
+  };
+  const auto pair = [](const std::string& body) {
+    return "[[contact.pair]]\nbetween = [\"steel\", \"" + body + "\"]\nfriction = 0.1\n";
+  };
+  CHECK(why(rig, "rig.rpm") == "");
+  CHECK_THAT(why(replaced(rig, "speed_ratio = 1", "rpm = \"9 rpm\""), "rpm"), Contains("none has a speed_ratio"));
+  CHECK(why(rig, "contact.wall_friction") == "");
+  CHECK(why(rig + pair("mixer"), "contact.wall_friction") == "");
+  CHECK_THAT(why(rig + pair("mixer") + pair("trough"), "contact.wall_friction"), Contains("friction is given"));
+  CHECK_THAT(why(rig + pair("wall"), "wall_friction"), Contains("contact.pair"));
+  CHECK(why(rig + pair("wall"), "contact.friction") == "");
 }
 
 TEST_CASE("the torques of several meshes are summed, and two that turn side by side have channels") {
@@ -219,6 +284,51 @@ speed_ratio = 1
   CHECK_THAT(
       said(folder, replaced(two, "rpm = \"150 rpm\"", "rpm = \"150 rpm\"\ntorque_of = [\"mixer\", \"mixer\"]") + rest),
       Catch::Contains("names the mesh 'mixer' twice"));
+}
+
+TEST_CASE(
+    "the torque of a mesh at rest is about the axis of what turns, and one that swings is measured about its own") {
+  using Catch::Contains;
+  const SliceFolder folder;
+  const std::string about_z = "axis = [0, 0, 1]\npoint = [\"3 mm\", \"1 mm\", \"0 mm\"]\n";
+  const auto text = [&](const std::string& measured, const std::string& mixer, const std::string& trough) {
+    std::string t = replaced(rig, "periodic = [\"x\"]", "");
+    t = replaced(t, "rpm = \"150 rpm\"", "rpm = \"150 rpm\"\ntorque_of = " + measured);
+    return replaced(t, "speed_ratio = 1\n", mixer) + trough + rest;
+  };
+  const auto sensor_axis = [&](const std::string& study, std::size_t body) {
+    const dem::Case c = dem::read_case(folder.study(study), "steel");
+    const dem::BuiltRig built = dem::build_rig(c, 1);
+    REQUIRE(built.sensor.driven.back().body == body);
+    return std::pair{built.sensor.driven.back().torque_axis, built.bodies[body].motion.point};
+  };
+  const auto is_that_of_the_mixer = [&](const std::string& study, std::size_t body) {
+    const auto [axis, point] = sensor_axis(study, body);
+    CHECK(axis.z == 1.0);
+    CHECK(dem::length(point - dem::Vec3{3e-3, 1e-3, 0.0}) < 1e-12);
+  };
+  const std::string swing =
+      "[[rig.mesh.oscillation]]\nabout = [0, 0, 2]\namplitude = \"1 degree\"\nfrequency = \"5 Hz\"\n";
+  is_that_of_the_mixer(text("\"trough\"", about_z + "speed_ratio = 1\n", ""), 1);
+  is_that_of_the_mixer(text("[\"mixer\", \"trough\"]", about_z + "rpm = \"30 rpm\"\n", ""), 1);
+  is_that_of_the_mixer(text("\"trough\"", "point = [\"3 mm\", \"1 mm\", \"0 mm\"]\n" + swing, ""), 1);
+  is_that_of_the_mixer(text("\"mixer\"", "point = [\"3 mm\", \"1 mm\", \"0 mm\"]\n" + swing, ""), 0);
+  const auto given = sensor_axis(text("\"trough\"", about_z + "speed_ratio = 1\n", "axis = [0, 1, 0]\n"), 1);
+  CHECK(given.first.y == 1.0);
+  CHECK(given.second.x == 0.0);
+  const auto refused = [&](const std::string& study) { return said(folder, study); };
+  CHECK_THAT(refused(text("\"trough\"", "", "")),
+             Contains("rig.mesh") && Contains("axis: is missing") && Contains("'trough'") && Contains("no mesh turns"));
+  CHECK_THAT(refused(text("\"mixer\"", "speed_ratio = 1\n" + swing, "")), !Contains("is missing"));
+  CHECK_THAT(refused(text("\"trough\"", about_z + "speed_ratio = 1\n", R"(
+[[rig.mesh]]
+name = "second"
+file = "mixer.stl"
+unit = "m"
+axis = [0, 0, 1]
+rpm = "9 rpm"
+)")),
+             Contains("'trough'") && Contains("no axis in common") && Contains("add lines like axis"));
 }
 
 TEST_CASE("a programme and oscillations are read with their units") {

@@ -192,6 +192,22 @@ TEST_CASE("turns and seconds count, whichever are more") {
   CHECK(slow.longest == 5000);
 }
 
+TEST_CASE("windows and turns are counted in the samples that are taken, not in those asked for") {
+  dem::RunControl run;
+  run.sample_interval = 0.2e-3;  // of steps of 0.3 ms
+  run.window = 20e-3;
+  CHECK(dem::look_rule(run, 0.2e-3, 0.0).window == 100);
+  CHECK(dem::look_rule(run, 0.3e-3, 0.0).window == 67);
+  CHECK(dem::look_rule(run, 0.05, 0.0).window == 1);
+  dem::Case c;
+  c.run = run;
+  const dem::Series s = flow(rule.longest, 1);
+  dem::Looks looks;
+  looks.last.count = 1000;
+  CHECK(dem::summarise(c, 0.3e-3, 0.15, s, looks).turns == Approx(2.0));
+  CHECK(dem::summarise(c, 0.2e-3, 0.16, s, looks).turns == Approx(1.25));
+}
+
 TEST_CASE("run.longest ends a run also where its start-up would take longer, which is foretold") {
   dem::RunControl run;
   run.start_up_turns = 1.5;

@@ -181,5 +181,6 @@ TEST_CASE("a drum at work: its silhouette leans as its mass does, and the surfac
   }
   CHECK(of("silhouette_x").standard_error > 0.0);  // whether it is known so soon is another question (dem/STEADY.md)
   CHECK(of("silhouette_x").standard_error < 0.1 * std::abs(x));
-  CHECK(result.series.window_time.size() == result.series.time.size() / dem::samples_in_window(c.run));
+  CHECK(result.series.window_time.size() ==
+        result.series.time.size() / dem::samples_in_window(c.run, result.series.time.front()));
 }
