@@ -93,14 +93,14 @@ def add_reading(folder, output, rpm, value, error):
     (folder / "next.csv").write_text(f"rpm,{output},{output}_se\n{rpm:g},{value!r},{error!r}\n")
     path = folder / "study.toml"
     text = path.read_text().replace('observe = ["torque"]', 'observe = ["torque", "next"]')
-    more = f'[[observe]]\nname = "next"\nmaterial = "{MATERIAL}"\nfile = "next.csv"\noutputs = ["{output}"]\n'
+    more = f'[[observe]]\nname = "next"\nmaterial = "{MATERIAL}"\nfile = "next.csv"\n'
     path.write_text(text.replace("[[calibrate]]", more + "[[calibrate]]"))
 
 
 def calibrated(options, folder, seed):
     run([options.demcal, "calibrate", folder, "--out", folder / "results", "--quiet", "--seed", seed])
     case = json.loads((folder / "results" / "report.json").read_text())["cases"][0]
-    return next(p for p in case["parameters"] if p["name"] == ABOUT), case["fits"]
+    return next(p for p in case["parameters"] if p["name"] == ABOUT), case["fit"]["fits"]
 
 
 def of_friction(candidate):
@@ -179,14 +179,20 @@ def print_tables(rows):
 def main():
     options = parse_arguments()
     (options.out / "runs").mkdir(parents=True, exist_ok=True)
+    ended = []
     for number in range(options.truths):
-        for rpm in SPEEDS:
-            simulate(options, number, rpm)
+        try:
+            for rpm in SPEEDS:
+                simulate(options, number, rpm)
+            ended.append(number)
+        except RuntimeError as error:  # a run that ends at run.overlap_limit, say: the truth counts as failed
+            print(f"truth {number} cannot be simulated: {error}", flush=True)
     if options.runs_only:
         return
+    print(f"{options.truths - len(ended)} of {options.truths} truths cannot be simulated")
     rows = []
     for draw in range(options.draws):
-        for number in range(options.truths):
+        for number in ended:
             rows.append(loop(options, number, draw))
             row = rows[-1]
             print(f"truth {number}, draw {draw}:", row["before"]["verdict"],
