@@ -50,10 +50,17 @@ void check_target(const data::Section& section, const data::Input& input) {
   outside("high", input.axis.high);
 }
 
-/// What a target sets: the names of the bed's amount are of one quantity.
+/// What a target sets: the names of the bed's amount are of one quantity, and so are contact.A-B.KEY and contact.B-A.KEY.
 std::string quantity_set_by(const data::Input& input) {
   const std::string name = dem::target(input.target).name;
-  return name == "rig.fill_mass" || name == "rig.level" ? "rig.fill" : name;
+  if (name == "rig.fill_mass" || name == "rig.level") return "rig.fill";
+  const std::size_t first = name.find('.'), last = name.rfind('.');
+  if (first == last || !name.starts_with("contact.")) return name;
+  const std::string pair = name.substr(first + 1, last - first - 1);
+  std::string least = pair;  // of its turns about each hyphen: names may have hyphens of their own
+  for (std::size_t at = pair.find('-'); at != std::string::npos; at = pair.find('-', at + 1))
+    least = std::min(least, pair.substr(at + 1) + "-" + pair.substr(0, at));
+  return name.substr(0, first + 1) + least + name.substr(last);
 }
 
 /// Each parameter and control must set a quantity of its own, and one that a run depends on.

@@ -22,7 +22,7 @@ std::optional<std::size_t> index_of(const Section& section, std::string_view key
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   section.problem(key, fmt::format("the study has no {} '{}'", what, name),
-                  fmt::format("choose one of: {}", fmt::join(names, ", ")));
+                  names.empty() ? "leave it out" : fmt::format("choose one of: {}", fmt::join(names, ", ")));
   return {};
 }
 
@@ -45,8 +45,11 @@ PlanEntry read_entry(const Section& section, const Study& study) {
   entry.material = section.text("material", "");
   if (!entry.material.empty()) index_of(section, "material", entry.material, names_of(study.materials), "material");
   for (const std::string& name : section.texts("outputs"))
-    if (const auto index = index_of(section, "outputs", name, names_of(study.outputs), "output"))
+    if (const auto index = index_of(section, "outputs", name, names_of(study.outputs), "output")) {
+      if (std::find(entry.outputs.begin(), entry.outputs.end(), *index) != entry.outputs.end())
+        section.problem("outputs", fmt::format("'{}' is named twice", name), "name it once, and repeats as readings");
       entry.outputs.push_back(*index);
+    }
   if (entry.outputs.empty()) entry.outputs.push_back(0);
   const Section settings = section.child("settings");
   for (const Control& control : study.controls) entry.settings.push_back(values_of(settings, control));

@@ -62,8 +62,8 @@ struct Spread {
   bool operator==(const Spread&) const = default;
 };
 
-/// How well a control is known. Where all points of a set have one value of it (a fill), its error is common to them;
-/// where it differs from point to point (a speed), it is set anew at each, unless it is `shared`.
+/// How well a control is known. Points of a set at one value of it (a fill, repeats at a speed) share its error; at another value it
+/// is set anew, unless it is `shared`.
 struct SettingError {
   std::size_t control = 0;  ///< index into Study::controls
   Spread spread;
@@ -137,12 +137,6 @@ struct ErrorCorrelation {
   std::string place = {};
 };
 
-/// A set whose points were read at the settings of another set's, from which it was split.
-struct ReadTogether {
-  std::string set;         ///< name
-  std::size_t points = 0;  ///< the first of either set
-};
-
 struct ObservationSet {
   std::string name;
   std::string material;
@@ -154,7 +148,7 @@ struct ObservationSet {
   std::vector<CommonError> common_errors;
   std::vector<ErrorCorrelation> correlations = {};
   std::vector<SettingError> setting_errors;
-  std::optional<ReadTogether> together = {};
+  std::string read_with = {};       ///< name of a set at whose settings these points were read; empty: at their own
   bool of_machine = false;          ///< measured on the whole machine, of which the runs simulate a slice
   bool assumed = false;             ///< stands for a measurement before any is made (uq/plan/unmeasured.hpp)
   std::vector<std::string> header;  ///< the comment lines at the head of the file, without '#'

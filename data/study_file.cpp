@@ -87,6 +87,10 @@ void find_unknown(StudyFile::State& state, const Node& node) {
         remedy = fmt::format("did you mean '{}'?", *near);
       } else if (!candidates.empty()) {
         remedy = fmt::format("known here: {}", fmt::join(candidates, ", "));
+        const std::size_t point = node.name.rfind('.');
+        if (value.is_table() && point != std::string::npos)  // [materials.sand-0.5]: TOML reads a table of a table
+          remedy += fmt::format("; a name with a point stands in quotes: [{}.\"{}.{}\"]", node.name.substr(0, point),
+                                node.name.substr(point + 1), name);
       }
       node.problem(name, "is not a key that demcal knows", remedy);
       continue;

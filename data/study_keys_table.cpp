@@ -54,7 +54,7 @@ const std::vector<StudyKey>& study_keys() {
       {"controls.NAME.uncertainty.sd", "quantity", "rad s-1", "above 0", "",
        "standard deviation of the setting, with its unit or as a share", "\"2 rpm\""},
       {"controls.NAME.uncertainty.as", "choice", "", "covariance, shared, unknown", "covariance",
-       "covariance: each point has its own error, or all the same where the control has one value; shared: one error "
+       "covariance: points at one value of the control share its error; shared: one error "
        "of "
        "all points of the set; unknown: the error of the set's one value is sampled",
        "\"shared\""},
@@ -361,7 +361,7 @@ const std::vector<StudyKey>& study_keys() {
       {"observe.uncertainty.NAME.sd", "quantity", "rad s-1", "above 0", "", "standard deviation of the setting",
        "\"1 rpm\""},
       {"observe.uncertainty.NAME.as", "choice", "", "covariance, shared, unknown", "covariance",
-       "covariance: each point has its own error, or all the same where the control has one value; shared: one error "
+       "covariance: points at one value of the control share its error; shared: one error "
        "of "
        "all points of the set; unknown: the error of the set's one value is sampled",
        "\"shared\""},

@@ -7,6 +7,8 @@ off; --gather only writes the table of what is there. Sweeps:
   hamaker      2e-18 and 9e-18 J at a friction of 0.40, six speeds; 1e-18, 4e-18 and 6e-18 J at two   (its figure 4)
   choices      what the paper does not state, each alone changed, at the slowest and the fastest speed: minimum
                separation, the load that limits friction, attraction of the walls, stiffness
+  grain size   the same bed of spheres of other diameters, slowest and fastest speed: without cohesion, and with a force of
+               attraction that goes with the 2nd, 3rd or 4th power of the diameter from that of 9e-18 J at 0.8 mm
 A point that ends with an error (spheres pressed into each other, say) has a row with its message and no numbers.
 """
 import argparse
@@ -28,6 +30,8 @@ CHOICES = {
     "walls do not attract": {"contact.wall_hamaker": "0 J"},
     "stiffness 1200 N/m": {"contact.stiffness": "1200 N/m"},
 }
+DIAMETERS = {"spread-1131": 1.1314, "spread-566": 0.5657, "spread-400": 0.4}  # mm; dearest last: 20 minutes a run
+BASE_DIAMETER, BASE_HAMAKER = 0.8, 9e-18  # mm, J
 OUTPUTS = ["torque", "coordination", "axial_flow", "kinetic_energy"]
 
 
@@ -46,11 +50,18 @@ def points():
         for hamaker in ("2e-18", "9e-18"):
             for rpm in ENDS:
                 yield "choices", choice, "spread", 0.4, hamaker, rpm, settings
+    for material, diameter in DIAMETERS.items():
+        for rpm in ENDS:
+            yield "grain size", "no attraction", material, 0.4, "0", rpm, {}
+        for power in (3, 2, 4):
+            hamaker = BASE_HAMAKER * (diameter / BASE_DIAMETER) ** (power - 1)  # the force goes with hamaker * diameter
+            for rpm in ENDS:
+                yield "grain size", f"force as d^{power}", material, 0.4, f"{hamaker:.4g}", rpm, {}
 
 
 def folder_of(arguments, point):
     sweep, choice, material, friction, hamaker, rpm, _ = point
-    return arguments.out / f"{sweep}-{choice.replace(' ', '-')}-{material}-{friction}-{hamaker}-{rpm}"
+    return arguments.out / f"{sweep.replace(' ', '-')}-{choice.replace(' ', '-')}-{material}-{friction}-{hamaker}-{rpm}"
 
 
 def simulate(arguments, point):

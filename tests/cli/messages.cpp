@@ -89,6 +89,27 @@ TEST_CASE("two parameters of one quantity, and one without effect, are refused b
              Contains("parameters.f2.target") && Contains("contact.wall_friction has no effect"));
 }
 
+TEST_CASE("a pair of materials is the same pair in either order") {
+  const Folder folder;
+  folder.study("quick");
+  folder.replace("study/study.toml", "[materials.powder]", R"([materials.powder]
+components = [{ material = "sand-fine", mass_fraction = 0.5 }, { material = "steel", mass_fraction = 0.5 }]
+[materials.sand-fine]
+density = "2600 kg/m3"
+diameter = "0.8 mm"
+[materials.steel]
+density = "7800 kg/m3"
+diameter = "0.8 mm"
+[materials.unused])");
+  const auto parameter = [](const std::string& name, const std::string& pair) {
+    return "[parameters." + name + "]\ntarget = \"contact." + pair + ".friction\"\nlow = 0.1\nhigh = 0.5\n";
+  };
+  folder.replace("study/study.toml", "[controls.rpm]",
+                 parameter("f1", "sand-fine-steel") + parameter("f2", "steel-sand-fine") + "[controls.rpm]");
+  CHECK_THAT(folder.demcal({"check", "study"}).err,
+             Contains("parameters.f2.target") && Contains("parameters.f1 sets too"));
+}
+
 TEST_CASE("a study with nothing to calibrate against is refused with what to add") {
   const Folder folder;
   folder.study("other-code");

@@ -62,6 +62,16 @@ TEST_CASE("a key that nobody asks for is an error that names its line and the ne
         "78: study.toml:1: contact.stifness: is not a key that demcal knows (did you mean 'stiffness'?)");
 }
 
+TEST_CASE("a name with a point that is not in quotes is explained") {
+  CHECK(problem_of("[materials.sand-0.5]\ndensity = 1.0\n",
+                   [](const data::Section& root) {
+                     for (const auto& [name, material] : root.child("materials").children())
+                       material.number("density", data::any_number, 1.0);
+                   }) ==
+        "78: study.toml:1: materials.sand-0.5: is not a key that demcal knows (known here: density; a name "
+        "with a point stands in quotes: [materials.\"sand-0.5\"])");
+}
+
 TEST_CASE("an unknown key inside a list of tables or an opened but unread section is found") {
   CHECK(
       problem_of("[[observe]]\nname = \"a\"\n[[observe]]\nname = \"b\"\nfiel = \"x\"\n", [](const data::Section& root) {

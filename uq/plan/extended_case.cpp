@@ -34,7 +34,7 @@ std::vector<std::size_t> sets_of_one_output(Study& study, std::size_t case_index
     if (has_unknown_setting(whole)) continue;
     for (std::size_t column = 0; column < whole.outputs.size(); ++column) {
       data::ObservationSet one = whole;
-      one.together = data::ReadTogether{whole.name, whole.points.size()};
+      one.read_with = whole.name;
       one.outputs = {whole.outputs[column]};
       for (data::Observation& point : one.points) {
         point.values = {point.values[column]};
@@ -64,6 +64,17 @@ std::optional<std::size_t> host_of(const Study& study, const std::vector<std::si
       return index;
   }
   return {};
+}
+
+/// The set at whose settings a candidate is read: the case's own that takes one of its outputs, else a new one.
+std::string read_with_of(const Study& study, const std::vector<std::size_t>& sets, const Candidate& candidate,
+                         std::string otherwise) {
+  for (const std::size_t output : candidate.outputs)
+    if (const auto host = host_of(study, sets, candidate, output)) {
+      const data::ObservationSet& set = study.observations[*host];
+      return set.read_with.empty() ? set.name : set.read_with;
+    }
+  return otherwise;
 }
 
 /// A set that reads an output with the meter a candidate has when it names none: one of the case and the material
@@ -141,6 +152,7 @@ Homes add_planned(Study& wider, const Study& study, std::size_t case_index, cons
   std::map<std::tuple<std::string, std::string, std::size_t>, std::size_t> of_new_meter;  // by meter and what it reads
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
+    const std::string read_with = read_with_of(wider, sets, candidate, fmt::format("planned {}", i));
     for (std::size_t column = 0; column < candidate.outputs.size(); ++column) {
       const std::size_t output = candidate.outputs[column];
       std::size_t index = 0;
@@ -154,6 +166,7 @@ Homes add_planned(Study& wider, const Study& study, std::size_t case_index, cons
         if (!candidate.meter.empty()) of_new_meter[reads] = index;
         wider.observations.push_back(
             new_set(study, case_index, candidate, output, fmt::format("planned {}.{}", i, column)));
+        wider.observations.back().read_with = read_with;
         wider.cases[case_index].observe.push_back(wider.observations.back().name);
       }
       data::ObservationSet& set = wider.observations[index];

@@ -283,9 +283,9 @@ class Builder {
           "state them as estimated from the same readings, or smaller ones");
   }
 
-  /// Where a group's rows were read: the set whose settings they have, and how many of its points.
+  /// Where a group's rows were read.
   struct Settings {
-    data::ReadTogether together;
+    std::string read_with;  ///< the set whose settings they have
     std::size_t group = 0, setting = 0;
     const ReadSet* rows = nullptr;
     const SettingShift* shift = nullptr;
@@ -299,7 +299,7 @@ class Builder {
       for (const ReadSet& rows : model.groups[g].measurement.sets)
         for (const SettingShift& shift : rows.settings) {
           const data::ObservationSet& set = study_.observations[model.groups[g].origin[rows.first].set];
-          all.push_back({.together = set.together.value_or(data::ReadTogether{set.name, set.points.size()}),
+          all.push_back({.read_with = set.read_with.empty() ? set.name : set.read_with,
                          .group = g,
                          .setting = setting++,
                          .rows = &rows,
@@ -309,16 +309,14 @@ class Builder {
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t j = i + 1; j < all.size(); ++j) {
         const Settings &a = all[i], &b = all[j];
-        if (a.group == b.group || a.together.set != b.together.set || a.shift->control != b.shift->control) continue;
-        model.linked_settings.push_back(
-            {.first_group = a.group,
-             .second_group = b.group,
-             .first_setting = a.setting,
-             .second_setting = b.setting,
-             .first_row = a.rows->first,
-             .second_row = b.rows->first,
-             .rows = static_cast<Eigen::Index>(std::min(a.together.points, b.together.points)),
-             .common = a.shift->common && b.shift->common});
+        if (a.group == b.group || a.read_with != b.read_with || a.shift->control != b.shift->control) continue;
+        model.linked_settings.push_back({.first_group = a.group,
+                                         .second_group = b.group,
+                                         .first_setting = a.setting,
+                                         .second_setting = b.setting,
+                                         .first_row = a.rows->first,
+                                         .second_row = b.rows->first,
+                                         .same = same_level(a.shift->level, b.shift->level)});
       }
   }
 

@@ -18,16 +18,17 @@ std::optional<int> column_of(const Emulator& emulator, std::size_t control) {
   return static_cast<int>(found - emulator.inputs.begin());
 }
 
-/// A control's error as a covariance: common to all rows where the control has one value, or where it is said to be.
+/// A control's error as a covariance: common to the rows at one value of it, or to all rows where it is said to be.
 SettingShift shift_of(const data::Control& control, const data::ObservationSet& set, const data::SettingError& error,
                       int column) {
   const auto rows = static_cast<Eigen::Index>(set.points.size());
-  SettingShift shift{.control = error.control, .column = column, .error = Eigen::VectorXd(rows)};
+  SettingShift shift{
+      .control = error.control, .column = column, .error = Eigen::VectorXd(rows), .level = Eigen::VectorXd::Zero(rows)};
   for (Eigen::Index i = 0; i < rows; ++i) {
     const double value = set.points[i].controls[error.control];
     const data::Axis axis = control.axis();
     shift.error[i] = std::hypot(error.spread.absolute, error.spread.relative * value) / axis.slope(axis.to_unit(value));
-    shift.common = shift.common && (error.shared || value == set.points.front().controls[error.control]);
+    if (!error.shared) shift.level[i] = value;
   }
   return shift;
 }

@@ -67,8 +67,7 @@ struct LinkedSettings {
   std::size_t first_group = 0, second_group = 0;
   std::size_t first_setting = 0, second_setting = 0;  ///< in GroupLaw::settings
   Eigen::Index first_row = 0, second_row = 0;         ///< of either set, in its group
-  Eigen::Index rows = 0;                              ///< so many of either were read together
-  bool common = true;                                 ///< one error of all of them, else one of each pair
+  Eigen::MatrixXd same;  ///< 1 where a row of the first shares the error with one of the second, else 0
 };
 
 /// Adds the covariance of own errors with these variances.

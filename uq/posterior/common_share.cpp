@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "uq/infer/factor.hpp"
 #include "uq/posterior/posterior.hpp"
@@ -32,11 +33,13 @@ CommonErrorKind kind_of(data::NuisanceKind nuisance) {
   }
 }
 
-bool shares_setting(const ReadSet& set) {
-  return std::any_of(set.settings.begin(), set.settings.end(), [](const SettingShift& shift) { return shift.common; });
+/// Whether an error of the setting moves several readings alike, or the only one there is.
+bool is_shared(const SettingShift& shift) {
+  const std::set<double> levels(shift.level.begin(), shift.level.end());
+  return shift.level.size() == 1 || std::ssize(levels) < shift.level.size();
 }
 
-std::vector<Source> find_sources(const CaseModel& model) {
+std::vector<Source> find_sources(const CaseModel& model) {  // of all rows: pooled ones do not show what is shared
   std::vector<Source> found;
   for (int s = 0; s < model.dimension(); ++s) {
     const Unknown& unknown = model.unknowns[s];
@@ -47,7 +50,7 @@ std::vector<Source> find_sources(const CaseModel& model) {
     discrepancy = discrepancy || !group.measurement.discrepancies.empty();
     for (const ReadSet& set : group.measurement.sets) {
       meter = meter || set.common_absolute > 0.0 || set.common_relative > 0.0;
-      setting = setting || shares_setting(set);
+      setting = setting || std::any_of(set.settings.begin(), set.settings.end(), is_shared);
     }
   }
   if (meter) found.push_back({{CommonErrorKind::meter, {}}});
@@ -61,12 +64,12 @@ double prior_sd(const Unknown& unknown) { return unknown.cut ? unknown.cut->sd :
 /// The case with some of the errors known.
 class KnownErrors {
  public:
-  KnownErrors(const CaseModel& model, const std::vector<Source>& known) : model_(model) {
+  KnownErrors(const CaseModel& full, const std::vector<Source>& known) : model_(distinct_rows(full)) {
     for (const Source& source : known)
       if (source.unknown >= 0)
         unknowns_.push_back(source.unknown);
       else
-        leave_out(source.error.kind);
+        leave_out(source.error.kind, full);
   }
 
   /// Posterior variances of the case's own parameters, over those of their priors, with the model linear about u.
@@ -82,14 +85,17 @@ class KnownErrors {
   }
 
  private:
-  void leave_out(CommonErrorKind kind) {
-    for (RowGroup& group : model_.groups) {
-      if (kind == CommonErrorKind::discrepancy) group.measurement.discrepancies.clear();
-      for (ReadSet& set : group.measurement.sets) {
+  void leave_out(CommonErrorKind kind, const CaseModel& full) {
+    for (std::size_t g = 0; g < model_.groups.size(); ++g) {
+      Measurement& measurement = model_.groups[g].measurement;
+      if (kind == CommonErrorKind::discrepancy) measurement.discrepancies.clear();
+      for (std::size_t s = 0; s < measurement.sets.size(); ++s) {
+        ReadSet& set = measurement.sets[s];
         if (kind == CommonErrorKind::meter) set.common_absolute = set.common_relative = 0.0;
-        if (kind == CommonErrorKind::setting)
-          for (SettingShift& shift : set.settings)
-            if (shift.common) shift.error.setZero();
+        if (kind != CommonErrorKind::setting) continue;
+        const std::vector<SettingShift>& of_all_rows = full.groups[g].measurement.sets[s].settings;
+        for (std::size_t q = 0; q < set.settings.size(); ++q)
+          if (is_shared(of_all_rows[q])) set.settings[q].error.setZero();
       }
     }
   }
@@ -103,12 +109,12 @@ class KnownErrors {
 std::vector<CommonShare> common_shares(const CaseModel& full, const Eigen::MatrixXd& draws) {
   const CaseModel& model = distinct_rows(full);
   std::vector<CommonShare> found(static_cast<std::size_t>(model.own_count()));
-  const std::vector<Source> sources = find_sources(model);
+  const std::vector<Source> sources = find_sources(full);
   if (sources.empty()) return found;
 
-  const KnownErrors none(model, {}), all(model, sources);
+  const KnownErrors none(full, {}), all(full, sources);
   std::vector<KnownErrors> one;
-  for (const Source& source : sources) one.emplace_back(model, std::vector{source});
+  for (const Source& source : sources) one.emplace_back(full, std::vector{source});
   const auto count = static_cast<Eigen::Index>(sources.size());
   Eigen::VectorXd with = Eigen::VectorXd::Zero(model.own_count()), without_all = with;
   Eigen::MatrixXd without_one = Eigen::MatrixXd::Zero(model.own_count(), count);

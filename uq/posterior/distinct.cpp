@@ -43,15 +43,13 @@ Classes classes_of(const RowGroup& group) {
       key.push_back(group.unknown(i, k));
       key.push_back(group.unknown(i, k) < 0 ? group.base(i, k) : 0.0);
     }
-    bool alone = false;
     if (set >= 0) {
       const ReadSet& read = group.measurement.sets[set];
       for (const SettingShift& setting : read.settings) {
-        alone = alone || !setting.common;  // each row's own error of a setting: its variance depends on the unknowns
         key.push_back(setting.error[i - read.first]);
+        key.push_back(setting.level[i - read.first]);
       }
     }
-    if (alone) key.push_back(static_cast<double>(i));
     const auto [at, fresh] = known.emplace(std::move(key), static_cast<Eigen::Index>(classes.first.size()));
     if (fresh) classes.first.push_back(i);
     classes.of_row.push_back(at->second);
@@ -78,8 +76,12 @@ Measurement pooled_measurement(const Measurement& measurement, const Classes& cl
     set.noise_is_sd = false;  // the variances say how many rows each one stands for
     for (std::size_t q = 0; q < set.settings.size(); ++q) {
       set.settings[q].error.resize(set.count);
-      for (Eigen::Index i = 0; i < set.count; ++i)
-        set.settings[q].error[i] = full.settings[q].error[classes.first[set.first + i] - full.first];
+      set.settings[q].level.resize(set.count);
+      for (Eigen::Index i = 0; i < set.count; ++i) {
+        const Eigen::Index row = classes.first[set.first + i] - full.first;
+        set.settings[q].error[i] = full.settings[q].error[row];
+        set.settings[q].level[i] = full.settings[q].level[row];
+      }
     }
   }
   for (std::size_t s = 0; s < pooled.discrepancies.size(); ++s) {

@@ -39,15 +39,14 @@ void for_each_setting(const Measurement& measurement, const Add& add) {
     for (std::size_t q = 0; q < set.settings.size(); ++q) add(set, q, set.settings[q]);
 }
 
-/// Adds a b' + b a' of a set's rows, or its diagonal alone.
-void add_pair(Eigen::MatrixXd& sum, const ReadSet& set, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
-              double weight, bool whole) {
+/// a b' + b a' of a set's rows.
+Eigen::MatrixXd pair_of(const ReadSet& set, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   const Eigen::VectorXd x = a.segment(set.first, set.count), y = b.segment(set.first, set.count);
-  if (whole) {
-    sum.block(set.first, set.first, set.count, set.count) += weight * (x * y.transpose() + y * x.transpose());
-  } else {
-    sum.diagonal().segment(set.first, set.count) += 2.0 * weight * x.cwiseProduct(y);
-  }
+  return x * y.transpose() + y * x.transpose();
+}
+
+auto block_of(Eigen::MatrixXd& covariance, const ReadSet& set) {
+  return covariance.block(set.first, set.first, set.count, set.count);
 }
 
 /// d correlation / d length.
@@ -84,11 +83,11 @@ void add_change(const State& state, const Change& change, LawGradient& sum) {
       (mixed + mixed.transpose()).cwiseProduct(state.covariance) + (f * f.transpose()).cwiseProduct(change.covariance);
   for (const ReadSet& set : state.measurement.sets)
     if (set.common_relative > 0.0)
-      add_pair(covariance, set, read, dread, set.common_relative * set.common_relative, true);
+      block_of(covariance, set) += std::pow(set.common_relative, 2) * pair_of(set, read, dread);
   for_each_setting(state.measurement, [&](const ReadSet& set, std::size_t q, const SettingShift& setting) {
     const Eigen::VectorXd h = half_change(state.mean, rows, q), dh = half_change(change.mean, rows, q);
     const Eigen::VectorXd t = f.cwiseProduct(h), dt = df.cwiseProduct(h) + f.cwiseProduct(dh);
-    add_pair(covariance, set, t, dt, 1.0, setting.common);
+    block_of(covariance, set) += pair_of(set, t, dt).cwiseProduct(same_level(setting.level, setting.level));
   });
   sum.mean.push_back(dread);
   sum.covariance.push_back(std::move(covariance));
@@ -99,6 +98,12 @@ bool contains(const std::vector<int>& list, int value) {
 }
 
 }  // namespace
+
+Eigen::MatrixXd same_level(const Eigen::VectorXd& rows, const Eigen::VectorXd& columns) {
+  Eigen::MatrixXd same(rows.size(), columns.size());
+  for (Eigen::Index j = 0; j < columns.size(); ++j) same.col(j) = (rows.array() == columns[j]).cast<double>();
+  return same;
+}
 
 int Measurement::shifts() const {
   std::size_t most = 0;
@@ -160,13 +165,12 @@ GroupLaw law_of(const Measurement& measurement, const std::vector<Unknown>& unkn
                .noise = noise_of(measurement, unknowns, variance, u)};
   for (const ReadSet& set : measurement.sets) {
     if (set.common_relative > 0.0)
-      add_pair(law.covariance, set, law.mean, law.mean, 0.5 * set.common_relative * set.common_relative, true);
-    law.covariance.block(set.first, set.first, set.count, set.count).array() +=
-        set.common_absolute * set.common_absolute;
+      block_of(law.covariance, set) += 0.5 * std::pow(set.common_relative, 2) * pair_of(set, law.mean, law.mean);
+    block_of(law.covariance, set).array() += set.common_absolute * set.common_absolute;
   }
   for_each_setting(measurement, [&](const ReadSet& set, std::size_t q, const SettingShift& setting) {
     const Eigen::VectorXd t = f.cwiseProduct(half_change(prediction.mean, rows, q));
-    add_pair(law.covariance, set, t, t, 0.5, setting.common);
+    block_of(law.covariance, set) += 0.5 * pair_of(set, t, t).cwiseProduct(same_level(setting.level, setting.level));
     law.settings.emplace_back(t.segment(set.first, set.count));
   });
   for (const DiscrepancyRows& part : measurement.discrepancies)

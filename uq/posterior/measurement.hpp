@@ -7,8 +7,8 @@
 //   common       c^2 + r^2 f_i m_i f_j m_j within an observation set: an error of its meter, absolute c, relative r;
 //                that of a meter which several sets name is an unknown gain and offset (uq/posterior/set_unknowns.hpp)
 //   setting      t_i t_j, t_i = f_i (m(x_i + e_i) - m(x_i - e_i)) / 2: a control known to a standard error e enters
-//                to first order, by the slope over +- one e. Within a set it is common to all rows where the control
-//                has one value (a fill), and each row's own (i = j only) where it is set anew (a speed). Outputs
+//                to first order, by the slope over +- one e. It is common to the rows of a set at one value of the
+//                control (a fill, repeats at a speed), or to all rows of the set; elsewhere it is zero. Outputs
 //                read at one setting share its error: t_i t_j between their groups, too (CaseModel::linked_settings)
 //   discrepancy  a^2 q^2 M(d_ij / L) within a case: M. C. Kennedy, A. O'Hagan, J. R. Stat. Soc. B 63:425 (2001); Matern
 //                5/2, d the distance of the controls in their ranges, q the root mean square of the measured values
@@ -27,8 +27,11 @@ struct SettingShift {
   std::size_t control = 0;  ///< in Study::controls
   int column = 0;           ///< of the emulator's inputs
   Eigen::VectorXd error;    ///< per row of the set, in unit-cube lengths
-  bool common = true;       ///< to all rows
+  Eigen::VectorXd level;    ///< per row: rows of one level share the error
 };
+
+/// 1 where a row's level is a column's, 0 elsewhere.
+Eigen::MatrixXd same_level(const Eigen::VectorXd& rows, const Eigen::VectorXd& columns);
 
 /// Rows of one observation set in a group.
 struct ReadSet {

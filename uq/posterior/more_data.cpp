@@ -54,12 +54,11 @@ void condense(data::ObservationSet& set, const data::CalibrationCase& wanted) {
   const bool unknown_sd = std::any_of(wanted.nuisances.begin(), wanted.nuisances.end(), [](const data::Nuisance& one) {
     return one.kind == data::NuisanceKind::noise_sd;
   });
-  const bool stay = unknown_sd || !set.setting_errors.empty();
   std::map<std::vector<double>, std::vector<const data::Observation*>> at;
-  if (!stay)
+  if (!unknown_sd)
     for (const data::Observation& point : set.points) at[point.controls].push_back(&point);
   std::vector<data::Observation> points;
-  if (stay) points = set.points;
+  if (unknown_sd) points = set.points;
   for (const auto& [controls, same] : at) {
     data::Observation one = *same.front();
     for (std::size_t c = 0; c < one.values.size(); ++c) {

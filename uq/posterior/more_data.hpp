@@ -5,8 +5,8 @@
 
 namespace uq {
 
-/// Points measured again at the same controls become one, and of very many some stand for all. Where a point has an error
-/// beside its standard error (a setting's, an unknown sd of the case's readings), a mean would not keep it: such points stay.
+/// Points measured again at the same controls become one, and of very many some stand for all. Where the case's readings
+/// have an unknown sd, a mean would not keep it: such points stay.
 void condense(data::ObservationSet& set, const data::CalibrationCase& wanted);
 
 /// The case of a study that has more observations than the one it was sampled with. Its unknowns, with the laws of those

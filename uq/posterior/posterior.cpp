@@ -254,11 +254,7 @@ StackedPrediction stack(const CaseModel& model, const std::vector<GroupLaw>& law
     const Eigen::VectorXd& b = laws[link.second_group].settings[link.second_setting];
     const Eigen::Index row = begins[link.first_group] + link.first_row;
     const Eigen::Index column = begins[link.second_group] + link.second_row;
-    Eigen::MatrixXd shared = a * b.transpose();
-    if (!link.common) {
-      shared.setZero();
-      shared.diagonal().head(link.rows) = a.head(link.rows).cwiseProduct(b.head(link.rows));
-    }
+    const Eigen::MatrixXd shared = (a * b.transpose()).cwiseProduct(link.same);
     stacked.covariance.block(row, column, a.size(), b.size()) += shared;
     stacked.covariance.block(column, row, b.size(), a.size()) += shared.transpose();
   }

@@ -313,6 +313,47 @@ TEST_CASE("a reading of an output that has no set yet is made at settings of the
   }
 }
 
+namespace {
+
+/// Both outputs move with the speed, which is known to 0.05: by 4 and 2 a range.
+const formula::Pair steep{[](double a, double, double x) { return 10.0 + 5.0 * a + 4.0 * x; }, formula::angle};
+
+/// one_unknown, read at the speed 0.5 and, so that the speeds differ, at 1.
+data::Study read_at_two_speeds() {
+  data::Study study = one_unknown();
+  std::vector<data::Observation>& points = study.observations[0].points;
+  points.push_back(points[0]);
+  points[1].controls = {1.0};
+  points[0].values = {14.5};
+  points[1].values = {16.5};
+  study.observations[0].setting_errors = {{.control = 0, .spread = {.absolute = 0.05}}};
+  return study;
+}
+
+}  // namespace
+
+TEST_CASE("a repeat at a measured speed shares that speed's error, whatever other speeds were measured", "[plan]") {
+  const PlanReport plan = plan_of(read_at_two_speeds(), formula::emulators(0.0, steep),
+                                  {.candidates = {reading_of(0, 0.1)}}, {.about = "a"});
+  const double own = 0.01, speed = 0.04, other = 25.0 / (own + speed);
+  const double before = 100.0 + other + 25.0 / (own + speed), after = 100.0 + other + 25.0 / (own / 2.0 + speed);
+  const auto& about = plan.candidates.front().parameters[0];
+  CHECK(about.information == Approx(0.5 * std::log(after / before)).margin(about.information_error + 0.002));
+}
+
+TEST_CASE("outputs of one candidate share their speed's error, in the case's sets and in new ones", "[plan]") {
+  data::PlanEntry both = reading_of(0, 0.1);
+  both.outputs = {0, 1};
+  both.settings = {{0.8}};
+  const PlanReport plan =
+      plan_of(read_at_two_speeds(), formula::emulators(0.0, steep), {.candidates = {both}}, {.about = "a"});
+  const Eigen::Vector2d slope(5.0, 3.0), of_speed(4.0, 2.0);
+  const Eigen::Matrix2d covariance = 0.01 * Eigen::Matrix2d::Identity() + 0.0025 * of_speed * of_speed.transpose();
+  const double before = 100.0 + 2.0 * 25.0 / 0.05, after = before + slope.dot(covariance.inverse() * slope);
+  const auto& about = plan.candidates.front().parameters[0];
+  CHECK(about.information == Approx(0.5 * std::log(after / before)).margin(about.information_error + 0.002));
+}
+
 TEST_CASE("a candidate that names no meter is read with the one that has read its output elsewhere", "[plan]") {
   data::Study study = one_unknown();
   data::ObservationSet other{.name = "other", .file = "other.csv", .outputs = {1}, .meter = "camera"};

@@ -82,13 +82,13 @@ TEST_CASE("a setting's share: known to an error that moves all readings alike", 
   // The reading moves with the setting by one per range; the process is asked at it plus and minus its error.
   uq::CaseModel model = repeated([](const Eigen::VectorXd& p, double x) { return p[0] + x; }, 0.5);
   uq::ReadSet& set = read(model);
-  set.settings = {{.column = 1, .error = Eigen::VectorXd::Constant(4, shared), .common = true}};
+  set.settings = {{.column = 1, .error = Eigen::VectorXd::Constant(4, shared), .level = Eigen::Vector4d::Zero()}};
   const uq::CommonShare found = share_of(model);
   CHECK(found.share == Approx(1.0 - without / with).epsilon(1e-4));
   REQUIRE(found.errors.size() == 1);
   CHECK(found.errors[0].kind == uq::CommonErrorKind::setting);
   // Set anew for each reading it averages out like their own errors, and is none of these.
-  set.settings[0].common = false;
+  set.settings[0].level = Eigen::Vector4d(1.0, 2.0, 3.0, 4.0);
   CHECK(share_of(model).errors.empty());
 }
 

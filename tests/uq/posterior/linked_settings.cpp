@@ -1,6 +1,6 @@
 // Outputs read at one setting share its error. Torque a + 2 x and angle a + 3 x are linear in the setting x, so that readings at
 // x known to +- e are normal: their covariance is that of their own errors and e^2 k k', k = 2 of a torque and 3 of an
-// angle, over all readings where the error is one of all, and over the two of each setting where it is not.
+// angle, over all readings where the error is one of all, and over those at each setting where it is not.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double own = 0.02, error = 0.1;
-const std::vector<double> speeds{0.1, 0.4, 0.9};
+const std::vector<double> speeds{0.1, 0.4, 0.1};  // the first twice
 const formula::Pair lines{[](double a, double, double x) { return a + 2.0 * x; },
                           [](double a, double, double x) { return a + 3.0 * x; }};
 
@@ -42,7 +42,7 @@ MatrixXd covariance_by_hand(bool shared) {
   MatrixXd covariance = error * error * slope * slope.transpose();
   for (Eigen::Index i = 0; i < 6; ++i)
     for (Eigen::Index j = 0; j < 6; ++j)
-      if (!shared && i % 3 != j % 3) covariance(i, j) = 0.0;
+      if (!shared && speeds[i % 3] != speeds[j % 3]) covariance(i, j) = 0.0;
   covariance.diagonal().array() += own * own;
   return covariance;
 }

@@ -109,13 +109,14 @@ TEST_CASE("the gradient through gain, offset, noise, common errors, settings and
   first.noise = 5;
   first.common_absolute = 0.02;
   first.common_relative = 0.03;
-  first.settings = {{.column = 2, .error = Eigen::VectorXd::Constant(3, 0.05), .common = false},
-                    {.column = 2, .error = Eigen::VectorXd::LinSpaced(3, 0.02, 0.04), .common = true}};
+  first.settings = {
+      {.column = 2, .error = Eigen::VectorXd::Constant(3, 0.05), .level = Eigen::Vector3d(1.0, 2.0, 1.0)},
+      {.column = 2, .error = Eigen::VectorXd::LinSpaced(3, 0.02, 0.04), .level = Eigen::Vector3d::Zero()}};
   second.factor = 1.5;
   second.factors = {2};
   second.noise = 5;
   second.noise_is_sd = true;
-  second.settings = {{.column = 2, .error = Eigen::VectorXd::Constant(2, 0.03), .common = true}};
+  second.settings = {{.column = 2, .error = Eigen::VectorXd::Constant(2, 0.03), .level = Eigen::Vector2d::Zero()}};
   group.measurement.sets = {first, second};
   group.measurement.discrepancies = {
       {.first = 1, .count = 4, .sd = 6, .length = 7, .magnitude = 2.0, .controls = five.tail(4)}};
@@ -165,18 +166,20 @@ TEST_CASE("an error common to all points is an unknown offset that was integrate
   check_moments(model, exact_line(line_data, noise));
 }
 
-TEST_CASE("a control's error enters by the slope of the model: common to a set, or each point's own", "[uq]") {
+TEST_CASE("a control's error enters by the slope of the model, and rows of one level share it", "[uq]") {
   // At b = 0.5 nearly fixed, an error e of x is an error 0.5 e of y.
   uq::CaseModel model = line(line_data, 0.05);
-  for (const bool common : {false, true}) {
+  for (const std::vector<double>& level : {std::vector<double>{0, 0, 0, 0, 0}, {1, 2, 3, 4, 5}, {1, 2, 1, 2, 3}}) {
     uq::ReadSet set = all_rows(5);
-    set.settings = {{.column = 2, .error = Eigen::VectorXd::Constant(5, 0.2), .common = common}};
+    set.settings = {{.column = 2,
+                     .error = Eigen::VectorXd::Constant(5, 0.2),
+                     .level = Eigen::Map<const Eigen::VectorXd>(level.data(), 5)}};
     model.groups[0].measurement.sets = {set};
     const Eigen::Vector2d u(0.5, 0.5 + 0.5 / 16.0);
     const Eigen::MatrixXd covariance = uq::predict(model, u).covariance;
-    const Eigen::MatrixXd expected = common ? Eigen::MatrixXd(0.01 * Eigen::MatrixXd::Ones(5, 5))
-                                            : Eigen::MatrixXd(0.01 * Eigen::MatrixXd::Identity(5, 5));
-    CHECK((covariance - expected).norm() < 1e-10);
+    for (Eigen::Index i = 0; i < 5; ++i)
+      for (Eigen::Index j = 0; j < 5; ++j)
+        CHECK(covariance(i, j) == Approx(level[i] == level[j] ? 0.01 : 0.0).margin(1e-10));
   }
 }
 
