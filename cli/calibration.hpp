@@ -54,7 +54,9 @@ std::string posterior_path(const Workspace& workspace, const std::string& case_n
 class JobProgress {
  public:
   JobProgress(const Common& common, const std::string& what)
-      : progress_(what, 1000, {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic}) {}
+      : progress_(
+            what, 1000,
+            {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic, .counted = false}) {}
   void operator()(const std::string&, double share) {
     progress_.set(static_cast<std::uint64_t>(std::lround(1000.0 * share)));
   }

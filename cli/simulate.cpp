@@ -186,8 +186,9 @@ Action add_simulate(CLI::App& program) {
     for (const std::string& note : notes) say(common, "note: " + note);
     dem::RunResult result;
     {
-      data::Progress progress("simulating (at most)", 1000,
-                              {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic});
+      data::Progress progress(
+          "simulating (at most)", 1000,
+          {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic, .counted = false});
       result = run_point(workspace, point,
                          {.path = path,
                           .threads = options->threads,

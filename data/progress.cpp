@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "data/terminal.hpp"
 
@@ -96,15 +97,19 @@ void Progress::clear_bar() {
 
 /// "12 of 80, 1.9 /s, 36 s left"
 std::string Progress::summary(double now) const {
-  std::string text = fmt::format("{} of {}", done_, total_);
+  std::vector<std::string> parts;
+  if (options_.counted) parts.push_back(fmt::format("{} of {}", done_, total_));
   const double elapsed = now - start_;
-  if (done_ <= first_ || elapsed <= 0.0) return text;
-  const double rate = static_cast<double>(done_ - first_) / elapsed;
-  text += rate >= 100.0 ? fmt::format(", {:.0f} /s", rate)
-          : rate >= 0.1 ? fmt::format(", {:.2g} /s", rate)
-                        : fmt::format(", {:.2g} /min", 60.0 * rate);
-  if (done_ == total_) return text + ", took " + duration_text(elapsed);
-  return text + ", " + duration_text(static_cast<double>(total_ - done_) / rate) + " left";
+  if (done_ > first_ && elapsed > 0.0) {
+    const double rate = static_cast<double>(done_ - first_) / elapsed;
+    if (options_.counted)
+      parts.push_back(rate >= 100.0 ? fmt::format("{:.0f} /s", rate)
+                      : rate >= 0.1 ? fmt::format("{:.2g} /s", rate)
+                                    : fmt::format("{:.2g} /min", 60.0 * rate));
+    parts.push_back(done_ == total_ ? "took " + duration_text(elapsed)
+                                    : duration_text(static_cast<double>(total_ - done_) / rate) + " left");
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 void Progress::draw(double now) {
@@ -113,7 +118,8 @@ void Progress::draw(double now) {
     const auto tenths = static_cast<int>(10 * done_ / total_);
     if (tenths <= tenths_) return;
     tenths_ = tenths;
-    options_.write(fmt::format("{}: {} % ({})\n", what_, 10 * tenths, summary(now)));
+    const std::string more = summary(now);
+    options_.write(fmt::format("{}: {} %{}\n", what_, 10 * tenths, more.empty() ? "" : " (" + more + ")"));
     return;
   }
   if (ended_ || (done_ < total_ && now - drawn_at_ < options_.redraw_interval)) return;

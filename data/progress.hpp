@@ -12,8 +12,9 @@ namespace data {
 enum class ProgressStyle { automatic, bar, lines, quiet };
 
 struct ProgressOptions {
-  ProgressStyle style = ProgressStyle::automatic;      ///< automatic: a bar when stderr is a terminal, else lines
-  double redraw_interval = 0.2;                        ///< s, between two drawings of the bar
+  ProgressStyle style = ProgressStyle::automatic;  ///< automatic: a bar when stderr is a terminal, else lines
+  bool counted = true;           ///< steps are things that a user counts; else shares of the whole, and no rate is told
+  double redraw_interval = 0.2;  ///< s, between two drawings of the bar
   std::function<void(const std::string&)> write = {};  ///< instead of stderr
   std::function<double()> clock = {};                  ///< s, instead of the steady clock
 };

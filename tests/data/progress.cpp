@@ -30,6 +30,22 @@ TEST_CASE("away from a terminal there is one line per 10 %, with rate and time l
   CHECK(screen.text.find("training: 100 % (80 of 80, 2 /s, took 40 s)\n") != std::string::npos);
 }
 
+TEST_CASE("shares of the whole are no things to count: the time left alone is told") {
+  Screen screen;
+  {
+    data::ProgressOptions options = screen.options(data::ProgressStyle::lines);
+    options.counted = false;
+    data::Progress progress("fit", 1000, options);
+    for (int i = 0; i < 5; ++i) {
+      screen.now += 2.0;
+      progress.advance(200);
+    }
+  }
+  CHECK(screen.text ==
+        "fit: 20 % (8 s left)\nfit: 40 % (6 s left)\nfit: 60 % (4 s left)\nfit: 80 % (2 s left)\n"
+        "fit: 100 % (took 10 s)\n");
+}
+
 TEST_CASE("on a terminal the bar is redrawn in place at intervals and ends its line") {
   Screen screen;
   {

@@ -1,5 +1,5 @@
 // From a case's draws to what is told of it: verdicts, convergence, bands, warnings.
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include "uq/infer/quadrature.hpp"
 #include "uq/posterior/discrepancy.hpp"
 #include "uq/posterior/posterior.hpp"
+#include "uq/posterior/prior_conflict.hpp"
 #include "uq/posterior/support.hpp"
 #include "uq/verdict/contradiction.hpp"
 
@@ -230,6 +231,23 @@ void add_poor_fit(Words& words, const FitCheck& check) {
   words.remedies.insert(words.remedies.begin(), "Look first at what the residuals have in common.");
 }
 
+/// A posterior between a prior and data that contradict it is a compromise that neither of them supports.
+void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const VerdictThresholds& thresholds) {
+  if (!report.converged) return;
+  for (const PriorConflict& conflict :
+       prior_conflicts(*sampled.model, sampled.draws.pooled(), thresholds.prior_conflict_sd)) {
+    const NuisanceReport found = summary_of(sampled, conflict.unknown);
+    const std::string unit = behind_number(found.unit);
+    report.warnings.push_back(
+        fmt::format("case {}: the data contradict the prior of {} by {:.2g} standard deviations: {:.3g} +- {:.2g}{} "
+                    "was stated, and "
+                    "{:.3g} +- {:.2g}{} is a compromise of both (check the prior, and what it was measured on; then "
+                    "the data's errors)",
+                    report.name, found.name, std::abs(conflict.z), found.prior_mean, found.prior_sd, unit, found.mean,
+                    found.sd, unit));
+  }
+}
+
 void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
   if (of == DoubtOf::support || of == DoubtOf::runs)
     report.warnings.push_back(fmt::format("case {}: {}", report.name, report.doubt));
@@ -251,6 +269,94 @@ void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
     if (!unknown.nuisance && unknown.prior.kept_mass() < 0.99)
       report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
                                             unknown.label, 100.0 * (1.0 - unknown.prior.kept_mass())));
+}
+
+/// What is known of a case before its draws are looked at.
+CaseReport begun(const data::Study& study, const SampledCase& sampled) {
+  const CaseModel& model = *sampled.model;
+  CaseReport report;
+  report.name = model.name;
+  report.linked = model.linked;
+  report.observed_sets = model.observed_sets;
+  for (const auto& name : model.observed_sets)
+    report.observed_notes.push_back(
+        fmt::format("{}", fmt::join(study.observations[study.observation_index(name).value()].header, "\n")));
+  report.converged = sampled.draws.converged;
+  report.chains = static_cast<int>(sampled.draws.chains.size());
+  report.divergences = sampled.draws.divergences;
+  report.sampler = sampled.draws.sampler;
+  report.search = search_in_words(sampled.draws);
+  for (const auto& unknown : model.unknowns)
+    if (!unknown.cut_from.empty()) report.cuts.push_back(unknown.label + " from " + unknown.cut_from);
+  report.log_evidence = sampled.draws.log_evidence;
+  report.log_evidence_error = sampled.draws.log_evidence_error;
+  if (!sampled.draws.chains.empty()) report.draws = static_cast<int>(sampled.draws.chains.front().x.rows());
+  report.support = sampled.support;
+  report.unusable = !doubt_of(model).empty();
+  return report;
+}
+
+/// Nothing was drawn: no verdict, and the reason in the first lines.
+CaseReport without_draws(CaseReport report, const std::string& reason) {
+  report.fits = false;
+  report.warnings.push_back(fmt::format("case {}: sampling failed: {}", report.name, reason));
+  report.finding = "The posterior could not be sampled: " + reason + ".";
+  report.consequence = "There is no result for this case.";
+  report.remedy = "Check the priors and the measurement errors.";
+  return report;
+}
+
+/// Verdicts, fit and traded parameters.
+void add_identification(CaseReport& report, const data::Study& study, const CaseModel& model,
+                        const Identification& found) {
+  report.surrogate_to_measurement = found.surrogate_to_measurement;
+  report.chi2 = found.check.chi2;
+  report.dof = found.check.dof;
+  report.ppp = found.check.predictive_p;
+  report.fits = found.fits;
+  report.parameters = found.parameters;
+  report.fisher_condition = found.fisher.condition;
+  report.collinearity = found.fisher.collinearity;
+  report.traded = found.traded;
+  for (TradedPair& pair : report.traded)
+    for (const std::vector<double>& u : pair.equivalent_u)
+      for (PredictiveCurve& curve :
+           mean_curves(study, model, Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()))))
+        pair.curves.push_back(std::move(curve));
+}
+
+/// What the posterior predicts: at the readings, over the controls, and of a discrepancy.
+void add_bands(CaseReport& report, const data::Study& study, const CaseModel& model, const Eigen::MatrixXd& draws,
+               std::uint64_t study_seed) {
+  const auto item = std::find_if(study.cases.begin(), study.cases.end(),
+                                 [&](const data::CalibrationCase& one) { return one.name == model.name; });
+  const std::uint64_t seed =
+      data::child_seed(study_seed, data::Purpose::report_seed, static_cast<std::uint32_t>(item - study.cases.begin()));
+  report.predictive = predictive_points(study, model, draws, seed);
+  report.curves = predictive_curves(study, model, draws, seed);
+  report.discrepancies = discrepancy_bands(study, model, draws, seed);
+}
+
+/// Where a model that does not fit is farthest off, which sets contradict each other, and units that would explain it.
+void add_misfit(Words& words, const CaseReport& report, const data::Study& study, const CaseModel& model,
+                const Identification& found, const VerdictThresholds& thresholds) {
+  if (const std::string off = farthest_off(report.predictive); !off.empty()) words.finding += " " + off;
+  const Contradiction sets = describe_contradiction(fits_alone(study, model, found.best_fit.x), thresholds.best_fit_p);
+  if (!sets.finding.empty()) {
+    words.finding += " " + sets.finding;
+    words.remedies.insert(words.remedies.begin(), sets.remedy);
+  }
+  for (const RowGroup& group : model.groups)
+    if (const std::string hint = scale_hint(study, group.emulator.control_range);
+        !hint.empty() && shown_remedy(words).find(hint) == std::string::npos)
+      words.remedies.push_back(hint);
+}
+
+void say_lone_reading(CaseReport& report, Words& words, const data::Study& study, const LoneReading& lone) {
+  report.lone_reading = line_of(study, lone.origin);
+  words.finding += fmt::format(" {} contradicts all others, which fit without it (p {:.2g}).",
+                               reading_in_words(study, lone.origin), lone.p_without);
+  words.remedies = {"Check that reading, its unit and its decimal point first; where it is wrong, take its line out."};
 }
 
 }  // namespace
@@ -277,103 +383,39 @@ NuisanceReport summary_of(const SampledCase& sampled, int k) {
 
 CaseReport report_case(const data::Study& study, const SampledCase& sampled, const CalibrateOptions& options) {
   const CaseModel& model = *sampled.model;
-  CaseReport report;
-  report.name = model.name;
-  report.linked = model.linked;
-  report.observed_sets = model.observed_sets;
-  for (const auto& name : model.observed_sets) {
-    std::string note;
-    for (const auto& line : study.observations[study.observation_index(name).value()].header)
-      note += (note.empty() ? "" : "\n") + line;
-    report.observed_notes.push_back(note);
-  }
-  report.converged = sampled.draws.converged;
-  report.chains = static_cast<int>(sampled.draws.chains.size());
-  report.divergences = sampled.draws.divergences;
-  report.sampler = sampled.draws.sampler;
-  report.search = search_in_words(sampled.draws);
-  for (const auto& unknown : model.unknowns)
-    if (!unknown.cut_from.empty()) report.cuts.push_back(unknown.label + " from " + unknown.cut_from);
-  report.log_evidence = sampled.draws.log_evidence;
-  report.log_evidence_error = sampled.draws.log_evidence_error;
-  if (sampled.draws.chains.empty()) {
-    // Nothing was drawn: no verdict, and the reason in the first lines.
-    report.fits = false;
-    report.warnings.push_back(fmt::format("case {}: sampling failed: {}", report.name, sampled.draws.reason));
-    report.finding = "The posterior could not be sampled: " + sampled.draws.reason + ".";
-    report.consequence = "There is no result for this case.";
-    report.remedy = "Check the priors and the measurement errors.";
-    return report;
-  }
-  report.draws = static_cast<int>(sampled.draws.chains.front().x.rows());
+  CaseReport report = begun(study, sampled);
+  if (sampled.draws.chains.empty()) return without_draws(std::move(report), sampled.draws.reason);
 
   const Eigen::MatrixXd draws = sampled.draws.pooled();
-  report.support = sampled.support;
   const Doubt doubt = doubt_about(sampled, options.identify.unsupported);
   IdentifyOptions judged = options.identify;
   judged.unsupported = doubt.unsupported;
   if (!judged.unsupported.empty()) report.doubt = judged.unsupported.front();
-  report.unusable = !doubt_of(model).empty();
   Identification found = identify(model, draws, judged);
-  report.surrogate_to_measurement = found.surrogate_to_measurement;
   take_cut_verdicts(found, sampled, options);
-  report.chi2 = found.check.chi2;
-  report.dof = found.check.dof;
-  report.ppp = found.check.predictive_p;
-  report.fits = found.fits;
-  report.parameters = found.parameters;
-  report.fisher_condition = found.fisher.condition;
-  report.collinearity = found.fisher.collinearity;
-  report.traded = found.traded;
-  for (TradedPair& pair : report.traded)
-    for (const std::vector<double>& u : pair.equivalent_u)
-      for (PredictiveCurve& curve :
-           mean_curves(study, model, Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()))))
-        pair.curves.push_back(std::move(curve));
+  add_identification(report, study, model, found);
   add_modes(report, model, found);
   add_diagnostics(report, sampled);
   add_nuisances(report, sampled);
   add_draws(report, model, draws);
-  const auto item = std::find_if(study.cases.begin(), study.cases.end(),
-                                 [&](const data::CalibrationCase& one) { return one.name == model.name; });
-  const std::uint64_t seed = data::child_seed(seed_of(study, options), data::Purpose::report_seed,
-                                              static_cast<std::uint32_t>(item - study.cases.begin()));
-  report.predictive = predictive_points(study, model, draws, seed);
-  report.curves = predictive_curves(study, model, draws, seed);
-  report.discrepancies = discrepancy_bands(study, model, draws, seed);
+  add_bands(report, study, model, draws, seed_of(study, options));
   if (options.quadrature && model.dimension() <= 2 && report.cuts.empty())
     add_quadrature(report, sampled, draws, options);
   report.modes_parted_by = parted_by(study, model, found.modes);
+
   Words words = summarise(found, report.modes_parted_by, study.training.engine == "demcal");
   const std::optional<LoneReading> lone =
       found.fits ? std::nullopt : lone_reading(study, model, found.best_fit.x, options.identify.thresholds);
-  if (!found.fits && !lone) {
-    if (const std::string off = farthest_off(report.predictive); !off.empty()) words.finding += " " + off;
-    const Contradiction sets =
-        describe_contradiction(fits_alone(study, model, found.best_fit.x), options.identify.thresholds.best_fit_p);
-    if (!sets.finding.empty()) {
-      words.finding += " " + sets.finding;
-      words.remedies.insert(words.remedies.begin(), sets.remedy);
-    }
-    for (const RowGroup& group : model.groups)
-      if (const std::string hint = scale_hint(study, group.emulator.control_range);
-          !hint.empty() && shown_remedy(words).find(hint) == std::string::npos)
-        words.remedies.push_back(hint);
-  }
+  if (!found.fits && !lone) add_misfit(words, report, study, model, found, options.identify.thresholds);
   if (doubt.of != DoubtOf::nothing) say_doubt(report, doubt.of, words, study);
-  if (lone) {
-    report.lone_reading = line_of(study, lone->origin);
-    words.finding += fmt::format(" {} contradicts all others, which fit without it (p {:.2g}).",
-                                 reading_in_words(study, lone->origin), lone->p_without);
-    words.remedies = {
-        "Check that reading, its unit and its decimal point first; where it is wrong, take its line out."};
-  }
+  if (lone) say_lone_reading(report, words, study, *lone);
   if (found.fits && report.doubt.empty() && found.check.best_fit_p < judged.thresholds.poor_fit_p)
     add_poor_fit(words, found.check);
   report.finding = words.finding;
   report.consequence = words.consequence;
   report.remedy = shown_remedy(words);
   add_warnings(report, doubt.of, sampled);
+  add_prior_conflicts(report, sampled, judged.thresholds);
   return report;
 }
 

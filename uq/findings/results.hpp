@@ -236,6 +236,7 @@ struct ModelComparison {
 /// How one input's runs lie about the posterior.
 struct InputSupport {
   std::string name, unit;
+  std::string material;                    ///< whose runs
   double runs_low = 0.0, runs_high = 0.0;  ///< that the runs cover
   double outside = 0.0;                    ///< share of the posterior beyond them
   double gap = 0.0;                        ///< share of the posterior in a gap of them

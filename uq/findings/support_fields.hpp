@@ -9,6 +9,7 @@ template <class Visit, SameAs<InputSupport> T>
 void visit_fields(Visit&& visit, T& i) {
   visit("name", i.name);
   visit("unit", i.unit);
+  visit("material", i.material);
   visit.pair("runs", i.runs_low, i.runs_high);
   visit("outside", i.outside);
   visit("gap", i.gap);

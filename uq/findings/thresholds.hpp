@@ -27,10 +27,11 @@ struct VerdictThresholds {
   /// Structural: the predictions along the interval stay the same to this share of what the parameter does alone, the
   /// surrogate's own error counted in.
   double same_share = 0.06;
-  double structural_span = 0.5;         ///< of the interval along which they stay the same, at least
-  double combination_share = 0.5;       ///< sd of a combination over that of its terms in it, at most
-  double curve_share = 0.3;             ///< of the room that independent values would fill, at most: a curved relation
-  double mode_weight = 0.01;            ///< posterior probability of a separate region, at least
+  double structural_span = 0.5;    ///< of the interval along which they stay the same, at least
+  double combination_share = 0.5;  ///< sd of a combination over that of its terms in it, at most
+  double curve_share = 0.3;        ///< of the room that independent values would fill, at most: a curved relation
+  double mode_weight = 0.01;       ///< posterior probability of a separate region, at least
+  double prior_conflict_sd = 3.0;  ///< between the data and a stated prior; from here on they contradict each other
   double borderline_probability = 0.2;  ///< of another word over repeats of the data, at least
 };
 

@@ -70,13 +70,16 @@ std::string name_of(const Study& study, const Candidate& candidate, bool of_seve
   return name;
 }
 
-/// Whether an output of enlarged grains may differ from the real powder's. The torque does not: the scaling keeps it. An
-/// output that the case measures is taken as comparable. Every other output counts as the model's alone.
+/// Whether an output of enlarged grains may differ from the real powder's. An output that the case reads is taken as
+/// comparable: the parameters are found through it. Every other one counts as the model's alone.
 bool only_of_model(const Study& study, const std::vector<std::size_t>& sets, std::size_t output,
                    const std::string& material, const CandidateOptions& options) {
   if (std::find(options.coarse_grained.begin(), options.coarse_grained.end(), material) == options.coarse_grained.end())
     return false;
-  return !stated_error(study, sets, output) && study.outputs[output].name != "torque";
+  return std::none_of(sets.begin(), sets.end(), [&](std::size_t set) {
+    const std::vector<std::size_t>& read = study.observations[set].outputs;
+    return std::find(read.begin(), read.end(), output) != read.end();
+  });
 }
 
 class Usual {

@@ -31,6 +31,10 @@ class ScaledPrior {
   double value_sd() const { return value_sd_; }      ///< of x, SI
   double kept_mass() const { return kept_mass_; }    ///< of the prior as stated, inside the parameter's range
   const data::Parameter& parameter() const { return parameter_; }
+  /// Whether it prefers some values of its range.
+  bool is_informative() const {
+    return prior_.kind != data::PriorKind::uniform && prior_.kind != data::PriorKind::log_uniform;
+  }
 
  private:
   double log_density_of_value(double x) const;

@@ -299,8 +299,11 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
     for (std::size_t k = 0; k < ground.lines.size(); ++k) {
       const EmulatorInput& input = ground.group->emulator.inputs[k];
       const Shown low = shown(study, input, ground.lines[k].low), high = shown(study, input, ground.lines[k].high);
-      report.inputs.push_back(
-          {.name = low.name, .unit = low.unit.symbol, .runs_low = low.value, .runs_high = high.value});
+      report.inputs.push_back({.name = low.name,
+                               .unit = low.unit.symbol,
+                               .material = ground.group->emulator.material,
+                               .runs_low = low.value,
+                               .runs_high = high.value});
     }
     for (Index d = 0; d < some.rows(); ++d) {
       const auto at = static_cast<std::size_t>(d);

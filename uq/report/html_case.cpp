@@ -86,11 +86,15 @@ Markup support_part(const SupportReport& support) {
   Table table{
       .columns = {
           {"Input"}, {"Covered by runs", nowrap}, {"Posterior beyond", number}, {"Posterior in a gap", number}}};
+  const bool several = std::any_of(support.inputs.begin(), support.inputs.end(), [&](const InputSupport& input) {
+    return input.material != support.inputs.front().material;
+  });
   for (const InputSupport& input : support.inputs) {
     // The surrogates of several outputs mostly have the same runs.
     if (&*std::find(support.inputs.begin(), support.inputs.end(), input) != &input) continue;
     const std::string gap = input.gap > 0.0 ? " (" + between(input.gap_low, input.gap_high) + ")" : "";
-    table.rows.push_back({input.name, between(input.runs_low, input.runs_high) + behind_number(input.unit),
+    const std::string of = several ? ", runs of " + input.material : "";
+    table.rows.push_back({input.name + of, between(input.runs_low, input.runs_high) + behind_number(input.unit),
                           percent(input.outside), percent(input.gap) + gap});
   }
   return tag::h3("Support by runs") +
