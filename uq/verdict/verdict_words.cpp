@@ -215,8 +215,10 @@ std::string common_remedy(const CommonShare& common, const Names& names) {
 }
 
 /// `share`: of the posterior variance, the surrogate's; of the parameter that has most of it.
-std::string surrogate_remedy(double share) {
-  const std::string runs = "Make more training runs where the posterior lies (demcal train STUDY --until posterior): ";
+std::string surrogate_remedy(double share, bool own_engine) {
+  const std::string how =
+      own_engine ? "demcal train STUDY --until posterior" : "next-runs.csv beside the report has points";
+  const std::string runs = fmt::format("Make more training runs where the posterior lies ({}): ", how);
   return runs + (share < all_of_it
                      ? fmt::format("up to {:.0f} % of the posterior variance is the surrogate's.", 100.0 * share)
                      : "the surrogate's error decides the widths.");
@@ -262,7 +264,7 @@ std::vector<std::string> find_remedies(const CaseFacts& facts, const Sorted& sor
                             ? fmt::format("Make more training runs{}: only a sharper surrogate shows "
                                           "whether a better measurement would help.",
                                           facts.own_engine ? " (demcal train STUDY --runs N)" : " with your code")
-                        : first ? surrogate_remedy(sorted.largest_surrogate)
+                        : first ? surrogate_remedy(sorted.largest_surrogate, facts.own_engine)
                                 : fmt::format("More training runs would help, too: up to {:.0f} % of the posterior "
                                               "variance is the surrogate's.",
                                               100.0 * sorted.largest_surrogate)});

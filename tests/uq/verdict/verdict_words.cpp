@@ -111,6 +111,18 @@ TEST_CASE("no combination of one parameter's facts has words that contradict eac
     check_words({parameter}, words_of({.parameters = {parameter}, .traded = {}, .parted_by = {}}));
 }
 
+TEST_CASE("runs by another code are not asked of this program", "[uq]") {
+  bool asked = false;
+  for (const ParameterReport& parameter : all_parameters("a"))
+    for (const bool own : {true, false}) {
+      const Words words = words_of({.parameters = {parameter}, .traded = {}, .parted_by = {}, .own_engine = own});
+      const bool named = has(shown_remedy(words), "demcal train");
+      asked = asked || (own && named);
+      if (!own) CHECK_FALSE(named);
+    }
+  CHECK(asked);
+}
+
 TEST_CASE("no combination of two parameters' facts has words that contradict each other", "[uq]") {
   // One of each verdict and reason.
   std::vector<ParameterReport> kinds;
