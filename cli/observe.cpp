@@ -136,7 +136,7 @@ data::ExitStatus observe(ObserveOptions options) {
            fmt::format("{:>8.4g} {}: {} +- {} {} ({:.4g} s, {:.0f} independent samples)",
                        log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, shown(mean), shown(error),
                        unit.symbol, log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
-                       plateau.torque.effective_samples));
+                       plateau.independent_samples()));
     json["rows"].push_back({{options.control, log.speed_unit.from_si(plateau.speed)},
                             {options.control + "_unit", log.speed_unit.symbol},
                             {options.output, mean},

@@ -63,7 +63,7 @@ std::string observations_csv(const ObserveOptions& options, const data::TorqueLo
                         log.speed_unit.from_si(plateau.speed), found.value / unit.factor, found.error / unit.factor,
                         off / unit.factor, log.time[plateau.used_from],
                         log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
-                        plateau.torque.effective_samples, plateau.speed_sd / log.speed_unit.factor);
+                        plateau.independent_samples(), plateau.speed_sd / log.speed_unit.factor);
   }
   return text;
 }

@@ -30,10 +30,9 @@ std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vect
   for (const data::Plateau& plateau : plateaus)
     if (!plateau.torque.reliable)
       warnings.push_back(fmt::format(
-          "{:.4g} {} at {:.4g} s: too short for its correlation ({:.0f} independent samples), or still drifting: its "
-          "error is too small; measure longer",
-          log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, log.time[plateau.first],
-          plateau.torque.effective_samples));
+          "{:.4g} {} at {:.4g} s: too short for its correlation, or still drifting: its error is too small; measure "
+          "longer",
+          log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, log.time[plateau.first]));
   return warnings;
 }
 

@@ -38,6 +38,7 @@ enum class FindingKind {
   standard_errors,            ///< of readings, too small or too large to be meant
   prior_not_stated,           ///< of a parameter whose range spans decades
   errors_apart,               ///< common errors of several sets that may be one meter's
+  error_left_out,             ///< that a file states and the study does not
 };
 template <>
 inline constexpr std::array texts_of<FindingKind> = {"copied rows",
@@ -58,7 +59,8 @@ inline constexpr std::array texts_of<FindingKind> = {"copied rows",
                                                      "copied observations",
                                                      "standard errors",
                                                      "prior not stated",
-                                                     "errors apart"};
+                                                     "errors apart",
+                                                     "error left out"};
 
 struct Finding {
   FindingKind kind = FindingKind::unit;

@@ -16,9 +16,10 @@ namespace {
 double measured(const Csv& csv, const CsvRow& row, std::size_t column) {
   const double value = csv.number(row, column);
   if (!std::isfinite(value)) {
-    throw InputError(ExitStatus::bad_data,
-                     Problem{csv.place(row, column), fmt::format("'{}' is not a measured value", row.fields[column]),
-                             "give a number, or remove the line"});
+    throw InputError(
+        ExitStatus::bad_data,
+        Problem{csv.place(row, column), fmt::format("'{}' is not a measured value", row.fields[column]),
+                "give a number, or remove the line; outputs of which some are missing go into files of their own"});
   }
   return value;
 }

@@ -45,6 +45,7 @@ enum class Purpose : std::uint32_t {
   planned_noise = 32,         ///< of readings that a plan thinks of
   planned_words = 33,         ///< readings for which a plan asks the words
   planned_prior = 34,         ///< truths of a plan before any measurement
+  unused_data = 35,           ///< data drawn beside those that a case has not used
   simulation_case_seed = 27,  ///< child_seed of a case's simulation-based calibration
 };
 

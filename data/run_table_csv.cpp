@@ -81,13 +81,21 @@ bool has_errors(const Csv& csv, const std::string& output) {
          });
 }
 
+bool is_empty(const Csv& csv, std::size_t column) {
+  return std::all_of(csv.rows.begin(), csv.rows.end(),
+                     [column](const CsvRow& row) { return trimmed(row.fields[column]).empty(); });
+}
+
 Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) {
   Columns at;
   for (const Column& column : table.parameters) at.inputs.push_back(csv.column(column.name));
   for (const Column& column : table.controls) at.inputs.push_back(csv.column(column.name));
   for (const Column& column : table.outputs) {
     at.outputs.push_back(csv.column(column.name));
-    at.errors.push_back(has_errors(csv, column.name) ? std::optional(csv.column(column.name + "_se")) : std::nullopt);
+    std::optional<std::size_t> errors;
+    if (has_errors(csv, column.name)) errors = csv.column(column.name + "_se");
+    if (errors && is_empty(csv, *errors)) errors.reset();
+    at.errors.push_back(errors);
   }
   at.material = study.materials.size() > 1 ? csv.column("material") : csv.find("material");
   at.seed = csv.find("seed");
@@ -138,7 +146,7 @@ void tell_columns(const Csv& csv, const Columns& at, TableRead& result) {
         {.kind = FindingKind::zero_standard_error,
          .place = place,
          .severity = Severity::note,
-         .what = fmt::format("has no column {}: the runs' scatter is estimated", fmt::join(without, ", ")),
+         .what = fmt::format("has no {}: the runs' scatter is estimated", fmt::join(without, ", ")),
          .remedy = "where the code states standard errors, give their column that name",
          .places = {}});
   if (!at.unread.empty()) {

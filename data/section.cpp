@@ -8,6 +8,7 @@
 
 #include "data/edit_distance.hpp"
 #include "data/study_node.hpp"
+#include "data/unit_text.hpp"
 
 namespace data {
 namespace {
@@ -124,6 +125,9 @@ std::optional<double> read_quantity(const Node& node, std::string_view key, cons
     return {};
   }
   try {
+    if (const auto meant = unit_meant(unit_text, si_unit))
+      return check_range(node, key, (difference ? meant->differences() : *meant).to_si(*number), range,
+                         {show(value), Display{nullptr, si_unit}});
     if (!convertible(unit_text, si_unit)) {
       node.problem(key,
                    fmt::format("{} has the wrong unit: '{}' does not measure what {} does", show(value), unit_text,

@@ -4,6 +4,7 @@
 // A log is what a mixer's logger wrote: time, torque and speed of every sample, with the motor starting, ramps between
 // the speeds, single bad samples and stops. A plateau is a stretch of constant speed; its mean torque, with the error
 // that the correlation of its samples leaves (mean_with_error), is one observation.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -80,6 +81,11 @@ struct Plateau {
   double speed = 0.0, speed_sd = 0.0;  ///< rad/s, of the samples used
   double off_speed = 0.0;              ///< share of these that lie off it by more than the tolerance
   SeriesMean torque;                   ///< N m
+
+  /// Uncorrelated samples that would tell as much; an estimate, at most the samples used.
+  double independent_samples() const {
+    return std::min(torque.effective_samples, static_cast<double>(first + count - used_from));
+  }
 };
 
 /// At this speed and below the machine stands still [rad/s]: what cannot be told from the tachometer's scatter there,

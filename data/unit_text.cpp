@@ -109,6 +109,11 @@ std::string time_spelling(const std::string& text) {
   return {};
 }
 
+std::string angle_spelling(const std::string& text) {
+  const std::string word = lower_case(text);
+  return word == "deg" || word == "deg." || word == "degs" ? "degree" : std::string();
+}
+
 /// "hh:mm:ss", "dd.mm.yyyy hh:mm": the form of a clock's times, which stands where a unit would.
 bool is_form_of_times(std::string_view text) {
   return text.find("mm") != std::string_view::npos && text.find(':') != std::string_view::npos &&
@@ -135,6 +140,8 @@ std::optional<Unit> unit_meant(std::string_view given, std::string_view dimensio
     if (auto unit = known(rotation_spelling(text), dimension)) return unit;
   if (convertible(dimension, "s"))
     if (auto unit = known(time_spelling(text), dimension)) return unit;
+  if (convertible(dimension, "degree"))
+    if (auto unit = known(angle_spelling(text), dimension)) return unit;
   return {};
 }
 
@@ -147,7 +154,7 @@ bool is_unit(std::string_view given) {
     return true;
   } catch (const std::invalid_argument&) {
   }
-  for (const char* dimension : {"N m", "rpm", "s"})
+  for (const char* dimension : {"N m", "rpm", "s", "degree"})
     if (unit_meant(text, dimension)) return true;
   return false;
 }

@@ -11,7 +11,7 @@ namespace data {
 /// The unit meant, if it measures what `dimension` does ("N m", "rpm", "s"); nothing if not. Known besides what
 /// UDUNITS-2 reads: of torque a force and a length in any order, with any sign for a product or none (Nm, mNm, daNm, kgf cm,
 /// g cm, oz-in, ft-lbs, Newtonmeter); where a speed of rotation is wanted, 1/min, U/min, tr/min, RPM and their like
-/// (revolutions per minute), Hz, kHz, 1/s, rps (per second) and deg/s; of time sec, mins, hrs. The symbol of the result is
+/// (revolutions per minute), Hz, kHz, 1/s, rps (per second) and deg/s; of time sec, mins, hrs; of an angle deg. The symbol of the result is
 /// one that UDUNITS-2 reads, perhaps a multiple: "60 rpm", "0.0625 lbf in".
 std::optional<Unit> unit_meant(std::string_view text, std::string_view dimension);
 

@@ -127,8 +127,8 @@ double damping_ratio(double restitution) {
 }
 
 double hamaker_in_use(const Case& c, double given) {
-  const double l = c.material.coarse_graining;
-  return c.contact.hamaker_of == HamakerOf::original ? l * l * l * given : given;
+  const bool original = c.contact.hamaker_of == HamakerOf::original;
+  return original ? std::pow(c.material.coarse_graining, c.contact.hamaker_power) * given : given;
 }
 
 BedCoefficients make_bed(const Case& c, const std::vector<BodyLabel>& bodies) {

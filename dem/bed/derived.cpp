@@ -27,7 +27,7 @@ Derived derive(const Case& c) {
   d.length_scale = k.length_scale == LengthScale::diameter ? d.diameter : 0.5 * d.diameter;
   d.hamaker = hamaker_in_use(c, k.hamaker);
   d.wall_hamaker = hamaker_in_use(c, k.wall_hamaker.value_or(k.hamaker));
-  d.original_hamaker = d.hamaker / std::pow(c.material.coarse_graining, 3);
+  d.original_hamaker = d.hamaker / std::pow(c.material.coarse_graining, k.hamaker_power);
   d.conditions = conditions_of(c);
   Contacts contacts = contacts_of(c, d.conditions);
   d.bed = std::move(contacts.bed);
@@ -89,9 +89,9 @@ void add_attraction(const Case& c, const Derived& d, std::vector<std::string>& l
   } else {
     const double l = c.material.coarse_graining;
     lines.push_back(fmt::format(
-        "van der Waals: H* {:.4g} J in use, {:.4g} J at walls; H = H*/l^3 {:.4g} J on the original grains (coarse "
+        "van der Waals: H* {:.4g} J in use, {:.4g} J at walls; H = H*/l^{:g} {:.4g} J on the original grains (coarse "
         "graining l {:g})",
-        d.hamaker, d.wall_hamaker, d.original_hamaker, l));
+        d.hamaker, d.wall_hamaker, k.hamaker_power, d.original_hamaker, l));
     lines.push_back(fmt::format("  L of eq. (1) is the {} ({:.4g} mm), minimum separation {:.3g} nm, cut-off {:.3g} nm",
                                 k.length_scale == LengthScale::diameter ? "diameter" : "radius", 1e3 * d.length_scale,
                                 1e9 * k.minimum_separation, 1e9 * k.cut_off));

@@ -26,7 +26,7 @@ struct Derived {
   double smallest = 0.0, largest = 0.0;        ///< m
   double length_scale = 0.0;                   ///< m, L of eq. (1), of that sphere
   double hamaker = 0.0, wall_hamaker = 0.0;    ///< J, H* in use
-  double original_hamaker = 0.0;               ///< J, H* / l^3
+  double original_hamaker = 0.0;               ///< J, H* / l^n
   double pull_off = 0.0, wall_pull_off = 0.0;  ///< N, of the first component with itself and the first body
   double bond = 0.0, wall_bond = 0.0;
   double damping_ratio = 0.0;  ///< zeta of the first kind of contact

@@ -84,7 +84,7 @@ struct Component {
 
 enum class LengthScale { diameter, radius };          ///< what L of eq. (1) is
 enum class WallAttraction { as_grains, derjaguin };   ///< eq. (1) as between grains, or twice that (sphere on plane)
-enum class HamakerOf { simulation, original };        ///< whether `hamaker` is H* or H = H*/l^3
+enum class HamakerOf { simulation, original };        ///< whether `hamaker` is H* or H = H*/l^n
 enum class FrictionCap { net, repulsion, thornton };  ///< options (a), (b), (c) of the Coulomb limit
 enum class DashpotTension { allowed, clamped };       ///< whether elastic + damping force may pull
 
@@ -118,6 +118,7 @@ struct Contact {
   double hamaker = 0.0;                ///< J, H* (or H with hamaker_of = original)
   std::optional<double> wall_hamaker;  ///< J
   HamakerOf hamaker_of = HamakerOf::simulation;
+  double hamaker_power = 3.0;  ///< n of H* = l^n H; 3: the source paper's eq. (2)
   LengthScale length_scale = LengthScale::diameter;
   WallAttraction wall_attraction = WallAttraction::as_grains;
   double minimum_separation = 1.5e-9;           ///< m, h_min of eq. (1); constant attraction below it and in contact

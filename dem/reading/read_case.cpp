@@ -109,6 +109,7 @@ void read_laws(const Section& s, Contact& k) {
   choose(s, "tension", k.tension);
   choose(s, "cap", k.cap);
   choose(s, "hamaker_of", k.hamaker_of);
+  if (s.has("hamaker_power")) k.hamaker_power = s.number("hamaker_power", {.low = 0.0, .high = 4.0});
   choose(s, "length_scale", k.length_scale);
   choose(s, "wall_attraction", k.wall_attraction);
   if (s.has("restitution_at"))

@@ -58,6 +58,8 @@ std::string settings_text(const Case& c) {
   text.choice("contact.tension", k.tension);
   text.choice("contact.cap", k.cap);
   text.choice("contact.hamaker_of", k.hamaker_of);
+  if (k.hamaker_of == HamakerOf::original && k.hamaker_power != Contact{}.hamaker_power)
+    text.number("contact.hamaker_power", k.hamaker_power, "1");
   text.choice("contact.length_scale", k.length_scale);
   text.choice("contact.wall_attraction", k.wall_attraction);
   text.choice("contact.normal", k.normal);

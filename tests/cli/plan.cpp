@@ -28,8 +28,9 @@ TEST_CASE("a plan ranks readings, says what they are expected to give, and stand
   for (const auto& candidate : plan["candidates"])
     for (const auto& parameter : candidate["parameters"])
       if (parameter["name"] == "cohesion") {
-        CHECK(parameter["information"].get<double>() <= last);
-        last = parameter["information"].get<double>();
+        const double worth = parameter["information"].get<double>() / candidate["cost"].get<double>();
+        CHECK(worth <= last);
+        last = worth;
         CHECK(parameter["sd_after"].get<double>() <= 1.05 * parameter["sd_now"].get<double>());
       }
   CHECK(fs::exists(folder.path / "o" / "plan.json"));

@@ -99,7 +99,14 @@ TEST_CASE("a table of another code without standard errors is read with none, an
   CHECK(read.table.rows[1].standard_errors[0] == 0.0);
   REQUIRE(read.findings.size() == 1);
   CHECK(read.findings[0].severity == data::Severity::note);
-  CHECK(read.findings[0].what == "has no column torque_se: the runs' scatter is estimated");
+  CHECK(read.findings[0].what == "has no torque_se: the runs' scatter is estimated");
+  // So is a column of it that an exporter left empty.
+  const auto blank =
+      folder.write("blank.csv", "friction,cohesion,speed,warmth,torque,torque_se\n0.4,4,60,20,8,\n0.5,4,60,20,9, \n");
+  const data::TableRead empty = data::read_table(blank, study);
+  REQUIRE(empty.table.rows.size() == 2);
+  CHECK(empty.table.rows[1].outputs[0] == Approx(0.009));
+  CHECK(empty.table.rows[1].standard_errors[0] == 0.0);
   // A standard deviation is no standard error, and says that there is one.
   const auto sd = folder.write("sd.csv", "friction,cohesion,speed,warmth,torque,torque_sd\n0.4,4,60,20,8,1\n");
   CHECK_THROWS_WITH(data::read_table(sd, study), Catch::Contains("the column 'torque_se' is missing"));

@@ -258,7 +258,8 @@ TEST_CASE("what is wrong with an observation file is named with its line") {
   CHECK(problem(text, "speed,torque,torque_se\n50,8,0\n") ==
         "65: bench.csv:2: torque_se: 0 is not above 0 (give the standard error of the measured mean)");
   CHECK(problem(text, "speed,torque,torque_se\n50,nan,1\n") ==
-        "65: bench.csv:2: torque: 'nan' is not a measured value (give a number, or remove the line)");
+        "65: bench.csv:2: torque: 'nan' is not a measured value (give a number, or remove the line; outputs of "
+        "which some are missing go into files of their own)");
   CHECK(problem(text, "speed,torque,torque_se\n") ==
         "65: bench.csv: has a header but no rows (add the measured points)");
   CHECK(problem(head + "[[observe]]\nname = \"b\"\nfile = \"none.csv\"\n") ==

@@ -24,6 +24,9 @@ TEST_CASE("units as they are spelled on instruments mean what they can only mean
                                  "kp cm"})
     CHECK(factor(text, "N m") == Approx(9.80665e-2));
   for (const std::string text : {"kg cm", "kgcm"}) CHECK(factor(text, "N m") == Approx(9.80665e-2));
+  for (const std::string text : {"deg", "Deg", "degree", "\xc2\xb0"})
+    CHECK(factor(text, "degree") == Approx(factor("degree", "degree")));
+  CHECK(factor("deg", "N m") == 0.0);
   CHECK(factor("gf cm", "N m") == Approx(9.80665e-5));
   CHECK(factor("dyn cm", "N m") == Approx(1e-7));
   for (const std::string text : {"lb in", "lb-in", "lbf in", "in-lb", "in lb", "in\xc2\xb7lb", "in-lbf"})

@@ -144,6 +144,7 @@ cohesion = "van_der_waals"
 tension = "allowed"
 cap = "net"
 hamaker_of = "simulation"
+hamaker_power = 3
 length_scale = "diameter"
 wall_attraction = "as_grains"
 restitution_at = "0.1 m/s"

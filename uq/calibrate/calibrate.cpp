@@ -161,7 +161,7 @@ std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& 
     // Words alone are asked of it, and the case's own search has looked for maxima.
     own.mixture.explore.scouts = std::min(scouts_for(sampled.model->dimension()), scan_scouts);
     const Eigen::VectorXd sd = error * truth.cwiseAbs();
-    const Eigen::VectorXd y = truth + sd.cwiseProduct(normal);
+    const Eigen::VectorXd y = truth + own_errors(sd.cwiseAbs2(), sampled.model->linked_errors, normal);
     const auto model = std::make_shared<const CaseModel>(with_data(*sampled.model, y, sd.cwiseAbs2()));
     const Draws draws = sample_model(study, sampled, model, own, 500);
     ErrorScan scan;

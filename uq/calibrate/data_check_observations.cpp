@@ -236,7 +236,8 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
     const bool too_large = below < t.unlikely_scatter && least > 0.05;
     const bool percent_fits =
         gsl_cdf_chisq_Q(chi2(*found, percent), dof) > 1e-3 && chi2(*found, percent) > chi2(*found, error);
-    const bool share_fits = gsl_cdf_chisq_Q(chi2(*bent, share), dof - 1.0) > 1e-3;
+    const double left = gsl_cdf_chisq_Q(chi2(*bent, share), dof - 1.0);
+    const bool share_fits = left > 1e-3 && left < 1.0 - 1e-3;  // nor are the readings too close for such errors
     const bool too_small = above < 1e-9 && share_fits && value.minCoeff() > 1.5 && !follows(error, value) &&
                            !one_spoils_all(study, set, column);
     if (!(too_large && percent_fits) && !too_small) continue;
@@ -262,6 +263,31 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
       finding.remedy = fmt::format("multiply the column by {} / 100", output.name);
     }
     findings.push_back(std::move(finding));
+  }
+}
+
+/// The error of an idle torque that `observe` has taken off every row, where the study does not state it.
+void check_idle_error(const data::Study& study, const data::ObservationSet& set, std::vector<Finding>& findings) {
+  if (!set.common_errors.empty()) return;
+  constexpr std::string_view mark = "its error is common to all of them: ";  // cli/observe_csv.cpp
+  for (const std::string& line : set.header) {
+    const std::size_t at = line.find(mark);
+    if (at == std::string::npos) continue;
+    const bool sampled = std::any_of(study.cases.begin(), study.cases.end(), [&](const data::CalibrationCase& one) {
+      return std::find(one.observe.begin(), one.observe.end(), set.name) != one.observe.end() &&
+             std::any_of(one.nuisances.begin(), one.nuisances.end(),
+                         [](const data::Nuisance& nuisance) { return nuisance.kind == data::NuisanceKind::offset; });
+    });
+    if (sampled) return;
+    findings.push_back({.kind = data::FindingKind::error_left_out,
+                        .place = set.place,
+                        .severity = Severity::warning,
+                        .what = fmt::format("{} states the error of the idle torque, which all its rows share, and the "
+                                            "study does not: widths are too small",
+                                            file_of(set)),
+                        .remedy = "add " + line.substr(at + mark.size()),
+                        .places = {}});
+    return;
   }
 }
 
@@ -313,6 +339,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
     check_control_unit(study, table, set, findings);
     check_errors(study, set, thresholds, findings);
     check_readings(study, set, findings);
+    check_idle_error(study, set, findings);
   }
   check_meters(study, findings);
   return findings;

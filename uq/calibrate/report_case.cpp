@@ -266,6 +266,12 @@ void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
                     report.name, 100.0 * largest));
   }
   for (const auto& unknown : sampled.model->unknowns)
+    if (unknown.nuisance == data::NuisanceKind::setting && unknown.prior.kept_mass() < 0.99)
+      report.warnings.push_back(fmt::format(
+          "case {}: {} of what {} may be lies beyond the control's range and is cut off, which biases the parameters "
+          "(widen the control's range with runs there, or set as = \"covariance\" in its uncertainty)",
+          report.name, fmt::format("{:.0f} %", 100.0 * (1.0 - unknown.prior.kept_mass())), unknown.label));
+  for (const auto& unknown : sampled.model->unknowns)
     if (!unknown.nuisance && unknown.prior.kept_mass() < 0.99)
       report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
                                             unknown.label, 100.0 * (1.0 - unknown.prior.kept_mass())));

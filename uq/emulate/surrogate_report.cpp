@@ -116,20 +116,23 @@ void note_gaps(SurrogateReport& report, const data::Study& study, const FittedSu
   const auto& data = fitted.process->data();
   for (std::size_t k = 0; k < data.active.size(); ++k) {
     double widest = 0.0;
+    bool at_end = false;
     for (const surrogate::InputGap& gap : data.gaps) {
       if (gap.input != static_cast<int>(k)) continue;
       const double middle = 0.5 * (std::max(gap.low, 0.0) + std::min(gap.high, 1.0));
-      widest = std::max(widest, gap.sd * std::sqrt(surrogate::gap_covariance(gap, middle, middle)));
+      const double doubt = gap.sd * std::sqrt(surrogate::gap_covariance(gap, middle, middle));
+      if (doubt > widest) at_end = gap.low < 0.0 || gap.high > 1.0;
+      widest = std::max(widest, doubt);
     }
     if (widest < notable) continue;
     const auto input = static_cast<std::size_t>(data.active[k]);
     std::set<long> values;
     for (const double value : data.points.col(static_cast<Eigen::Index>(k))) values.insert(std::lround(1e6 * value));
     report.notes.push_back(fmt::format(
-        "{} values of {} were run, and what lies between them is doubted by up to {:.0f} % of the runs' scatter. "
-        "Runs at other values would show it. Where the response is known to be smooth, [surrogate] "
+        "{} values of {} were run, and what lies {} them is doubted by up to {:.0f} % of the runs' scatter. "
+        "Runs there would show it. Where the response is known to be smooth, [surrogate] "
         "between_runs = \"trusted\" takes the doubt away",
-        values.size(), input_of(study, fitted.rows.inputs[input]).name, 100.0 * widest));
+        values.size(), input_of(study, fitted.rows.inputs[input]).name, at_end ? "beyond" : "between", 100.0 * widest));
   }
 }
 

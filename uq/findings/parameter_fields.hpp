@@ -68,6 +68,10 @@ void visit_fields(Visit&& visit, T& p) {
     pinned.text("low", p.low_pinned_by);
     pinned.text("high", p.high_pinned_by);
   });
+  visit.table("runs_end", [&](auto& end) {
+    end("low", p.runs_end_low);
+    end("high", p.runs_end_high);
+  });
   visit.keyed("word_probabilities", p.word_probabilities, &WordProbability::verdict, &WordProbability::probability);
   visit.table("width_shares", [&](auto& share) {
     share("measurement", p.share_measurement);

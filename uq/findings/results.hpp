@@ -165,6 +165,7 @@ struct ParameterReport {
   std::vector<ValueRange> intervals;          ///< the parts of the profile interval, rising; holes in doubt are filled
   std::vector<ProfileHole> holes;             ///< between them, and those in doubt
   std::string low_pinned_by, high_pinned_by;  ///< parameter whose range ends an open side; may be empty
+  std::optional<double> runs_end_low, runs_end_high;      ///< where the runs end on an open side, short of the range
   std::vector<WordProbability> word_probabilities;        ///< falling; none where they were not asked for
   double share_measurement = 0.0, share_surrogate = 0.0;  ///< of the interval's width, what brings it about
   double share_structure = 0.0, share_range = 0.0;

@@ -132,11 +132,14 @@ std::string format_parts(const ParameterReport& parameter, Typography typography
   std::string text, open;
   for (const ValueRange& part : parameter.intervals)
     text += (text.empty() ? "" : " and ") + format_interval(part.low, part.high, rounding, parameter.unit, typography);
-  const auto side = [&](bool is_open, const std::string& by, const char* name) {
-    if (is_open) open += fmt::format("; {}: {} ends first", name, by.empty() ? "its range" : "the range of " + by);
+  const auto side = [&](bool is_open, const std::string& by, bool runs_end, const char* name) {
+    if (!is_open) return;
+    const std::string ends = by.empty() ? "its range ends" : "the range of " + by + " ends";
+    open += fmt::format("; {}: {} first", name, runs_end ? "the runs end" : ends);
   };
-  side(parameter.intervals.front().low_open, parameter.low_pinned_by, "open below");
-  side(parameter.intervals.back().high_open, parameter.high_pinned_by, "open above");
+  side(parameter.intervals.front().low_open, parameter.low_pinned_by, parameter.runs_end_low.has_value(), "open below");
+  side(parameter.intervals.back().high_open, parameter.high_pinned_by, parameter.runs_end_high.has_value(),
+       "open above");
   return text + open;
 }
 
@@ -150,17 +153,23 @@ std::string format_profile_interval(const ParameterReport& parameter, Typography
   const auto& low = parameter.profile_low;
   const auto& high = parameter.profile_high;
   if (low && high) return format_interval(*low, *high, rounding, parameter.unit, typography);
-  const auto open = [](bool is_bound, const char* side) {
+  const auto open = [&](bool is_bound, const std::optional<double>& runs_end, const char* side) {
+    if (runs_end)
+      return fmt::format("open {} (the runs end first, at {})", side,
+                         format_value(*runs_end, rounding, parameter.unit, typography));
     return std::string("open ") + side + (is_bound ? " (range ends first)" : "");
   };
   if (high) {
     return "up to " + format_value(*high, rounding, parameter.unit, typography) + "; " +
-           open(parameter.low_is_bound, "below");
+           open(parameter.low_is_bound, parameter.runs_end_low, "below");
   }
   if (low) {
     return "from " + format_value(*low, rounding, parameter.unit, typography) + "; " +
-           open(parameter.high_is_bound, "above");
+           open(parameter.high_is_bound, parameter.runs_end_high, "above");
   }
+  if (parameter.runs_end_low || parameter.runs_end_high)
+    return open(parameter.low_is_bound, parameter.runs_end_low, "below") + "; " +
+           open(parameter.high_is_bound, parameter.runs_end_high, "above");
   const bool bounded = parameter.low_is_bound && parameter.high_is_bound;
   return std::string("open on both sides") + (bounded ? " (range ends first)" : "");
 }

@@ -117,16 +117,22 @@ class Usual {
                   const std::set<std::vector<double>>& observed, bool known) {
     const std::optional<double> stated = stated_error(study_, sets_, output);
     std::set<std::vector<double>> taken;
-    const auto add = [&](const std::vector<double>& controls, CandidateKind kind) {
-      if (!taken.insert(controls).second) return;
-      Candidate one{.kind = kind, .material = material, .outputs = {output}, .settings = {controls}};
+    const auto add_all = [&](const std::vector<std::vector<double>>& settings, CandidateKind kind) {
+      Candidate one{.kind = kind, .material = material, .outputs = {output}, .settings = settings};
+      one.cost = static_cast<double>(settings.size());
       one.error = {{.relative = stated.value_or(options_.assumed_error)}};
       one.assumed_error = !stated;
       one.model_only = only_of_model(study_, sets_, output, material, options_);
       found_.push_back(std::move(one));
     };
-    if (known)
-      for (const auto& controls : few(observed)) add(controls, CandidateKind::repeat);
+    const auto add = [&](const std::vector<double>& controls, CandidateKind kind) {
+      if (taken.insert(controls).second) add_all({controls}, kind);
+    };
+    if (known) {
+      const std::vector<std::vector<double>> again = few(observed);
+      for (const auto& controls : again) add(controls, CandidateKind::repeat);
+      if (again.size() > 1) add_all(again, CandidateKind::repeat);
+    }
     // One control at a time, the others as they were measured.
     const std::vector<double> centre = *std::next(observed.begin(), static_cast<std::ptrdiff_t>(observed.size() / 2));
     const int count = known ? options_.settings : options_.settings_other;

@@ -1,6 +1,7 @@
 #pragma once
 // Measurements that could be made next, for one case of a study: those of [plan], or the usual ones: every observed
-// setting again, the observed outputs over the range of every control, and every other output of the run table.
+// setting again, all of them together, the observed outputs over the range of every control, and every other output of the
+// run table.
 #include <optional>
 #include <string>
 #include <vector>

@@ -31,13 +31,12 @@ const char* to_text(Floor floor) {
     case Floor::surrogate:
       return "the surrogate's error is the floor: more training runs lower it";
     case Floor::meter:
-      return "what all readings share is the floor (the meter's common error, a setting's error, the model's "
-             "discrepancy): another meter or a better calibration lowers it";
+      return "what repeated readings share is the floor";
     case Floor::range:
       return "elsewhere another parameter comes to the end of its range, and that end closes the interval, not the "
              "readings";
     case Floor::structural:
-      return "readings of this kind do not part what is traded, however many there are";
+      return "repeats of it alone do not part what is traded, however many there are";
   }
   return "";
 }

@@ -12,8 +12,10 @@
 #include "uq/plan/plan_basis.hpp"
 #include "uq/plan/plan_batches.hpp"
 #include "uq/plan/plan_words.hpp"
+#include "uq/posterior/common_share.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/surrogate_share.hpp"
+#include "uq/verdict/verdict_words.hpp"
 
 namespace uq::plan {
 namespace {
@@ -77,13 +79,17 @@ std::vector<std::size_t> ranked(const PlanBasis& basis, const std::vector<PlanCa
   return order;
 }
 
-/// Of the best candidates, and of the best reading made again: how many it takes.
+/// Of the best candidates, of the best reading made again and of the best set of settings: how many it takes.
 void count_readings(const PlanBasis& basis, std::vector<PlanCandidate>& all, const std::vector<std::size_t>& order) {
   std::vector<std::size_t> asked(
       order.begin(), order.begin() + static_cast<std::ptrdiff_t>(std::min(asked_for_repeats, order.size())));
-  const auto repeat = std::find_if(order.begin(), order.end(),
-                                   [&](std::size_t i) { return basis.candidates[i].kind == CandidateKind::repeat; });
-  if (repeat != order.end() && std::find(asked.begin(), asked.end(), *repeat) == asked.end()) asked.push_back(*repeat);
+  const auto ask_first = [&](const auto& wanted) {
+    const auto first =
+        std::find_if(order.begin(), order.end(), [&](std::size_t i) { return wanted(basis.candidates[i]); });
+    if (first != order.end() && std::find(asked.begin(), asked.end(), *first) == asked.end()) asked.push_back(*first);
+  };
+  ask_first([](const Candidate& one) { return one.kind == CandidateKind::repeat; });
+  ask_first([](const Candidate& one) { return one.settings.size() > 1; });
   for_each_index(static_cast<int>(asked.size()), basis.options.threads, [&](int i) {
     const std::size_t which = asked[i];
     const ReadingsNeeded needed = basis.forecast->readings_needed(basis.extended.planned[which], basis.about);
@@ -92,6 +98,9 @@ void count_readings(const PlanBasis& basis, std::vector<PlanCandidate>& all, con
     parameter.repeats_low = needed.low;
     parameter.repeats_high = needed.high;
     parameter.floor = to_text(needed.floor);
+    if (needed.floor == Floor::meter)
+      if (const std::string lever = remedy_of(shared_errors(basis.extended.model)); !lever.empty())
+        parameter.floor += ": " + lever + " to lower it";
     if (!needed.count && needed.at_most >= 0.005)
       parameter.floor =
           fmt::format("at most with a probability of {:.0f} %: {}", 100.0 * needed.at_most, parameter.floor);

@@ -41,6 +41,12 @@ std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
     text += fmt::format("No candidate teaches {} anything: the best, {}, gives {:.2f} nats.", report.about, best.name,
                         gain.information);
   if (best.teaches && !identified) text += chance_of_identified(report.about, gain);
+  const auto set = std::find_if(report.candidates.begin(), report.candidates.end(), [&](const PlanCandidate& one) {
+    return one.settings.size() > 1 && one.parameters[k].repeats_needed;
+  });
+  if (best.teaches && !identified && !gain.repeats_needed && set != report.candidates.end())
+    text += fmt::format(" {}, made {} times, would identify it (probability of 90 %).", set->name,
+                        *set->parameters[k].repeats_needed);
   const auto repeat = std::find_if(report.candidates.begin(), report.candidates.end(),
                                    [](const PlanCandidate& one) { return one.kind == CandidateKind::repeat; });
   if (best.teaches && repeat != report.candidates.end() && repeat != report.candidates.begin())

@@ -157,9 +157,10 @@ class Builder {
         const Emulator* emulator = find_emulator(set.material, set.outputs[column]);
         if (emulator == nullptr) {
           problem(set.place,
-                  fmt::format("'{}' measures {} of material '{}', of which there are no runs", set_name,
-                              study_.outputs[set.outputs[column]].name, set.material),
-                  "simulate that material, or leave the output out");
+                  fmt::format("'{}' measures {}{}, of which there are no runs", set_name,
+                              study_.outputs[set.outputs[column]].name,
+                              set.material.empty() ? "" : fmt::format(" of material '{}'", set.material)),
+                  "simulate it, or leave the output out");
           continue;
         }
         append(model, *emulator, item, set_index, column);

@@ -107,6 +107,7 @@ std::vector<RowOrigin> origins(const CaseModel& model) {
 
 CaseModel without_surrogate_error(const CaseModel& model) {
   CaseModel exact = model;
+  if (model.distinct) exact.distinct = std::make_shared<const CaseModel>(without_surrogate_error(*model.distinct));
   for (RowGroup& group : exact.groups) {
     Emulator& emulator = group.emulator;
     emulator.predict = [predict = emulator.predict](const Eigen::MatrixXd& points) -> surrogate::Prediction {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "uq/infer/factor.hpp"
 #include "uq/posterior/posterior.hpp"
@@ -14,7 +13,7 @@ namespace {
 constexpr Eigen::Index draws_most = 32;
 constexpr double notable = 0.1;  // of the variance: below, an error is not named
 
-/// An error that all readings share: an unknown of the case, or a term of the data's covariance (-1).
+/// An error that repeated readings share: an unknown of the case, or a term of the data's covariance (-1).
 struct Source {
   CommonError error;
   int unknown = -1;
@@ -33,13 +32,7 @@ CommonErrorKind kind_of(data::NuisanceKind nuisance) {
   }
 }
 
-/// Whether an error of the setting moves several readings alike, or the only one there is.
-bool is_shared(const SettingShift& shift) {
-  const std::set<double> levels(shift.level.begin(), shift.level.end());
-  return shift.level.size() == 1 || std::ssize(levels) < shift.level.size();
-}
-
-std::vector<Source> find_sources(const CaseModel& model) {  // of all rows: pooled ones do not show what is shared
+std::vector<Source> find_sources(const CaseModel& model) {
   std::vector<Source> found;
   for (int s = 0; s < model.dimension(); ++s) {
     const Unknown& unknown = model.unknowns[s];
@@ -50,7 +43,7 @@ std::vector<Source> find_sources(const CaseModel& model) {  // of all rows: pool
     discrepancy = discrepancy || !group.measurement.discrepancies.empty();
     for (const ReadSet& set : group.measurement.sets) {
       meter = meter || set.common_absolute > 0.0 || set.common_relative > 0.0;
-      setting = setting || std::any_of(set.settings.begin(), set.settings.end(), is_shared);
+      setting = setting || !set.settings.empty();
     }
   }
   if (meter) found.push_back({{CommonErrorKind::meter, {}}});
@@ -64,12 +57,12 @@ double prior_sd(const Unknown& unknown) { return unknown.cut ? unknown.cut->sd :
 /// The case with some of the errors known.
 class KnownErrors {
  public:
-  KnownErrors(const CaseModel& full, const std::vector<Source>& known) : model_(distinct_rows(full)) {
+  KnownErrors(const CaseModel& model, const std::vector<Source>& known) : model_(model) {
     for (const Source& source : known)
       if (source.unknown >= 0)
         unknowns_.push_back(source.unknown);
       else
-        leave_out(source.error.kind, full);
+        leave_out(source.error.kind);
   }
 
   /// Posterior variances of the case's own parameters, over those of their priors, with the model linear about u.
@@ -85,17 +78,13 @@ class KnownErrors {
   }
 
  private:
-  void leave_out(CommonErrorKind kind, const CaseModel& full) {
-    for (std::size_t g = 0; g < model_.groups.size(); ++g) {
-      Measurement& measurement = model_.groups[g].measurement;
-      if (kind == CommonErrorKind::discrepancy) measurement.discrepancies.clear();
-      for (std::size_t s = 0; s < measurement.sets.size(); ++s) {
-        ReadSet& set = measurement.sets[s];
+  void leave_out(CommonErrorKind kind) {
+    for (RowGroup& group : model_.groups) {
+      if (kind == CommonErrorKind::discrepancy) group.measurement.discrepancies.clear();
+      for (ReadSet& set : group.measurement.sets) {
         if (kind == CommonErrorKind::meter) set.common_absolute = set.common_relative = 0.0;
-        if (kind != CommonErrorKind::setting) continue;
-        const std::vector<SettingShift>& of_all_rows = full.groups[g].measurement.sets[s].settings;
-        for (std::size_t q = 0; q < set.settings.size(); ++q)
-          if (is_shared(of_all_rows[q])) set.settings[q].error.setZero();
+        if (kind == CommonErrorKind::setting)
+          for (SettingShift& shift : set.settings) shift.error.setZero();
       }
     }
   }
@@ -106,15 +95,21 @@ class KnownErrors {
 
 }  // namespace
 
+std::vector<CommonError> shared_errors(const CaseModel& model) {
+  std::vector<CommonError> errors;
+  for (const Source& source : find_sources(model)) errors.push_back(source.error);
+  return errors;
+}
+
 std::vector<CommonShare> common_shares(const CaseModel& full, const Eigen::MatrixXd& draws) {
   const CaseModel& model = distinct_rows(full);
   std::vector<CommonShare> found(static_cast<std::size_t>(model.own_count()));
-  const std::vector<Source> sources = find_sources(full);
+  const std::vector<Source> sources = find_sources(model);
   if (sources.empty()) return found;
 
-  const KnownErrors none(full, {}), all(full, sources);
+  const KnownErrors none(model, {}), all(model, sources);
   std::vector<KnownErrors> one;
-  for (const Source& source : sources) one.emplace_back(full, std::vector{source});
+  for (const Source& source : sources) one.emplace_back(model, std::vector{source});
   const auto count = static_cast<Eigen::Index>(sources.size());
   Eigen::VectorXd with = Eigen::VectorXd::Zero(model.own_count()), without_all = with;
   Eigen::MatrixXd without_one = Eigen::MatrixXd::Zero(model.own_count(), count);

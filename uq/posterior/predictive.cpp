@@ -9,6 +9,7 @@
 
 #include "data/error.hpp"
 #include "data/random.hpp"
+#include "uq/findings/study_units.hpp"
 #include "uq/infer/diagnostics.hpp"
 #include "uq/infer/factor.hpp"
 #include "uq/infer/optimise.hpp"
@@ -127,9 +128,6 @@ FitCheck check_fit(const CaseModel& model, const Eigen::MatrixXd& draws, const E
   return check;
 }
 
-namespace {
-
-/// Own errors with these variances from standard normal numbers.
 Eigen::VectorXd own_errors(const Eigen::VectorXd& variance, const std::vector<LinkedErrors>& linked,
                            const Eigen::VectorXd& normal) {
   if (linked.empty()) return variance.cwiseSqrt().cwiseProduct(normal);
@@ -137,8 +135,6 @@ Eigen::VectorXd own_errors(const Eigen::VectorXd& variance, const std::vector<Li
   add_own_errors(variance, linked, covariance);
   return semidefinite_root(covariance, "replicate errors") * normal;
 }
-
-}  // namespace
 
 Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws, std::uint64_t seed) {
   Eigen::MatrixXd made(draws.rows(), model.row_count());
@@ -185,30 +181,34 @@ Eigen::VectorXd mean_prediction(const CaseModel& model, const Eigen::MatrixXd& d
   return sum / static_cast<double>(used.rows());
 }
 
+PredictivePoint observed_point(const data::Study& study, const RowOrigin& from) {
+  const data::ObservationSet& set = study.observations[from.set];
+  const data::Observation& observation = set.points[from.point];
+  const data::Output& output = study.outputs[from.output];
+  const auto column =
+      static_cast<std::size_t>(std::find(set.outputs.begin(), set.outputs.end(), from.output) - set.outputs.begin());
+  return {.controls = named_controls(study, observation.controls),
+          .output = output.name,
+          .unit = output.unit.symbol,
+          .observed = output.unit.from_si(observation.values[column]),
+          .standard_error = observation.standard_errors[column] / output.unit.factor,
+          .observation_set = set.name};
+}
+
 std::vector<PredictivePoint> predictive_points(const data::Study& study, const CaseModel& model,
                                                const Eigen::MatrixXd& draws, std::uint64_t seed) {
   const Eigen::MatrixXd made = replicates(model, thinned(draws, 4 * predictive_draws), seed);
+  const Eigen::VectorXd mean = mean_prediction(model, draws);
   const std::vector<RowOrigin> from = origins(model);
   std::vector<PredictivePoint> points;
   for (std::size_t row = 0; row < from.size(); ++row) {
     if (!is_own_set(study, model, from[row].set)) continue;
-    const data::ObservationSet& set = study.observations[from[row].set];
-    const data::Observation& observation = set.points[from[row].point];
-    const data::Output& output = study.outputs[from[row].output];
-    const auto column = static_cast<std::size_t>(std::find(set.outputs.begin(), set.outputs.end(), from[row].output) -
-                                                 set.outputs.begin());
-    PredictivePoint point;
-    for (std::size_t c = 0; c < study.controls.size(); ++c)
-      point.controls[study.controls[c].name] = study.controls[c].unit.from_si(observation.controls[c]);
-    point.output = output.name;
-    point.unit = output.unit.symbol;
+    const data::Unit& unit = study.outputs[from[row].output].unit;
     const Eigen::VectorXd values = made.col(static_cast<Eigen::Index>(row));
-    point.mean = output.unit.from_si(values.mean());
-    point.q05 = output.unit.from_si(quantile(values, 0.05));
-    point.q95 = output.unit.from_si(quantile(values, 0.95));
-    point.observed = output.unit.from_si(observation.values[column]);
-    point.standard_error = observation.standard_errors[column] / output.unit.factor;
-    point.observation_set = set.name;
+    PredictivePoint point = observed_point(study, from[row]);
+    point.mean = unit.from_si(mean[static_cast<Eigen::Index>(row)]);
+    point.q05 = unit.from_si(quantile(values, 0.05));
+    point.q95 = unit.from_si(quantile(values, 0.95));
     points.push_back(std::move(point));
   }
   return points;

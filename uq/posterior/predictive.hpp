@@ -26,6 +26,13 @@ struct FitCheck {
 /// `draws`: rows in u.
 FitCheck check_fit(const CaseModel& model, const Eigen::MatrixXd& draws, const Eigen::VectorXd& best);
 
+/// A measured number with its settings, in the study's units; what is predicted of it is still to be said.
+PredictivePoint observed_point(const data::Study& study, const RowOrigin& from);
+
+/// Own errors with these variances and links from standard normal numbers.
+Eigen::VectorXd own_errors(const Eigen::VectorXd& variance, const std::vector<LinkedErrors>& linked,
+                           const Eigen::VectorXd& normal);
+
 /// Posterior predictive of a repeated measurement at each own row: mean, 5 % and 95 % with measurement and surrogate
 /// error.
 std::vector<PredictivePoint> predictive_points(const data::Study& study, const CaseModel& model,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -21,7 +22,7 @@ using Eigen::VectorXd;
 
 /// How the runs lie along one input, in the unit cube.
 struct InputLine {
-  double low = 0.0, high = 1.0, slack = 0.0;
+  double low = 0.0, high = 1.0, slack = 0.0, spacing = 0.0;
   std::vector<std::pair<double, double>> gaps;
 };
 
@@ -34,6 +35,7 @@ InputLine line_of(const VectorXd& column, const SupportThresholds& t) {
   const std::size_t spacings = values.size() - 1;
   if (spacings == 0) return line;
   const double mean = (line.high - line.low) / static_cast<double>(spacings);
+  line.spacing = mean;
   line.slack = std::clamp(t.slack_gaps * mean, t.slack_least, t.slack_most);
   for (std::size_t i = 0; i < spacings && spacings > 1; ++i) {
     const double gap = values[i + 1] - values[i];
@@ -53,17 +55,23 @@ struct Plane {
   Index first = 0, second = 0;
   MatrixXd points;  ///< distinct
   std::vector<Eigen::Vector2d> hull;
-  double radius = 0.0;  ///< of the holes that so many runs leave
+  double radius = 0.0;     ///< of the holes that so many runs leave
+  Eigen::Array2d regular;  ///< half the mean spacing of each input's values: no hole is narrower than its levels
 };
 
-std::vector<Plane> planes_of(const RunCloud& runs, const std::vector<EmulatorInput>& inputs) {
+std::vector<Plane> planes_of(const RunCloud& runs, const std::vector<EmulatorInput>& inputs,
+                             const std::vector<InputLine>& lines) {
   std::vector<Plane> planes;
   for (Index a = 0; a < runs.points.cols(); ++a)
     for (Index b = a + 1; b < runs.points.cols(); ++b) {
       if (inputs[a].kind == InputKind::control && inputs[b].kind == InputKind::control) continue;
       std::set<std::pair<double, double>> distinct;
       for (Index i = 0; i < runs.points.rows(); ++i) distinct.emplace(runs.points(i, a), runs.points(i, b));
-      Plane plane{.first = a, .second = b, .points = MatrixXd(static_cast<Index>(distinct.size()), 2), .hull = {}};
+      Plane plane{.first = a,
+                  .second = b,
+                  .points = MatrixXd(static_cast<Index>(distinct.size()), 2),
+                  .hull = {},
+                  .regular = {0.5 * lines[a].spacing, 0.5 * lines[b].spacing}};
       Index row = 0;
       for (const auto& [x, y] : distinct) plane.points.row(row++) << x, y;
       const double count = static_cast<double>(std::max<std::size_t>(distinct.size(), 3));
@@ -75,7 +83,9 @@ std::vector<Plane> planes_of(const RunCloud& runs, const std::vector<EmulatorInp
 }
 
 bool is_empty(const Plane& plane, const Eigen::Vector2d& at, double factor) {
-  const double nearest = std::sqrt((plane.points.rowwise() - at.transpose()).rowwise().squaredNorm().minCoeff());
+  const Eigen::ArrayXXd away = (plane.points.rowwise() - at.transpose()).array().abs();
+  const Eigen::ArrayXXd beyond = (away.rowwise() - plane.regular.transpose()).max(0.0);
+  const double nearest = std::sqrt(beyond.square().rowwise().sum().minCoeff());
   if (nearest > factor * plane.radius) return true;
   return nearest > plane.radius && distance_to_hull(plane.hull, at) > 0.1;
 }
@@ -89,10 +99,10 @@ struct Ground {
 };
 
 Ground ground_of(const RowGroup& group, const SupportThresholds& t) {
-  Ground ground{
-      .group = &group, .lines = {}, .planes = planes_of(*group.emulator.runs, group.emulator.inputs), .rows = {}};
+  Ground ground{.group = &group, .lines = {}, .planes = {}, .rows = {}};
   for (Index k = 0; k < group.emulator.runs->points.cols(); ++k)
     ground.lines.push_back(line_of(group.emulator.runs->points.col(k), t));
+  ground.planes = planes_of(*group.emulator.runs, group.emulator.inputs, ground.lines);
   constexpr Index most = 8;
   const Index rows = group.base.rows();
   for (Index i = 0; i < std::min(rows, most); ++i)
@@ -123,9 +133,10 @@ VectorXd variance_ratio(const Emulator& emulator, const MatrixXd& points) {
 
 /// What one draw meets in one emulator.
 struct Meeting {
-  std::vector<bool> outside;  ///< per input: at half of the rows or more
-  std::vector<int> gap;       ///< per input: which gap, or -1
-  bool empty = false, uncertain = false, unsupported = false;
+  std::vector<bool> outside;               ///< per input: at half of the rows or more
+  std::vector<int> gap;                    ///< per input: which gap, or -1
+  std::optional<std::size_t> empty_plane;  ///< the emptiest, where half of the rows lie in a hole of some plane
+  bool uncertain = false, unsupported = false;
   double distance = 0.0, ratio = 0.0;  ///< means over the rows
 };
 
@@ -137,6 +148,7 @@ Meeting meet(const Ground& ground, const VectorXd& u, const SupportThresholds& t
   const Index rows = points.rows(), inputs = points.cols();
   std::vector<Index> outside(static_cast<std::size_t>(inputs), 0), gap(outside);
   Meeting met{.outside = {}, .gap = std::vector<int>(static_cast<std::size_t>(inputs), -1)};
+  std::vector<Index> holes(ground.planes.size(), 0);
   Index empty = 0, uncertain = 0, any = 0;
   for (Index i = 0; i < rows; ++i) {
     bool bad = false;
@@ -155,9 +167,13 @@ Meeting meet(const Ground& ground, const VectorXd& u, const SupportThresholds& t
       gap[at] += inside_gap;
       bad = bad || beyond || inside_gap;
     }
-    const bool hole = std::any_of(ground.planes.begin(), ground.planes.end(), [&](const Plane& plane) {
-      return is_empty(plane, {points(i, plane.first), points(i, plane.second)}, t.empty_factor);
-    });
+    bool hole = false;
+    for (std::size_t p = 0; p < ground.planes.size(); ++p) {
+      const Plane& plane = ground.planes[p];
+      if (!is_empty(plane, {points(i, plane.first), points(i, plane.second)}, t.empty_factor)) continue;
+      hole = true;
+      ++holes[p];
+    }
     empty += hole;
     uncertain += ratios[i] > t.uncertain;
     any += bad || hole || ratios[i] > t.uncertain;
@@ -169,7 +185,8 @@ Meeting meet(const Ground& ground, const VectorXd& u, const SupportThresholds& t
     met.outside.push_back(2 * outside[at] >= rows);
     if (2 * gap[at] < rows) met.gap[at] = -1;
   }
-  met.empty = 2 * empty >= rows;
+  if (2 * empty >= rows)
+    met.empty_plane = static_cast<std::size_t>(std::max_element(holes.begin(), holes.end()) - holes.begin());
   met.uncertain = 2 * uncertain >= rows;
   met.unsupported = 2 * any >= rows;
   met.distance /= static_cast<double>(rows);
@@ -195,19 +212,28 @@ std::string interval(double low, double high, const std::string& unit) {
   return fmt::format("{:.3g} to {:.3g}{}{}", low, high, unit.empty() ? "" : " ", unit);
 }
 
-/// What is not supported, the greatest share first.
-std::string sentence_of(const SupportReport& report, const SupportThresholds& t) {
+/// What is not supported, the greatest share first. `empty`: the inputs in whose plane it is, "friction and rpm".
+std::string sentence_of(const SupportReport& report, const SupportThresholds& t, const std::string& empty) {
   std::vector<std::pair<double, std::string>> reasons;
+  const bool several = std::any_of(report.inputs.begin(), report.inputs.end(), [&](const InputSupport& input) {
+    return input.material != report.inputs.front().material;
+  });
+  const auto add = [&](double share, std::string text) {
+    if (std::none_of(reasons.begin(), reasons.end(), [&](const auto& known) { return known.second == text; }))
+      reasons.emplace_back(share, std::move(text));  // surrogates of several outputs mostly have the same runs
+  };
   for (const InputSupport& input : report.inputs) {
+    const std::string name = input.name + (several ? " of " + input.material : "");
     if (input.outside > 0.5 * t.share)
-      reasons.emplace_back(input.outside, fmt::format("{} beyond the runs' {}, {}", percent(input.outside), input.name,
-                                                      interval(input.runs_low, input.runs_high, input.unit)));
+      add(input.outside, fmt::format("{} beyond the runs' {}, {}", percent(input.outside), name,
+                                     interval(input.runs_low, input.runs_high, input.unit)));
     if (input.gap > 0.5 * t.share)
-      reasons.emplace_back(input.gap, fmt::format("{} in a gap of the runs' {}, {}", percent(input.gap), input.name,
-                                                  interval(input.gap_low, input.gap_high, input.unit)));
+      add(input.gap, fmt::format("{} in a gap of the runs' {}, {}", percent(input.gap), name,
+                                 interval(input.gap_low, input.gap_high, input.unit)));
   }
   if (report.empty > 0.5 * t.share)
-    reasons.emplace_back(report.empty, percent(report.empty) + " in an empty part of the runs' plane");
+    reasons.emplace_back(report.empty,
+                         fmt::format("{} in an empty part of the runs' plane of {}", percent(report.empty), empty));
   if (report.uncertain > 0.5 * t.share)
     reasons.emplace_back(report.uncertain, fmt::format("{} where the surrogate knows little more than without any runs",
                                                        percent(report.uncertain)));
@@ -293,6 +319,7 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
   VectorXd distance = VectorXd::Zero(some.rows()), ratio = distance;
   std::vector<bool> unsupported(static_cast<std::size_t>(some.rows()), false), empty(unsupported),
       uncertain(unsupported), outside(unsupported), gap(unsupported);
+  std::map<std::string, int> planes;  // draws in a hole of each
   std::vector<Proposed> proposed;
   for (const Ground& ground : grounds) {
     const std::size_t first = report.inputs.size();
@@ -309,7 +336,12 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
       const auto at = static_cast<std::size_t>(d);
       const Meeting met = meet(ground, some.row(d).transpose(), t);
       unsupported[at] = unsupported[at] || met.unsupported;
-      empty[at] = empty[at] || met.empty;
+      empty[at] = empty[at] || met.empty_plane;
+      if (met.empty_plane) {
+        const Plane& plane = ground.planes[*met.empty_plane];
+        const auto name = [&](Index k) { return shown(study, ground.group->emulator.inputs[k], 0.0).name; };
+        ++planes[name(plane.first) + " and " + name(plane.second)];
+      }
       uncertain[at] = uncertain[at] || met.uncertain;
       distance[d] = std::max(distance[d], met.distance);
       ratio[d] = std::max(ratio[d], met.ratio);
@@ -340,7 +372,10 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
   report.distance = quantile(distance, 0.5);
   report.variance_ratio = quantile(ratio, 0.5);
   report.supported = report.unsupported <= t.share;
-  if (!report.supported) report.sentence = sentence_of(report, t);
+  if (report.supported) return report;
+  const auto emptiest =
+      std::max_element(planes.begin(), planes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  report.sentence = sentence_of(report, t, emptiest == planes.end() ? std::string() : emptiest->first);
   return report;
 }
 
@@ -348,6 +383,21 @@ std::string doubt_of(const CaseModel& model) {
   for (const RowGroup& group : model.groups)
     if (!group.emulator.doubt.empty()) return group.emulator.doubt;
   return "";
+}
+
+RunsReach runs_reach(const CaseModel& model, int unknown, const SupportThresholds& thresholds) {
+  const ScaledPrior& prior = model.unknowns[unknown].prior;
+  RunsReach reach{prior.low(), prior.high()};
+  for (const RowGroup& group : model.groups) {
+    if (!group.emulator.runs || group.emulator.runs->points.rows() == 0) continue;
+    for (Index k = 0; k < group.base.cols(); ++k) {
+      if (!(group.unknown.col(k).array() == unknown).any()) continue;
+      const InputLine line = line_of(group.emulator.runs->points.col(k), thresholds);
+      if (line.low - line.slack > prior.low()) reach.low = std::max(reach.low, line.low);
+      if (line.high + line.slack < prior.high()) reach.high = std::min(reach.high, line.high);
+    }
+  }
+  return reach;
 }
 
 std::vector<std::string> unsupported_parameters(const CaseModel& model, const SupportReport& support) {

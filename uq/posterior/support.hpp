@@ -7,7 +7,8 @@
 //              distinct values of that input, between `slack_least` and `slack_most` of its range
 //   gap        an input lies in a gap between runs that is `gap_factor` times the mean of the other spacings, and at
 //              least `gap_least` of its range; regular levels have no such gap
-//   empty      in the plane of two inputs no run is nearer than `empty_factor` r,  r^2 = ln n / (pi n), and the point
+//   empty      in the plane of two inputs no run is nearer than `empty_factor` r,  r^2 = ln n / (pi n), beside half of
+//              each input's mean spacing (between regular levels there is no hole), and the point
 //              lies outside of their convex hull or r-circles are empty about it; n distinct runs in the plane fill it
 //              with holes of that size at most (the coupon collector's bound for n uniform points)
 //   uncertain  the surrogate's variance is at least `uncertain` of what it would be without any runs
@@ -36,6 +37,13 @@ struct SupportThresholds {
 /// `draws`: rows in u, of all unknowns.
 SupportReport find_support(const data::Study& study, const CaseModel& model, const Eigen::MatrixXd& draws,
                            const SupportThresholds& thresholds = {});
+
+/// The part of an unknown's support that runs cover, in u. Within a slack of an end of the support they reach it.
+struct RunsReach {
+  double low = 0.0, high = 1.0;
+};
+/// Of all emulators that the unknown moves, the least; the whole support where none is learnt from runs.
+RunsReach runs_reach(const CaseModel& model, int unknown, const SupportThresholds& thresholds = {});
 
 /// For each own parameter why no verdict can rest on the surrogates there, or nothing.
 std::vector<std::string> unsupported_parameters(const CaseModel& model, const SupportReport& support);

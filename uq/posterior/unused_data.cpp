@@ -7,7 +7,9 @@
 #include <cmath>
 #include <set>
 
+#include "data/random.hpp"
 #include "uq/findings/thresholds.hpp"
+#include "uq/infer/factor.hpp"
 #include "uq/posterior/more_data.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/predictive.hpp"
@@ -20,19 +22,24 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index draws_used = 400;
+constexpr Index drawn_each = 25;        // data of each law, for the tail of chi-squared
+constexpr double numbers_most = 4.0e6;  // of all these data
 
 /// The rows' laws, one a draw.
 struct Mixture {
   MatrixXd mean, sd;  ///< draws x rows, SI
   VectorXd centre;
   MatrixXd covariance;
+  MatrixXd data;  ///< drawn from it x rows, SI
 };
 
 Mixture mixture_of(const CaseModel& model, const MatrixXd& draws, const std::vector<Index>& wanted,
-                   const std::vector<Index>& measured) {
+                   const std::vector<Index>& measured, data::RandomStream random) {
   const auto rows = static_cast<Index>(wanted.size());
+  const double numbers = static_cast<double>(draws.rows() * std::max<Index>(rows, 1));
+  const Index each = std::clamp<Index>(static_cast<Index>(numbers_most / numbers), 1, drawn_each);
   Mixture all{MatrixXd(draws.rows(), rows), MatrixXd(draws.rows(), rows), VectorXd::Zero(rows),
-              MatrixXd::Zero(rows, rows)};
+              MatrixXd::Zero(rows, rows), MatrixXd(draws.rows() * each, rows)};
   const VectorXd y = observed(model);
   for (Index i = 0; i < draws.rows(); ++i) {
     const ReadingLaw law = reading_law(predict(model, draws.row(i).transpose()), y, wanted, measured);
@@ -40,11 +47,25 @@ Mixture mixture_of(const CaseModel& model, const MatrixXd& draws, const std::vec
     all.mean.row(i) = law.mean.transpose();
     all.sd.row(i) = total.diagonal().cwiseMax(0.0).cwiseSqrt().transpose();
     all.covariance += total / static_cast<double>(draws.rows());
+    MatrixXd normal(each, rows);
+    for (double& value : normal.reshaped()) value = random.normal();
+    all.data.middleRows(i * each, each) =
+        (normal * semidefinite_root(total, "data of a prediction").transpose()).rowwise() + law.mean.transpose();
   }
   all.centre = all.mean.colwise().mean().transpose();
   const MatrixXd apart = all.mean.rowwise() - all.centre.transpose();
   all.covariance += apart.transpose() * apart / static_cast<double>(draws.rows());
   return all;
+}
+
+/// The chance of data at least as far off; below what the drawn data resolve, of normal ones.
+double tail_of(const Mixture& all, double chi2) {
+  const Eigen::LDLT<MatrixXd> factor(all.covariance);
+  const MatrixXd away = (all.data.rowwise() - all.centre.transpose()).transpose();
+  const Eigen::ArrayXd drawn = away.cwiseProduct(factor.solve(away)).colwise().sum().transpose().array();
+  const auto count = static_cast<double>(drawn.size()), farther = static_cast<double>((drawn >= chi2).count());
+  if (farther > 0.0) return farther / count;
+  return std::min(1.0 / count, gsl_cdf_chisq_Q(chi2, static_cast<double>(away.rows())));
 }
 
 /// Quantile of a row by bisection of the mixture's distribution function.
@@ -61,23 +82,6 @@ double quantile_of(const Mixture& all, Index row, double probability) {
     (below < probability * static_cast<double>(all.mean.rows()) ? low : high) = middle;
   }
   return 0.5 * (low + high);
-}
-
-PredictivePoint point_of(const data::Study& study, const RowOrigin& from) {
-  const data::ObservationSet& set = study.observations[from.set];
-  const data::Observation& observation = set.points[from.point];
-  const data::Output& output = study.outputs[from.output];
-  const auto column =
-      static_cast<std::size_t>(std::find(set.outputs.begin(), set.outputs.end(), from.output) - set.outputs.begin());
-  PredictivePoint point{.controls = {},
-                        .output = output.name,
-                        .unit = output.unit.symbol,
-                        .observed = output.unit.from_si(observation.values[column]),
-                        .standard_error = observation.standard_errors[column] / output.unit.factor,
-                        .observation_set = set.name};
-  for (std::size_t c = 0; c < study.controls.size(); ++c)
-    point.controls[study.controls[c].name] = study.controls[c].unit.from_si(observation.controls[c]);
-  return point;
 }
 
 std::string sentence_of(const PredictionReport& report) {
@@ -117,11 +121,12 @@ PredictionReport predict_unused(const data::Study& study, const std::vector<Emul
   for (std::size_t row = 0; row < from.size(); ++row)
     (unused.count(from[row].set) > 0 ? rows : measured).push_back(static_cast<Index>(row));
 
-  const Mixture all = mixture_of(model, thinned(draws, draws_used), rows, measured);
+  const Mixture all = mixture_of(model, thinned(draws, draws_used), rows, measured,
+                                 data::RandomStream(study.seed, data::Purpose::unused_data));
   const VectorXd away = observed(model)(rows) - all.centre;
   PredictionReport report{.name = wanted.name, .observed_sets = wanted.observe, .points = {}, .sentence = {}};
   for (Index i = 0; i < away.size(); ++i) {
-    PredictivePoint point = point_of(wider, from[static_cast<std::size_t>(rows[i])]);
+    PredictivePoint point = observed_point(wider, from[static_cast<std::size_t>(rows[i])]);
     const data::Unit& unit = wider.outputs[from[static_cast<std::size_t>(rows[i])].output].unit;
     point.mean = unit.from_si(all.centre[i]);
     point.q05 = unit.from_si(quantile_of(all, i, 0.05));
@@ -130,7 +135,7 @@ PredictionReport predict_unused(const data::Study& study, const std::vector<Emul
     report.points.push_back({.point = std::move(point), .z = away[i] / std::sqrt(all.covariance(i, i))});
   }
   report.chi2 = away.dot(all.covariance.ldlt().solve(away));
-  report.p = away.size() > 0 ? gsl_cdf_chisq_Q(report.chi2, static_cast<double>(away.size())) : 1.0;
+  report.p = away.size() > 0 ? tail_of(all, report.chi2) : 1.0;
   report.predicts = report.p >= VerdictThresholds{}.predictive_p;
   report.sentence = sentence_of(report);
   return report;

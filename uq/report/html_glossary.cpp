@@ -18,7 +18,7 @@ Markup glossary_section() {
        "help; another kind of measurement does."},
       {"practical", "The data would limit the parameter if they were more accurate."},
       {"common error",
-       "An error that all readings share, as a meter's offset, hides it. More readings do not help; to find that error "
+       "An error that repeated readings share, as a meter's offset, hides it. Repeats do not help; to find that error "
        "by "
        "itself does."},
       {"surrogate",

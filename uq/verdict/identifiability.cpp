@@ -70,6 +70,8 @@ ParameterReport describe_draws(const Unknown& unknown, const Eigen::VectorXd& u,
   report.contraction = 1.0 - std::pow(report.sd / report.prior_sd, 2);
   if (profile.low) report.profile_low = shown(unknown, *profile.low);
   if (profile.high) report.profile_high = shown(unknown, *profile.high);
+  if (profile.runs_end_low) report.runs_end_low = shown(unknown, *profile.runs_end_low);
+  if (profile.runs_end_high) report.runs_end_high = shown(unknown, *profile.runs_end_high);
   report.low_is_bound = !profile.low;
   report.high_is_bound = !profile.high;
   report.intervals = ranges_of(unknown, u, profile);
@@ -92,7 +94,7 @@ WordFacts facts_of(const ParameterReport& report, const Profile& profile, const 
           .parts = std::max(1, static_cast<int>(profile.parts.size())),
           .open_low = !profile.low,
           .open_high = !profile.high,
-          .physical_low = physical_low(unknown) && !profile.low_pinned,
+          .physical_low = physical_low(unknown) && !profile.low_pinned && !profile.runs_end_low,
           .contraction = report.contraction,
           .contraction_within =
               profile.parts.size() > 1 ? 1.0 - within / (report.prior_sd * report.prior_sd) : report.contraction};
@@ -185,7 +187,9 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
                           .range_low = report.prior_low,
                           .range_high = report.prior_high,
                           .low_pinned_by = report.low_pinned_by,
-                          .high_pinned_by = report.high_pinned_by};
+                          .high_pinned_by = report.high_pinned_by,
+                          .runs_end_low = report.runs_end_low,
+                          .runs_end_high = report.runs_end_high};
     if (profile.conditional_on)
       one.conditional_on = model.unknowns[static_cast<std::size_t>(*profile.conditional_on)].label;
     if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];

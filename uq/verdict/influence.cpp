@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "uq/posterior/posterior.hpp"
+#include "uq/posterior/support.hpp"
 
 namespace uq {
 namespace {
@@ -104,7 +105,6 @@ double DistanceFrom::operator()(const Eigen::VectorXd& u) const {
 std::vector<Influence> find_influence(const CaseModel& model, const Eigen::VectorXd& best, const Eigen::MatrixXd& draws,
                                       const VerdictThresholds& thresholds) {
   const Yardstick yardstick = make_yardstick(model, best);
-  const Eigen::VectorXd lower = model.lower(), upper = model.upper();
   const auto levels = static_cast<Eigen::Index>(shares.size());
   std::vector<Eigen::VectorXd> bases = {best};
   const Eigen::Index count = std::min(points_beside_best, draws.rows());
@@ -119,6 +119,7 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
       influence.some = influence.shown = model.unknowns[k].nuisance.has_value();
       continue;
     }
+    const RunsReach reach = runs_reach(model, k);  // beyond it the doubt would hide what the runs show
     double effect = 0.0, doubt = 0.0, ends_effect = 0.0, ends_doubt = 0.0;
     for (const Eigen::VectorXd& base : bases) {
       std::array<double, shares.size()> moved = {};
@@ -131,7 +132,7 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
         Eigen::MatrixXd points(levels * n, group.base.cols());
         for (Eigen::Index t = 0; t < levels; ++t) {
           Eigen::VectorXd u = base;
-          u[k] = lower[k] + shares[t] * (upper[k] - lower[k]);
+          u[k] = reach.low + shares[t] * (reach.high - reach.low);
           points.middleRows(t * n, n) = inputs_at(group, looked, u);
         }
         const surrogate::Prediction at = group.emulator.predict(points);

@@ -8,6 +8,8 @@
 // because another unknown has come to the end of its range, so that the ridge cannot go on (pinned): with that unknown
 // held where the data would have it, the deviance at the end would be at least twice as large. That side is open, too.
 // So is the side to which the unknown would move if another could go beyond the end of its range (range_end.hpp).
+// So is an end that lies where no run was made (runs_reach): there the deviance is the surrogate's prior, which nothing has
+// tested.
 // An unknown without influence (influence.hpp) pins nothing, and nor does a bound at 0 that nature sets.
 // Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take it away, the
 // hole is in doubt, and the interval goes through it.
@@ -45,12 +47,13 @@ struct ProfileBarrier {
 
 struct Profile {
   int unknown = 0;
-  Eigen::VectorXd u;                                     ///< held values, rising
-  Eigen::VectorXd deviance;                              ///< at each
-  Eigen::MatrixXd path;                                  ///< points x unknowns: the maximiser at each
-  std::optional<double> low, high;                       ///< ends of the interval, in u; none: open
-  std::optional<int> low_pinned, high_pinned;            ///< unknown at the end of whose range an open side ends
-  std::optional<int> conditional_on;                     ///< unknown whose range's end decides the value, if one does
+  Eigen::VectorXd u;                                  ///< held values, rising
+  Eigen::VectorXd deviance;                           ///< at each
+  Eigen::MatrixXd path;                               ///< points x unknowns: the maximiser at each
+  std::optional<double> low, high;                    ///< ends of the interval, in u; none: open
+  std::optional<int> low_pinned, high_pinned;         ///< unknown at the end of whose range an open side ends
+  std::optional<double> runs_end_low, runs_end_high;  ///< u: where the runs end on an open side, short of the support
+  std::optional<int> conditional_on;                  ///< unknown whose range's end decides the value, if one does
   double deviance_at_low = 0.0, deviance_at_high = 0.0;  ///< at the support's bounds
   std::vector<ProfilePart> parts;                        ///< rising; holes in doubt are filled
   std::vector<ProfileBarrier> barriers;                  ///< all, those in doubt too

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "uq/posterior/posterior.hpp"
+#include "uq/posterior/support.hpp"
 #include "uq/verdict/profile.hpp"
 
 namespace uq {
@@ -91,6 +92,20 @@ void open_beyond(const Profiles& all, Profile& profile, const VerdictThresholds&
   }
 }
 
+/// Opens the sides that end where no run was made.
+void open_beyond_runs(const CaseModel& model, const std::vector<ProfilePart>& parts, Profile& profile) {
+  const RunsReach reach = runs_reach(model, profile.unknown);
+  const ScaledPrior& prior = model.unknowns[profile.unknown].prior;
+  if (reach.low > prior.low() && parts.front().low < reach.low) {
+    profile.low.reset();
+    profile.runs_end_low = reach.low;
+  }
+  if (reach.high < prior.high() && parts.back().high > reach.high) {
+    profile.high.reset();
+    profile.runs_end_high = reach.high;
+  }
+}
+
 /// Whether an error of two of the surrogate's sds would take the barrier away: between its highest point and either of
 /// the two parts.
 bool in_doubt(const CaseModel& model, const Yardstick& yardstick, const Profile& profile, Eigen::Index peak,
@@ -151,6 +166,7 @@ void finish_profile(const CaseModel& model, const Profiles& all, Profile& profil
   }
 
   open_beyond(all, profile, thresholds);
+  open_beyond_runs(model, parts, profile);
 
   // Barriers between them.
   profile.parts = {parts.front()};

@@ -47,6 +47,16 @@ std::string open_sentence(const ParameterEvidence& parameter, Reason reason) {
   const WordFacts& facts = parameter.facts;
   const std::string range =
       in_unit(number(parameter.range_low) + " and " + number(parameter.range_high), parameter.unit);
+  if (reason == Reason::unsupported) {
+    const auto& [low, high] = std::pair{parameter.runs_end_low, parameter.runs_end_high};
+    const auto end = [&](double value) { return in_unit(number(value), parameter.unit); };
+    return fmt::format(
+        "{} is not identified: values that fit go on where no run was made. The runs reach {}{}{}, its range lies "
+        "between "
+        "{}, and what the surrogate says beyond the runs is untested.",
+        parameter.name, low ? "from " + end(*low) : "", low && high ? " " : "", high ? "up to " + end(*high) : "",
+        range);
+  }
   if (facts.open_low && facts.open_high) {
     const bool pinned = !parameter.low_pinned_by.empty() || !parameter.high_pinned_by.empty();
     return fmt::format("{} is not identified: the data leave it open on both sides{}{}.", parameter.name,

@@ -49,16 +49,17 @@ struct ParameterEvidence {
   double mean = 0.0, sd = 0.0, q95 = 0.0;
   WordFacts facts;
   std::vector<ValueRange> parts;
-  double range_low = 0.0, range_high = 0.0;   ///< the support
-  std::string low_pinned_by, high_pinned_by;  ///< another parameter whose range ends an open side; may be empty
-  bool structural = false;                    ///< a better measurement of the same kind would not close it
+  double range_low = 0.0, range_high = 0.0;           ///< the support
+  std::string low_pinned_by, high_pinned_by;          ///< another parameter whose range ends an open side; may be empty
+  std::optional<double> runs_end_low, runs_end_high;  ///< where the runs end on an open side, short of the range
+  bool structural = false;                            ///< a better measurement of the same kind would not close it
   std::string unsupported =
       {};                 ///< why the runs cannot carry a verdict, a clause; empty: they can (uq/posterior/support.hpp)
   bool unusable = false;  ///< the runs say too little anywhere: then a misfit is the stronger finding
   std::string conditional_on = {};  ///< another parameter whose range's end decides the value; may be empty
   bool undecided = false;           ///< the surrogate is not sharp enough to tell
   double surrogate_share = 0.0;     ///< of the variance, where two values are compared
-  CommonShare common = {};          ///< held by errors that all readings share
+  CommonShare common = {};          ///< held by errors that repeated readings share
   double silent_sds = 0.0;  ///< of the data's errors: what the surrogate's own error leaves room for, without influence
 };
 

@@ -1,5 +1,7 @@
 #include "uq/verdict/verdict_words.hpp"
 
+#include "uq/findings/study_units.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,7 +50,8 @@ struct Remedy {
 struct Sorted {
   Names known, several, weak, unknown;                                       ///< by word
   Names silent, structural, practical, surrogate, one_sided, bound, common;  ///< by reason
-  Names conditional, ends_of;  ///< values that depend on where another's range ends, and whose ranges these are
+  Names beyond_runs, wanted_runs;  ///< values that go on where no run is, and the runs that would tell
+  Names conditional, ends_of;      ///< values that depend on where another's range ends, and whose ranges these are
   double of_structure = 0.0, of_measurement = 0.0, of_surrogate = 0.0, of_range = 0.0, of_common = 0.0;
   double largest_surrogate = 0.0;  ///< share of one parameter
   CommonShare largest_common;      ///< of one that is held by such errors, or partly
@@ -74,8 +77,13 @@ Sorted sort_parameters(const std::vector<ParameterReport>& parameters) {
      : *reason == Reason::surrogate        ? sorted.surrogate
      : *reason == Reason::one_sided        ? sorted.one_sided
      : *reason == Reason::range_of_another ? sorted.conditional
+     : *reason == Reason::unsupported      ? sorted.beyond_runs
                                            : sorted.bound)
         .push_back(name);
+    for (const auto& [end, side] : {std::pair{parameter.runs_end_low, "below"}, {parameter.runs_end_high, "above"}})
+      if (end)
+        sorted.wanted_runs.push_back(
+            fmt::format("with {} {} {:.3g}{}", name, side, *end, behind_number(parameter.unit)));
     if (*reason == Reason::range_of_another)
       add(sorted.ends_of, parameter.high_pinned_by.empty() ? parameter.low_pinned_by : parameter.high_pinned_by);
     sorted.of_structure += parameter.share_structure;
@@ -139,6 +147,10 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
   if (!sorted.one_sided.empty())
     say(fmt::format("Only a limit of {} is known; the value given depends on where the range ends.",
                     listed(sorted.one_sided)));
+  if (!sorted.beyond_runs.empty())
+    say(fmt::format("The data allow values of {} that no run has tried; {} given {} no result there.",
+                    listed(sorted.beyond_runs), one_or(sorted.beyond_runs, "the value", "the values"),
+                    one_or(sorted.beyond_runs, "is", "are")));
   if (!sorted.conditional.empty())
     say(fmt::format("{} of {} {} on where the range of {} ends, and can only be used if that end is real.",
                     one_or(sorted.conditional, "The value", "The values"), listed(sorted.conditional),
@@ -192,7 +204,8 @@ std::string found_by(const CommonError& error) {
     case CommonErrorKind::scale:
       return "find the rig's scale with a powder whose parameters are known";
     case CommonErrorKind::setting:
-      return "measure the true " + (error.name.empty() ? "settings" : error.name);
+      return error.name.empty() ? "measure the true settings, or measure at more settings"
+                                : "measure the true " + error.name;
     case CommonErrorKind::meter:
       return "calibrate the meter";
     case CommonErrorKind::discrepancy:
@@ -203,15 +216,13 @@ std::string found_by(const CommonError& error) {
 
 /// `names`: parameters whose width such errors decide; none: they hold a part of some.
 std::string common_remedy(const CommonShare& common, const Names& names) {
-  Names ways;
-  for (const CommonError& error : common.errors) add(ways, found_by(error));
   const std::string part = common.share >= all_of_it
                                ? "nearly all"
                                : fmt::format("{}{:.0f} %", names.size() == 1 ? "" : "up to ", 100.0 * common.share);
   return sentence(
-      fmt::format("{}: {} of the variance{} is held by errors that all readings share, and neither more "
-                  "readings nor smaller errors of each take that away",
-                  listed(ways), part, names.empty() ? "" : " of " + listed(names)));
+      fmt::format("{}: {} of the variance{} is held by errors that repeated readings share, and neither "
+                  "repeats nor smaller errors of each take that away",
+                  remedy_of(common.errors), part, names.empty() ? "" : " of " + listed(names)));
 }
 
 /// `share`: of the posterior variance, the surrogate's; of the parameter that has most of it.
@@ -293,6 +304,10 @@ std::vector<std::string> find_remedies(const CaseFacts& facts, const Sorted& sor
         {sorted.of_range, fmt::format("Widen the range of {}, with training runs there, or measure where the response "
                                       "still changes with {}.",
                                       listed(sorted.one_sided), one_or(sorted.one_sided, "it", "them"))});
+  if (!sorted.wanted_runs.empty())
+    remedies.push_back(
+        {sorted.of_range, fmt::format("Make training runs {}{}: the range goes on there, and the runs do not.",
+                                      listed(sorted.wanted_runs), facts.own_engine ? "" : " with your code")});
   const bool widened = std::all_of(sorted.ends_of.begin(), sorted.ends_of.end(), [&](const std::string& name) {
     return std::find(sorted.one_sided.begin(), sorted.one_sided.end(), name) != sorted.one_sided.end();
   });
@@ -327,10 +342,17 @@ std::vector<std::string> find_remedies(const CaseFacts& facts, const Sorted& sor
 
 }  // namespace
 
+std::string remedy_of(const std::vector<CommonError>& errors) {
+  Names ways;
+  for (const CommonError& error : errors) add(ways, found_by(error));
+  return ways.empty() ? std::string() : listed(ways);
+}
+
 std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict verdict) {
   if (verdict != Verdict::not_identified && verdict != Verdict::weakly_identified) return {};
   const WordFacts& facts = parameter.facts;
   if (!facts.influences) return Reason::no_influence;
+  if (parameter.runs_end_low || parameter.runs_end_high) return Reason::unsupported;
   if (parameter.common.share > mostly && parameter.surrogate_share <= mostly) return Reason::common_error;
   if (parameter.structural) return Reason::structural;
   if (!parameter.conditional_on.empty()) return Reason::range_of_another;
@@ -351,7 +373,7 @@ std::string because(Reason reason, const ParameterEvidence& parameter) {
     case Reason::common_error: {
       Names names;
       for (const CommonError& error : parameter.common.errors) add(names, in_words(error));
-      return fmt::format("; {}, which all readings share, {} it", listed(names), one_or(names, "hides", "hide"));
+      return fmt::format("; {}, which repeated readings share, {} it", listed(names), one_or(names, "hides", "hide"));
     }
     case Reason::surrogate:
       return parameter.surrogate_share > mostly
@@ -379,7 +401,7 @@ std::string because(Reason reason, const ParameterEvidence& parameter) {
 WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason> reason) {
   const double surrogate = std::clamp(parameter.surrogate_share, 0.0, 1.0);
   if (reason == Reason::structural) return {.measurement = 0.0, .surrogate = 0.0, .structure = 1.0, .range = 0.0};
-  if (reason == Reason::one_sided || reason == Reason::range_of_another)
+  if (reason == Reason::one_sided || reason == Reason::range_of_another || reason == Reason::unsupported)
     return {.measurement = 0.0, .surrogate = 0.0, .structure = 0.0, .range = 1.0};
   if (reason == Reason::no_influence)
     return parameter.silent_sds > hides

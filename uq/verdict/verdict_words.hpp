@@ -4,7 +4,7 @@
 //   reason        because                                                      what can be done
 //   structural    other parameters do the same to all that was measured        another kind of quantity, or fix one
 //   practical     the measurement's error is as large as what would tell       a smaller error, more settings
-//   common error  an error that all readings share: offset, gain, ...          find that error by itself
+//   common error  an error that repeats share: offset, gain, setting, ...      find that error by itself
 //   surrogate     the surrogate's error is                                     training runs
 //   one-sided     the data no longer change towards the range's end            wider range, other settings
 //   bound         it cannot be told from its physical bound                    a smaller error lowers the limit
@@ -33,6 +33,9 @@ std::string because(Reason reason, const ParameterEvidence& parameter);
 
 /// What the shares of a width are, given the reason.
 WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason> reason);
+
+/// How errors that repeated readings share are found by themselves: "calibrate the meter (the gain g)"; empty for none.
+std::string remedy_of(const std::vector<CommonError>& errors);
 
 /// The case's verdicts in one finding, what follows from it, and what to do.
 struct Words {

@@ -63,6 +63,23 @@ TEST_CASE("H* = l^3 H: the simulation's constant is given, or follows from the o
   CHECK(dem::derive(c).hamaker == Approx(512.0 * 2.0e-18));
 }
 
+TEST_CASE("the power of l decides what enlarged grains keep: at 1 the pull-off force goes with their area") {
+  // With L the diameter of the simulated sphere, the force is H* L / (24 h^2): l^(n + 1) times that of the original grain.
+  dem::Case original, enlarged;
+  for (dem::Case* c : {&original, &enlarged}) {
+    c->contact.hamaker = 4e-21;
+    c->contact.hamaker_of = dem::HamakerOf::original;
+  }
+  original.material.diameter = 0.1e-3;
+  enlarged.material.diameter = 0.8e-3;
+  enlarged.material.coarse_graining = 8.0;
+  for (const double power : {1.0, 2.0, 3.0}) {
+    enlarged.contact.hamaker_power = power;
+    CHECK(dem::derive(enlarged).pull_off / dem::derive(original).pull_off == Approx(std::pow(8.0, power + 1.0)));
+    CHECK(dem::derive(enlarged).original_hamaker == Approx(4e-21));
+  }
+}
+
 TEST_CASE("the adhesive load enters the Coulomb limit as the cap option says") {
   // A sphere pressed on a wall by repulsion N against attraction A slides under mu max(0, N + b A).
   const double n = 3e-3, a = 1e-3, mu = 0.5;

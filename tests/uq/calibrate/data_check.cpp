@@ -31,6 +31,7 @@ struct Files {
       "[parameters.friction]\nlow = 0.1\nhigh = 0.8\n[parameters.cohesion]\nunit = \"mJ/m2\"\nlow = 0\nhigh = 10\n";
   std::string header = "friction,cohesion,speed,torque,torque_se";
   std::vector<Row> runs;
+  std::string bench_comment = {};
   std::vector<Row> bench;  ///< friction and cohesion are not written
   std::string cases =
       "[[observe]]\nname = \"bench\"\nfile = \"bench.csv\"\n[[calibrate]]\nname = \"powder\"\nobserve = [\"bench\"]\n"
@@ -67,7 +68,7 @@ struct Looked {
 
 Looked look(const Files& files) {
   const TemporaryFolder folder;
-  std::string runs = files.header + "\n", bench = "speed,torque,torque_se\n";
+  std::string runs = files.header + "\n", bench = files.bench_comment + "speed,torque,torque_se\n";
   for (const Row& r : files.runs)
     runs += fmt::format("{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", r.friction, r.cohesion, r.speed, r.torque, r.error);
   for (const Row& r : files.bench) bench += fmt::format("{:.8g},{:.8g},{:.8g}\n", r.speed, r.torque, r.error);
@@ -319,6 +320,10 @@ TEST_CASE("standard errors in percent are suspected from the scatter, and as sha
     files.each_reading([](Row& row) { row.error = 0.02; });
     CHECK_THAT(only(files, "standard errors").what, Contains("Are they relative?"));
   }
+  SECTION("errors three times too small are no shares, where shares would be three times too large") {
+    files.each_reading([](Row& row) { row.error = 0.02 * row.torque / 3.0; });
+    for (const data::Finding& finding : look(files).findings) CHECK_THAT(finding.what, !Contains("relative"));
+  }
   SECTION("honest errors of one and two percent about curves that bend") {
     const std::vector<std::function<double(double)>> curves{
         [](double w) { return 2.0 + w * w; }, [](double w) { return 2.0 + 4.0 / w; },
@@ -344,6 +349,19 @@ TEST_CASE("standard errors in percent are suspected from the scatter, and as sha
     }
     CHECK(look(files).findings.empty());
   }
+}
+
+TEST_CASE("an idle torque's error that the measurements' file states and the study does not is named", "[uq]") {
+  Files files;
+  files.bench_comment =
+      "# idle torque 0.5 mN m taken off every row; its error is common to all of them: common_error = \"0.1 mN m\" in "
+      "[[observe]]\n";
+  const data::Finding found = only(files, "error left out");
+  CHECK(found.severity == Severity::warning);
+  CHECK(found.remedy == "add common_error = \"0.1 mN m\" in [[observe]]");
+  const auto stated = files.cases.find("file = \"bench.csv\"\n");
+  files.cases.insert(stated, "common_error = { torque = \"0.1 mN m\" }\n");
+  CHECK(look(files).findings.empty());
 }
 
 TEST_CASE("inputs that move together in all runs are named, along a line, a curve or a plane", "[uq]") {

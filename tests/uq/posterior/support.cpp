@@ -129,9 +129,27 @@ TEST_CASE("a posterior beyond what the runs cover of an input is not, and the in
   CHECK(beyond.inputs[0].outside > 0.9);
   CHECK(beyond.inputs[1].outside == 0.0);
   CHECK_THAT(beyond.sentence, Contains("beyond the runs' a, 0.0"));
+  // Another output of the same runs says it no second time.
+  Scene twice = scene_of(runs);
+  twice.study.outputs.push_back({.name = "angle"});
+  twice.model.groups.push_back(twice.model.groups.front());
+  twice.model.groups.back().emulator.output = 1;
+  const std::string sentence = support_of(twice, 0.6, 0.5).sentence;
+  CHECK(sentence.find("beyond the runs' a") == sentence.rfind("beyond the runs' a"));
   CHECK(unsupported_parameters(scene.model, beyond).size() == 2);
   // The points to run next lie where the posterior does.
   for (const NextRun& run : beyond.next_runs) CHECK(run.point.at("a") == Approx(0.6).margin(0.1));
+}
+
+TEST_CASE("runs reach the end of a range within a slack, or end short of it", "[uq]") {
+  Eigen::MatrixXd runs = surrogate::scrambled_sobol(60, 3, 5, 0);
+  runs.col(0) = 0.2 + 0.4 * runs.col(0).array();
+  const Scene scene = scene_of(runs);
+  const RunsReach short_of = runs_reach(scene.model, 0), whole = runs_reach(scene.model, 1);
+  CHECK(short_of.low == Approx(0.2).margin(0.02));
+  CHECK(short_of.high == Approx(0.6).margin(0.02));
+  CHECK(whole.low == 0.0);
+  CHECK(whole.high == 1.0);
 }
 
 TEST_CASE("a posterior in a hole of the runs is not supported, between the levels of a factorial design it is",
@@ -148,6 +166,11 @@ TEST_CASE("a posterior in a hole of the runs is not supported, between the level
   Eigen::MatrixXd levels(64, 3);
   for (int i = 0; i < 64; ++i) levels.row(i) << (i % 4) / 3.0, (i / 4 % 4) / 3.0, (i / 16) / 3.0;
   CHECK(support_of(scene_of(levels), 0.5, 0.5).supported);
+
+  // Measured between three speeds that many runs had: no hole, though the next run is far in that plane.
+  Eigen::MatrixXd speeds(90, 3);
+  for (int i = 0; i < 90; ++i) speeds.row(i) << sobol(i / 3, 0), sobol(i / 3, 1), 0.2 + 0.3 * (i % 3);
+  CHECK(support_of(scene_of(speeds), 0.5, 0.5).supported);
 }
 
 TEST_CASE("a posterior in a corner that the runs leave empty is not supported", "[uq]") {

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "data/random.hpp"
+#include "uq/posterior/distinct.hpp"
 #include "uq/posterior/posterior.hpp"
 
 namespace {
@@ -54,6 +55,25 @@ TEST_CASE("the surrogate's share of a width is what a surrogate without error wo
     REQUIRE(found.shares.size() == 1);
     CHECK(found.shares.front() == found.share);
   }
+}
+
+TEST_CASE("the surrogate's share is the same of one reading and of two that say as much together", "[uq]") {
+  constexpr double surrogate = 0.0016;
+  const MatrixXd draws = draws_of_posterior(0.5, std::sqrt(data_variance + surrogate), 4000);
+  uq::CaseModel twice = make_model(surrogate);
+  uq::RowGroup& group = twice.groups[0];
+  group.base = MatrixXd::Zero(2, 1);
+  group.unknown = Eigen::MatrixXi::Zero(2, 1);
+  group.observed = VectorXd::Constant(2, 0.5);
+  group.variance = VectorXd::Constant(2, 2.0 * data_variance);
+  group.origin = {{}, {}};
+  group.emulator.predict = [=](const MatrixXd& points) -> surrogate::Prediction {  // one error of all rows
+    return {.mean = points.col(0), .covariance = MatrixXd::Constant(points.rows(), points.rows(), surrogate)};
+  };
+  uq::pool_rows(twice);
+  REQUIRE(twice.distinct);
+  CHECK(uq::surrogate_share(twice, draws).share ==
+        Approx(uq::surrogate_share(make_model(surrogate), draws).share).epsilon(1e-6));
 }
 
 TEST_CASE("where hardly a draw would be left without the surrogate's error, all of the width is the surrogate's",

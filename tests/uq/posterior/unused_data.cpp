@@ -1,5 +1,7 @@
 #include "uq/posterior/unused_data.hpp"
 
+#include <gsl/gsl_cdf.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -157,5 +159,33 @@ TEST_CASE(
       CHECK(width_of(after.points[j]) ==
             Approx(factor * std::hypot(width_of(before.points[j]), error * mean)).epsilon(0.02));
     }
+  }
+}
+
+TEST_CASE("where the noise is unknown, a prediction is judged by the tails of its mixture") {
+  // a and b known, errors k s with k drawn: chi-squared is k^2 / mean(k^2) times a chi-squared variable of three.
+  data::RandomStream random(7, data::Purpose::test, 1);
+  data::Study study = made(0.4, 0.55, 0.0, random);
+  data::Parameter factor{.name = "k", .target = "k", .low = 0.0, .high = 10.0};
+  factor.prior = {.low = 0.0, .high = 10.0};
+  study.cases[0].nuisances = {{data::NuisanceKind::noise_scale, {}, factor}};
+  MatrixXd draws(400, 3);
+  VectorXd square(400);
+  for (int i = 0; i < 400; ++i) {
+    const double k = std::exp(0.8 * random.normal());
+    square[i] = std::min(k * k, 99.0);
+    draws.row(i) << 0.4, 0.55, std::sqrt(square[i]) / 10.0;
+  }
+  for (const double off : {1.0, 3.0, 6.0}) {
+    for (std::size_t j = 0; j < unused.size(); ++j)
+      study.observations[1].points[j].values[0] = formula::torque(0.4, 0.55, unused[j]) + off * sd;
+    const auto emulators = formula::emulators(0.0);
+    const PredictionReport found =
+        predict_unused(study, emulators, study.unused_data.front(), build_case(study, emulators, 0), draws);
+    const double chi2 = 3.0 * off * off;  // over k^2
+    double exact = 0.0;
+    for (const double k2 : square) exact += gsl_cdf_chisq_Q(chi2 / k2, 3.0) / 400.0;
+    INFO(off << ": " << found.p << " for " << exact);
+    CHECK(found.p == Approx(exact).margin(4.0 * std::sqrt(exact * (1.0 - exact) / 10000.0)));
   }
 }

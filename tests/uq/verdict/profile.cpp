@@ -207,3 +207,29 @@ TEST_CASE("a nuisance that undoes a parameter leaves it open in one piece, and t
     check_interval(model, c, best - 2.0 * error, best + 2.0 * error);
   }
 }
+
+TEST_CASE("an interval that ends where no run was made is open there, and says where the runs end", "[uq]") {
+  // One reading of x +- 1 at 2, in a range of -10 to 10: 0 to 4 at a drop of 4.
+  uq::CaseModel model = sum_of_squares({{"x", -10.0, 10.0}}, {[](const Eigen::VectorXd& p) { return p[0]; }},
+                                       Eigen::VectorXd::Constant(1, 2.0));
+  const auto with_runs = [&](double low, double high) {  // in the unit cube
+    auto cloud = std::make_shared<uq::RunCloud>();
+    cloud->points = Eigen::MatrixXd::Zero(40, model.groups[0].base.cols());
+    for (Eigen::Index k = 0; k < cloud->points.cols(); ++k)
+      cloud->points.col(k) = Eigen::VectorXd::LinSpaced(40, low, high);
+    cloud->length_scales = Eigen::VectorXd::Ones(cloud->points.cols());
+    cloud->prior_variance = 1.0;
+    model.groups[0].emulator.runs = cloud;
+    return profiles(model).profiles.at(0);
+  };
+  check_interval(model, with_runs(0.0, 1.0), 0.0, 4.0);
+  check_interval(model, with_runs(0.4, 0.75), 0.0, 4.0);  // -2 to 5
+  const uq::Profile above = with_runs(0.0, 0.65);         // up to 3
+  CHECK_FALSE(above.high);
+  REQUIRE(above.runs_end_high);
+  CHECK(shown(model, above, *above.runs_end_high) == Approx(3.0));
+  CHECK(shown(model, above, above.low.value()) == Approx(0.0).margin(2e-3));
+  const uq::Profile below = with_runs(0.55, 1.0);  // from 1
+  CHECK_FALSE(below.low);
+  CHECK(shown(model, below, below.runs_end_low.value()) == Approx(1.0));
+}

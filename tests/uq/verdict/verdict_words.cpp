@@ -87,13 +87,13 @@ void check_words(const std::vector<ParameterReport>& parameters, const Words& wo
     structural = structural || p.reason == Reason::structural;
     // A sentence names one reason.
     CHECK(has(p.sentence, "noise hides it") + has(p.sentence, "surrogate's error") + has(p.sentence, "would not help") +
-              has(p.sentence, "say nothing") + has(p.sentence, "which all readings share") <=
+              has(p.sentence, "say nothing") + has(p.sentence, "which repeated readings share") <=
           1);
     if (has(p.sentence, "is identified")) CHECK(p.verdict == Verdict::identified);
     if (p.reason == Reason::no_influence) CHECK_FALSE(has(p.sentence, "would not help"));
   }
   // To find a common error is asked for only where it holds a part of a width.
-  if (has(remedy, "errors that all readings share"))
+  if (has(remedy, "errors that repeated readings share"))
     CHECK(std::any_of(parameters.begin(), parameters.end(),
                       [](const ParameterReport& p) { return p.reason && p.common.share > 0.25; }));
   // A smaller error is asked for only where it can help.
@@ -162,11 +162,11 @@ TEST_CASE("a width that an offset holds asks for the offset, not for smaller err
   const WordFacts facts{.contraction = 0.3, .contraction_within = 0.3};
   const ParameterReport held = judged("a", facts, more);
   CHECK(held.reason == uq::Reason::common_error);
-  CHECK(has(held.sentence, "; the offset zero, which all readings share, hides it"));
+  CHECK(has(held.sentence, "; the offset zero, which repeated readings share, hides it"));
   const Words words = words_of({.parameters = {held}, .traded = {}, .parted_by = {}});
   CHECK(shown_remedy(words) ==
-        "Read the meter without load (the offset zero): 93 % of the variance of a is held by errors that all readings "
-        "share, and neither more readings nor smaller errors of each take that away.");
+        "Read the meter without load (the offset zero): 93 % of the variance of a is held by errors that repeated "
+        "readings share, and neither repeats nor smaller errors of each take that away.");
 
   SECTION("a part of it is named beside the readings' errors") {
     more.common.share = 0.3;
