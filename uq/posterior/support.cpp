@@ -35,7 +35,7 @@ InputLine line_of(const VectorXd& column, const SupportThresholds& t) {
   const std::size_t spacings = values.size() - 1;
   if (spacings == 0) return line;
   const double mean = (line.high - line.low) / static_cast<double>(spacings);
-  line.spacing = mean;
+  if (spacings > 1) line.spacing = mean;  // two values are no regular levels: nothing shows what lies between
   line.slack = std::clamp(t.slack_gaps * mean, t.slack_least, t.slack_most);
   for (std::size_t i = 0; i < spacings && spacings > 1; ++i) {
     const double gap = values[i + 1] - values[i];

@@ -8,7 +8,7 @@
 //   gap        an input lies in a gap between runs that is `gap_factor` times the mean of the other spacings, and at
 //              least `gap_least` of its range; regular levels have no such gap
 //   empty      in the plane of two inputs no run is nearer than `empty_factor` r,  r^2 = ln n / (pi n), beside half of
-//              each input's mean spacing (between regular levels there is no hole), and the point
+//              each input's mean spacing (between three regular levels and more there is no hole), and the point
 //              lies outside of their convex hull or r-circles are empty about it; n distinct runs in the plane fill it
 //              with holes of that size at most (the coupon collector's bound for n uniform points)
 //   uncertain  the surrogate's variance is at least `uncertain` of what it would be without any runs
