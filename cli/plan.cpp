@@ -74,10 +74,12 @@ std::string text_of(const Workspace& workspace, const Point& point) {
 /// The training runs that would sharpen the posterior most, and their cost, beside the measurements.
 void add_runs(const Workspace& workspace, const StudyRows& rows, const Assessment& of_case, uq::PlanReport& plan) {
   const ChosenRuns runs = choose_runs(workspace, rows, of_case, runs_listed);
-  for (const PlannedRun& run : runs.runs) plan.runs.points.push_back(text_of(workspace, run.point));
-  plan.runs.seconds = median_run_time(rows.all) * static_cast<double>(runs.runs.size());
+  constexpr double seen = 5e-4;  // of the mean square: below, runs change nothing
   plan.runs.variance_before = runs.variance_before;
   plan.runs.variance_after = runs.variance_after_expected;
+  if (runs.variance_before < seen) return;
+  for (const PlannedRun& run : runs.runs) plan.runs.points.push_back(text_of(workspace, run.point));
+  plan.runs.seconds = median_run_time(rows.all) * static_cast<double>(runs.runs.size());
 }
 
 /// Puts the plans into the report of the last calibration, where there is one of this study.

@@ -14,6 +14,20 @@ namespace {
 
 using Node = Section::Node;
 
+/// What an override has brought, as deep as it goes: a problem in it names the override.
+void mark_overridden(StudyFile::State& state, const toml::table* table, const std::string& key,
+                     const std::string& text) {
+  state.overridden[{table, key}] = text;
+  const auto mark_all = [&](const toml::table* inner) {
+    if (inner != nullptr)
+      for (const auto& [name, value] : *inner) mark_overridden(state, inner, std::string(name.str()), text);
+  };
+  const toml::node* value = table->get(key);
+  mark_all(value->as_table());
+  if (const auto* array = value->as_array())
+    for (const toml::node& element : *array) mark_all(element.as_table());
+}
+
 /// Applies one --set text to the tree.
 void apply(StudyFile::State& state, const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -70,7 +84,7 @@ void apply(StudyFile::State& state, const std::string& text) {
   } else {
     table->insert_or_assign(path.back(), value);
   }
-  state.overridden[{table, path.back()}] = text;
+  mark_overridden(state, table, path.back(), text);
 }
 
 /// Adds a problem for each key below an opened table that nobody asked for.

@@ -191,6 +191,16 @@ TEST_CASE("a problem in an override names the override") {
         "78: --set observe.bench.file=x: 'observe.bench' is not in the study (name a key of the study file)");
 }
 
+TEST_CASE("a problem in a table or a list that an override brings names the override, too") {
+  const auto read = [](const data::Section& root) {
+    root.child("prior").number("sd", data::positive, 1.0);
+    for (const data::Section& size : root.array("sizes")) size.number("share", data::positive, 1.0);
+  };
+  CHECK(problem_of("", read, {"prior={ sd = -1.0 }"}) ==
+        "78: --set prior={ sd = -1.0 }: prior.sd: -1 is not above 0 (choose a value above 0)");
+  CHECK(problem_of("", read, {"sizes=[{ share = -2.0 }]"}).starts_with("78: --set sizes=[{ share = -2.0 }]: "));
+}
+
 TEST_CASE("named tables come in the order of the file") {
   const TemporaryFolder folder;
   const data::StudyFile file = open_text(folder, "[p.zeta]\n[p.alpha]\n[p.mid]\n");
