@@ -56,11 +56,13 @@ data::Nuisance setting_unknown(const data::Study& study, const data::Observation
                             .high = control.high,
                             .scale = control.scale,
                             .place = error.place};
+  const double sd = std::hypot(error.spread.absolute, error.spread.relative * stated);
+  constexpr double all_of_it = 8.0;  // sds: what the control's range cuts off of it is known by that
   parameter.prior = {.kind = data::PriorKind::normal,
-                     .low = control.low,
-                     .high = control.high,
+                     .low = std::min(control.low, stated - all_of_it * sd),
+                     .high = std::max(control.high, stated + all_of_it * sd),
                      .mean = stated,
-                     .sd = std::hypot(error.spread.absolute, error.spread.relative * stated),
+                     .sd = sd,
                      .place = error.place};
   return {data::NuisanceKind::setting, {}, parameter};
 }
