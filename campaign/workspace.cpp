@@ -52,7 +52,7 @@ void check_target(const data::Section& section, const data::Input& input) {
 
 /// What a target sets: the names of the bed's amount are of one quantity, and so are contact.A-B.KEY and contact.B-A.KEY.
 std::string quantity_set_by(const data::Input& input) {
-  const std::string name = dem::target(input.target).name;
+  std::string name = dem::target(input.target).name;
   if (name == "rig.fill_mass" || name == "rig.level") return "rig.fill";
   const std::size_t first = name.find('.'), last = name.rfind('.');
   if (first == last || !name.starts_with("contact.")) return name;
