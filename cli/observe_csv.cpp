@@ -7,6 +7,7 @@
 
 #include "data/csv.hpp"
 #include "data/hash.hpp"
+#include "data/observations.hpp"
 #include "data/origin.hpp"
 #include "data/unit_text.hpp"
 
@@ -43,7 +44,7 @@ std::string observations_csv(const ObserveOptions& options, const data::TorqueLo
     text +=
         fmt::format("# idle torque {:.6g} {} taken off every row", unit.from_si(idle.at.front().value), unit.symbol);
     text += options.idle_error
-                ? fmt::format("; its error is common to all of them: common_error = \"{:.3g} {}\" in [[observe]]\n",
+                ? fmt::format("; {}common_error = \"{:.3g} {}\" in [[observe]]\n", data::idle_error_mark,
                               idle.at.front().error / unit_of_studies(unit).factor, unit_of_studies(unit).symbol)
                 : std::string("\n");
   } else if (idle.kind == Idle::Kind::log) {

@@ -3,10 +3,14 @@
 // Other columns are left alone.
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "data/study.hpp"
 
 namespace data {
+
+/// In the head of a file of observations, before what a study must state: the error of an idle torque, common to all rows.
+inline constexpr std::string_view idle_error_mark = "its error is common to all of them: ";
 
 /// Whether a file may lack the column OUTPUT_se of an output: its standard errors are NaN then, and copies are left in.
 enum class MissingErrors { refused, nan };

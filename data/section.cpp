@@ -128,16 +128,12 @@ std::optional<double> read_quantity(const Node& node, std::string_view key, cons
     if (const auto meant = unit_meant(unit_text, si_unit))
       return check_range(node, key, (difference ? meant->differences() : *meant).to_si(*number), range,
                          {show(value), Display{nullptr, si_unit}});
-    if (!convertible(unit_text, si_unit)) {
-      node.problem(key,
-                   fmt::format("{} has the wrong unit: '{}' does not measure what {} does", show(value), unit_text,
-                               dimensionless ? "a plain number" : fmt::format("'{}'", si_unit)),
-                   fmt::format("write it like {}", example));
-      return {};
-    }
-    const Unit unit = parse_unit(unit_text);
-    return check_range(node, key, (difference ? unit.differences() : unit).to_si(*number), range,
-                       {show(value), Display{nullptr, si_unit}});
+    parse_unit(unit_text);  // throws where it is none
+    node.problem(key,
+                 fmt::format("{} has the wrong unit: '{}' does not measure what {} does", show(value), unit_text,
+                             dimensionless ? "a plain number" : fmt::format("'{}'", si_unit)),
+                 fmt::format("write it like {}", example));
+    return {};
   } catch (const std::invalid_argument& unknown) {
     node.problem(key, fmt::format("{} has an unknown unit: {}", show(value), unknown.what()),
                  fmt::format("write it like {}", example));

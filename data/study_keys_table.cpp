@@ -54,9 +54,8 @@ const std::vector<StudyKey>& study_keys() {
       {"controls.NAME.uncertainty.sd", "quantity", "rad s-1", "above 0", "",
        "standard deviation of the setting, with its unit or as a share", "\"2 rpm\""},
       {"controls.NAME.uncertainty.as", "choice", "", "covariance, shared, unknown", "covariance",
-       "covariance: points at one value of the control share its error; shared: one error "
-       "of "
-       "all points of the set; unknown: the error of the set's one value is sampled",
+       "covariance: points at one value of the control share its error; shared: one error of all points of the set; "
+       "unknown: the error of the set's one value is sampled",
        "\"shared\""},
       {"outputs.NAME.unit", "text", "", "", "N m",
        "unit of the output's column and of the report; NAME is torque unless more is measured", "\"mN m\""},
@@ -364,9 +363,8 @@ const std::vector<StudyKey>& study_keys() {
       {"observe.uncertainty.NAME.sd", "quantity", "rad s-1", "above 0", "", "standard deviation of the setting",
        "\"1 rpm\""},
       {"observe.uncertainty.NAME.as", "choice", "", "covariance, shared, unknown", "covariance",
-       "covariance: points at one value of the control share its error; shared: one error "
-       "of "
-       "all points of the set; unknown: the error of the set's one value is sampled",
+       "covariance: points at one value of the control share its error; shared: one error of all points of the set; "
+       "unknown: the error of the set's one value is sampled",
        "\"shared\""},
       {"calibrate.name", "text", "", "", "", "name of the case, for the report and posterior-NAME.nc", "\"powder\""},
       {"calibrate.observe", "list of texts", "", "", "",

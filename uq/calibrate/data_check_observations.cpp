@@ -269,7 +269,7 @@ void check_errors(const data::Study& study, const data::ObservationSet& set, con
 /// The error of an idle torque that `observe` has taken off every row, where the study does not state it.
 void check_idle_error(const data::Study& study, const data::ObservationSet& set, std::vector<Finding>& findings) {
   if (!set.common_errors.empty()) return;
-  constexpr std::string_view mark = "its error is common to all of them: ";  // cli/observe_csv.cpp
+  constexpr std::string_view mark = data::idle_error_mark;
   for (const std::string& line : set.header) {
     const std::size_t at = line.find(mark);
     if (at == std::string::npos) continue;

@@ -240,8 +240,8 @@ void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const V
     const std::string unit = behind_number(found.unit);
     report.warnings.push_back(
         fmt::format("case {}: the data contradict the prior of {} by {:.2g} standard deviations: {:.3g} +- {:.2g}{} "
-                    "was stated, and "
-                    "{:.3g} +- {:.2g}{} is a compromise of both (check the prior, and what it was measured on; then "
+                    "was stated, and {:.3g} +- {:.2g}{} is a compromise of both (check the prior, and what it was "
+                    "measured on; then "
                     "the data's errors)",
                     report.name, found.name, std::abs(conflict.z), found.prior_mean, found.prior_sd, unit, found.mean,
                     found.sd, unit));
