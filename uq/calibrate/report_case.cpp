@@ -232,10 +232,10 @@ void add_poor_fit(Words& words, const FitCheck& check) {
 }
 
 /// A posterior between a prior and data that contradict it is a compromise that neither of them supports.
-void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const VerdictThresholds& thresholds) {
+void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
+                         const VerdictThresholds& thresholds) {
   if (!report.converged) return;
-  for (const PriorConflict& conflict :
-       prior_conflicts(*sampled.model, sampled.draws.pooled(), thresholds.prior_conflict_sd)) {
+  for (const PriorConflict& conflict : prior_conflicts(*sampled.model, draws, thresholds.prior_conflict_sd)) {
     const NuisanceReport found = summary_of(sampled, conflict.unknown);
     const std::string unit = behind_number(found.unit);
     report.warnings.push_back(
@@ -267,10 +267,11 @@ void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
   }
   for (const auto& unknown : sampled.model->unknowns)
     if (unknown.nuisance == data::NuisanceKind::setting && unknown.prior.kept_mass() < 0.99)
-      report.warnings.push_back(fmt::format(
-          "case {}: {} of what {} may be lies beyond the control's range and is cut off, which biases the parameters "
-          "(widen the control's range with runs there, or set as = \"covariance\" in its uncertainty)",
-          report.name, fmt::format("{:.0f} %", 100.0 * (1.0 - unknown.prior.kept_mass())), unknown.label));
+      report.warnings.push_back(
+          fmt::format("case {}: {:.0f} % of what {} may be lies beyond the control's range and is cut off, which "
+                      "biases the parameters "
+                      "(widen the control's range with runs there, or set as = \"covariance\" in its uncertainty)",
+                      report.name, 100.0 * (1.0 - unknown.prior.kept_mass()), unknown.label));
   for (const auto& unknown : sampled.model->unknowns)
     if (!unknown.nuisance && unknown.prior.kept_mass() < 0.99)
       report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
@@ -421,7 +422,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.consequence = words.consequence;
   report.remedy = shown_remedy(words);
   add_warnings(report, doubt.of, sampled);
-  add_prior_conflicts(report, sampled, judged.thresholds);
+  add_prior_conflicts(report, sampled, draws, judged.thresholds);
   return report;
 }
 

@@ -55,10 +55,11 @@ void condense(data::ObservationSet& set, const data::CalibrationCase& wanted) {
     return one.kind == data::NuisanceKind::noise_sd;
   });
   std::map<std::vector<double>, std::vector<const data::Observation*>> at;
-  if (!unknown_sd)
-    for (const data::Observation& point : set.points) at[point.controls].push_back(&point);
   std::vector<data::Observation> points;
-  if (unknown_sd) points = set.points;
+  if (unknown_sd)
+    points = set.points;
+  else
+    for (const data::Observation& point : set.points) at[point.controls].push_back(&point);
   for (const auto& [controls, same] : at) {
     data::Observation one = *same.front();
     for (std::size_t c = 0; c < one.values.size(); ++c) {

@@ -341,6 +341,22 @@ TEST_CASE("a repeat at a measured speed shares that speed's error, whatever othe
   CHECK(about.information == Approx(0.5 * std::log(after / before)).margin(about.information_error + 0.002));
 }
 
+TEST_CASE("all measured settings read again are a candidate of their own, at the cost of all", "[plan]") {
+  const PlanReport plan = plan_of(read_at_two_speeds(), formula::emulators(0.0, steep), {}, {.about = "a"});
+  const auto all = std::find_if(plan.candidates.begin(), plan.candidates.end(),
+                                [](const PlanCandidate& one) { return one.settings.size() == 2; });
+  REQUIRE(all != plan.candidates.end());
+  CHECK(all->kind == uq::CandidateKind::repeat);
+  CHECK(all->cost == 2.0);
+  // The error of a reading that nobody states is the measured ones' share of their values.
+  const double share = 0.5 * (0.1 / 14.5 + 0.1 / 16.5), speed = 0.04, own = 0.01;
+  const auto again = [&](double value) { return 1.0 / (1.0 / own + 1.0 / std::pow(share * value, 2)); };
+  const double before = 100.0 + 2.0 * 25.0 / (own + speed);
+  const double after = 100.0 + 25.0 / (again(14.5) + speed) + 25.0 / (again(16.5) + speed);
+  const auto& about = all->parameters[0];
+  CHECK(about.information == Approx(0.5 * std::log(after / before)).margin(about.information_error + 0.002));
+}
+
 TEST_CASE("outputs of one candidate share their speed's error, in the case's sets and in new ones", "[plan]") {
   data::PlanEntry both = reading_of(0, 0.1);
   both.outputs = {0, 1};

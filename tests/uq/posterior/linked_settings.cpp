@@ -109,3 +109,14 @@ TEST_CASE("outputs of two files were not read at the same settings", "[uq]") {
   study.cases[0].observe = {"bench", "angles"};
   CHECK(build_case(study, formula::emulators(0.0, lines), 0).linked_settings.empty());
 }
+
+TEST_CASE("what a control's range cuts off of an unknown setting is known", "[uq]") {
+  data::Study study = formula::study({1.0}, {3.0}, own);
+  study.observations[0].setting_errors = {{.control = 0, .spread = {.absolute = error}, .unknown = true}};
+  for (const auto& [speed, kept] : {std::pair{0.5, 1.0}, {0.9, 0.8413447}, {1.0, 0.5}}) {
+    study.observations[0].points[0].controls = {speed};
+    const CaseModel model = build_case(study, formula::emulators(0.0, lines), 0);
+    REQUIRE(model.unknowns.back().nuisance == data::NuisanceKind::setting);
+    CHECK(model.unknowns.back().prior.kept_mass() == Approx(kept).epsilon(1e-6));
+  }
+}
