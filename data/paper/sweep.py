@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""Runs the paper's sweeps and gathers them in sweeps.csv: sweep.py DEMCAL [--out FOLDER] [--jobs 1] [--gather]
+"""Runs the paper's sweeps and gathers them in sweeps.csv: sweep.py DEMCAL [--out FOLDER] [--jobs 1] [--gather] [--again]
 
 Every point is one `demcal simulate data/paper`, kept below FOLDER, so that a second start goes on where one was cut
-off; --gather only writes the table of what is there. Sweeps:
+off. A point that sweeps.csv has is not run, but with --again; --gather only writes the table of what is there. Sweeps:
   friction     0.2, 0.4 and 0.6 without cohesion, six speeds                                (the paper's figure 3)
   hamaker      2e-18 and 9e-18 J at a friction of 0.40, six speeds; 1e-18, 4e-18 and 6e-18 J at two   (its figure 4)
   choices      what the paper does not state, each alone changed, at the slowest and the fastest speed: minimum
                separation, the load that limits friction, attraction of the walls, stiffness
+  machine      the machine of two augers of the same cross-section, at two speeds of five points of the first sweeps
   grain size   the same bed of spheres of other diameters, slowest and fastest speed: without cohesion, and with a force of
                attraction that goes with the 2nd, 3rd or 4th power of the diameter from that of 9e-18 J at 0.8 mm
 A point that ends with an error (spheres pressed into each other, say) has a row with its message and no numbers.
@@ -31,7 +32,10 @@ CHOICES = {
     "stiffness 1200 N/m": {"contact.stiffness": "1200 N/m"},
 }
 DIAMETERS = {"spread-1131": 1.1314, "spread-566": 0.5657, "spread-400": 0.4}  # mm; dearest last: 20 minutes a run
+# The slice's cross-section as a machine of two augers, 48 mm long, with the slice's mass for each pitch of a trough: 20,080 spheres, 31.5 g.
+MACHINE = {"rig.kind": "machine", "rig.machine_length": "48 mm", "rig.opening": "12 mm", "rig.fill": "20080", "run.start_up_turns": "15", "run.longest": "30 s"}
 BASE_DIAMETER, BASE_HAMAKER = 0.8, 9e-18  # mm, J
+KEY = ["sweep", "choice", "material", "friction", "hamaker", "rpm"]
 OUTPUTS = ["torque", "coordination", "axial_flow", "kinetic_energy"]
 
 
@@ -50,6 +54,9 @@ def points():
         for hamaker in ("2e-18", "9e-18"):
             for rpm in ENDS:
                 yield "choices", choice, "spread", 0.4, hamaker, rpm, settings
+    for rpm in (300, 100):
+        for friction, hamaker in ((0.4, "0"), (0.4, "9e-18"), (0.4, "2e-18"), (0.6, "0"), (0.2, "0")):
+            yield "machine", "", "spread", friction, hamaker, rpm, MACHINE
     for material, diameter in DIAMETERS.items():
         for rpm in ENDS:
             yield "grain size", "no attraction", material, 0.4, "0", rpm, {}
@@ -85,13 +92,27 @@ def simulate(arguments, point):
     print(f"{folder.name}: {done.returncode}", flush=True)
 
 
+def key_of(point):
+    """What tells a point's row in sweeps.csv."""
+    return tuple(str(value) for value in point[:6])
+
+
+def rows_there():
+    """The rows of sweeps.csv, by the point's key."""
+    table = HERE / "sweeps.csv"
+    if not table.exists():
+        return {}
+    with open(table, newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    return {tuple(row[name] for name in KEY): row for row in rows}
+
+
 def row_of(arguments, point):
-    sweep, choice, material, friction, hamaker, rpm, _ = point
     kept = folder_of(arguments, point) / "result.json"
     if not kept.exists():
         return None
     found = json.loads(kept.read_text())
-    row = {"sweep": sweep, "choice": choice, "material": material, "friction": friction, "hamaker": hamaker, "rpm": rpm}
+    row = dict(zip(KEY, key_of(point)))
     if "error" in found:
         reason = found["error"].split(" (its last good state")[0]  # a path of the machine that ran it
         return row | {"state": "failed: " + reason}
@@ -104,8 +125,9 @@ def row_of(arguments, point):
 
 
 def gather(arguments):
-    rows = [row for row in (row_of(arguments, point) for point in points()) if row]
-    columns = ["sweep", "choice", "material", "friction", "hamaker", "rpm"] + [c for o in OUTPUTS for c in (o, o + "_se")] + [
+    there = rows_there()
+    rows = [row for row in (row_of(arguments, point) or there.get(key_of(point)) for point in points()) if row]
+    columns = KEY + [c for o in OUTPUTS for c in (o, o + "_se")] + [
         "bond_number", "turns", "seed", "settings", "state"]
     with open(HERE / "sweeps.csv", "w", newline="") as file:
         file.write("# made by sweep.py; torque in uN m, coordination in contacts a sphere, axial_flow in g/s, kinetic_energy in uJ;\n"
@@ -122,10 +144,13 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("paper-runs"))
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--gather", action="store_true")
+    parser.add_argument("--again", action="store_true")
     arguments = parser.parse_args()
     if not arguments.gather:
+        there = {} if arguments.again else rows_there()
+        missing = [point for point in points() if key_of(point) not in there]
         with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-            list(pool.map(lambda point: simulate(arguments, point), points()))
+            list(pool.map(lambda point: simulate(arguments, point), missing))
     gather(arguments)
 
 
