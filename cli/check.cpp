@@ -5,6 +5,7 @@
 
 #include "campaign/design.hpp"
 #include "campaign/foretell.hpp"
+#include "campaign/levels.hpp"
 #include "cli/command.hpp"
 #include "data/progress.hpp"
 #include "dem/rig/rig.hpp"
@@ -65,6 +66,7 @@ Action add_check(CLI::App& program) {
     }
     for (const data::Problem& problem : data::outside_training_range(study))
       warnings.push_back(data::describe({problem}));
+    for (std::string& warning : refusals([&] { coarse_levels(workspace); })) warnings.push_back(std::move(warning));
     for (std::string& warning : refused_later(workspace, rows)) warnings.push_back(std::move(warning));
     uq::SurrogateOptions surrogates = *workspace.surrogates;
     surrogates.low = rows.low;

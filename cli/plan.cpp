@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "campaign/levels.hpp"
 #include "campaign/posterior_runs.hpp"
 #include "cli/calibration.hpp"
 #include "data/atomic_file.hpp"
@@ -125,8 +126,7 @@ data::ExitStatus plan(const PlanOptions& options) {
                               .batch = options.batch,
                               .prior = options.prior,
                               .seed = study.seed};
-    for (const auto& [material, item] : workspace.cases)
-      if (item.material.coarse_graining > 1.0) how.candidates.coarse_grained.push_back(material);
+    how.candidates.coarse_grained = coarse_levels(workspace);
     for (std::size_t n = 0; n < cases.size(); ++n) {
       const double from = 0.2 + 0.8 * static_cast<double>(n) / static_cast<double>(cases.size());
       const double span = 0.8 / static_cast<double>(cases.size());

@@ -44,6 +44,7 @@ void read_materials(const Section& root, Study& study) {
     if (parts.contains(name)) continue;
     Material material{.name = name, .fixed = read_fixed(section.child("fixed"), study), .place = section.place()};
     if (section.has("runs")) material.runs = static_cast<int>(section.integer("runs", {.low = 1, .high = 1e6}));
+    material.powder = section.text("powder", "");
     study.materials.push_back(std::move(material));
   }
   if (study.materials.empty()) study.materials.push_back({.place = root.place()});

@@ -96,6 +96,7 @@ struct Material {
   std::string name;
   std::map<std::string, double> fixed;  ///< parameters its training runs do not vary, SI
   std::optional<int> runs;              ///< instead of [training] runs
+  std::string powder;                   ///< materials of one powder are its levels of coarse graining; may be empty
   std::string place;
 };
 

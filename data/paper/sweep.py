@@ -7,7 +7,7 @@ off. A point that sweeps.csv has is not run, but with --again; --gather only wri
   hamaker      2e-18 and 9e-18 J at a friction of 0.40, six speeds; 1e-18, 4e-18 and 6e-18 J at two   (its figure 4)
   choices      what the paper does not state, each alone changed, at the slowest and the fastest speed: minimum
                separation, the load that limits friction, attraction of the walls, stiffness
-  machine      the machine of two augers of the same cross-section, at two speeds of five points of the first sweeps
+  machine      the machine of two augers of the same cross-section beside the slice, at two speeds of five points of the first sweeps
   grain size   the same bed of spheres of other diameters, slowest and fastest speed: without cohesion, and with a force of
                attraction that goes with the 2nd, 3rd or 4th power of the diameter from that of 9e-18 J at 0.8 mm
 A point that ends with an error (spheres pressed into each other, say) has a row with its message and no numbers.
@@ -32,8 +32,11 @@ CHOICES = {
     "stiffness 1200 N/m": {"contact.stiffness": "1200 N/m"},
 }
 DIAMETERS = {"spread-1131": 1.1314, "spread-566": 0.5657, "spread-400": 0.4}  # mm; dearest last: 20 minutes a run
-# The slice's cross-section as a machine of two augers, 48 mm long, with the slice's mass for each pitch of a trough: 20,080 spheres, 31.5 g.
-MACHINE = {"rig.kind": "machine", "rig.machine_length": "48 mm", "rig.opening": "12 mm", "rig.fill": "20080", "run.start_up_turns": "15", "run.longest": "30 s"}
+# The slice's cross-section as a machine of two augers, 48 mm long, with the slice's mass for each pitch of a trough: 20,080 spheres, 31.5 g. At 300 N/m
+# spheres that a blade's leading edge pinches overlap too deep.
+STIFFER = {"contact.stiffness": "600 N/m"}
+MACHINE = STIFFER | {"rig.kind": "machine", "rig.machine_length": "48 mm", "rig.opening": "12 mm", "rig.fill": "20080", "run.start_up_turns": "12",
+                     "run.longest": "30 s"}
 BASE_DIAMETER, BASE_HAMAKER = 0.8, 9e-18  # mm, J
 KEY = ["sweep", "choice", "material", "friction", "hamaker", "rpm"]
 OUTPUTS = ["torque", "coordination", "axial_flow", "kinetic_energy"]
@@ -55,8 +58,9 @@ def points():
             for rpm in ENDS:
                 yield "choices", choice, "spread", 0.4, hamaker, rpm, settings
     for rpm in (300, 100):
-        for friction, hamaker in ((0.4, "0"), (0.4, "9e-18"), (0.4, "2e-18"), (0.6, "0"), (0.2, "0")):
-            yield "machine", "", "spread", friction, hamaker, rpm, MACHINE
+        for rig, settings in (("of two augers", MACHINE), ("the slice", STIFFER)):
+            for friction, hamaker in ((0.4, "0"), (0.4, "9e-18"), (0.4, "2e-18"), (0.6, "0"), (0.2, "0")):
+                yield "machine", rig, "spread", friction, hamaker, rpm, settings
     for material, diameter in DIAMETERS.items():
         for rpm in ENDS:
             yield "grain size", "no attraction", material, 0.4, "0", rpm, {}

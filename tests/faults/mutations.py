@@ -32,7 +32,8 @@ class Mutation(NamedTuple):
 CONTACT = "dem/contact/contact_law.hpp"
 PARTS = "dem/contact/parts/"
 LINEAR, HERTZ, JKR = (f"dem/contact/forces/{name}.cpp" for name in ("linear", "hertz", "jkr"))
-POSTERIOR, PROFILE = "uq/posterior/posterior.cpp", "uq/verdict/profile.cpp"
+POSTERIOR, GRADIENT, REPEATS = (f"uq/posterior/{name}.cpp" for name in ("posterior", "posterior_gradient", "distinct"))
+PROFILE, DROP = "uq/verdict/profile.cpp", "uq/verdict/interval_drop.cpp"
 INFORMATION = "uq/plan/information.cpp"
 
 MUTATIONS = [
@@ -71,13 +72,13 @@ MUTATIONS = [
     Mutation("a setting's error is shared by rows at other settings", "uq/posterior/measurement.cpp",
              "pair_of(set, t, t).cwiseProduct(same_level(setting.level, setting.level))", "pair_of(set, t, t)",
              ("uq/posterior/measurement.cpp",), "test_uq_posterior", "a control's error enters by the slope*"),
-    Mutation("the gradient lacks the covariance's slope", POSTERIOR,
-             "a.dot(slope * a) - inverse.cwiseProduct(slope).sum()", "0.0 * a.dot(slope * a)", (POSTERIOR,),
+    Mutation("the gradient lacks the covariance's slope", GRADIENT,
+             "a.dot(slope * a) - inverse.cwiseProduct(slope).sum()", "0.0 * a.dot(slope * a)", (GRADIENT,),
              "test_uq_posterior", "the gradient of the posterior*"),
-    Mutation("the gradient of the mean has the other sign", POSTERIOR, "a.dot(slopes.mean[k]) +",
-             "-a.dot(slopes.mean[k]) +", (POSTERIOR,), "test_uq_posterior", "the gradient of the posterior*"),
-    Mutation("the scatter of repeats counts twice", POSTERIOR, "repeats.log_constant - 0.5 * chi",
-             "repeats.log_constant - chi", (POSTERIOR,), "test_uq_posterior", "so they do where the noise*"),
+    Mutation("the gradient of the mean has the other sign", GRADIENT, "a.dot(slopes.mean[k]) +",
+             "-a.dot(slopes.mean[k]) +", (GRADIENT,), "test_uq_posterior", "the gradient of the posterior*"),
+    Mutation("the scatter of repeats counts twice", REPEATS, "repeats.log_constant - 0.5 * chi",
+             "repeats.log_constant - chi", (REPEATS,), "test_uq_posterior", "so they do where the noise*"),
     Mutation("the profile holds another unknown", PROFILE, "box, starts, {Held{k, values",
              "box, starts, {Held{0, values", (PROFILE,), "test_uq_verdict",
              "profile intervals of LikelihoodProfiler.jl's curved*"),
@@ -90,6 +91,9 @@ MUTATIONS = [
              "(2.0 * (all.best.value - profile.deviance.array())", "((all.best.value - profile.deviance.array())",
              ("uq/verdict/profile_interval.cpp",), "test_uq_verdict",
              "profile intervals of LikelihoodProfiler.jl's sep*"),
+    Mutation("the interval's ends do not know that the errors' size is unknown", DROP,
+             "std::max(drop, 2.0 * (level.maxCoeff() - there))", "drop", (DROP,), "test_uq_verdict",
+             "with an unknown sd of the readings*"),
     Mutation("a bound at 0 is a bound like any other", PROFILE, "parameter.low == 0.0 &&", "parameter.low == 1.0 &&",
              (PROFILE,), "test_uq_verdict", "a parameter against its physical bound*"),
     Mutation("information has the wrong sign", INFORMATION, "return -extrapolated(density, b);",

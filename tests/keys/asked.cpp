@@ -199,6 +199,7 @@ longest = "6 s"
 density = "6090 kg/m3"
 sizes = [{ diameter = "0.8 mm", mass_fraction = 1 }]
 coarse_graining = 1
+powder = "grain"
 fill = 100
 runs = 10
 fixed = { NAME5 = 0.4 }

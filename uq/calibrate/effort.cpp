@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "data/error.hpp"
 #include "data/progress.hpp"
@@ -21,6 +24,52 @@ double training_runs(const data::RunTable& table, const std::string& material, c
   const auto all = std::count_if(many.rows.begin(), many.rows.end(),
                                  [&](const data::RunRow& row) { return row.material == material; });
   return std::min(static_cast<double>(all), static_cast<double>(options.runs_most));
+}
+
+/// What each evaluation of a case's likelihood works on.
+class Load {
+ public:
+  void add(double readings, double runs) { parts_.push_back({readings, runs}); }
+  /// Of a sampling with these shares of the runs and of the readings.
+  double seconds(double of_runs, double of_readings) const {
+    double operations = 0.0;
+    for (const Part& part : parts_) {
+      const double n = of_runs * part.runs, r = of_readings * part.readings;
+      operations += r * n * n + r * r * n + r * r * r / 3.0;
+    }
+    return evaluations * operations / operations_per_second;
+  }
+  double readings() const {
+    double sum = 0.0;
+    for (const Part& part : parts_) sum += part.readings;
+    return sum;
+  }
+  double most_runs() const {
+    double most = 0.0;
+    for (const Part& part : parts_) most = std::max(most, part.runs);
+    return most;
+  }
+
+ private:
+  struct Part {
+    double readings = 0.0, runs = 0.0;
+  };
+  std::vector<Part> parts_;
+};
+
+Load load_of(const data::Study& study, const data::CalibrationCase& one, const data::RunTable& table,
+             const SurrogateOptions& options) {
+  // A setting that was read again costs nothing more (uq/posterior/distinct.hpp).
+  std::map<std::pair<std::string, std::size_t>, std::set<std::vector<double>>> settings;
+  for (const data::ObservationSet& set : study.observations) {
+    if (std::find(one.observe.begin(), one.observe.end(), set.name) == one.observe.end()) continue;
+    for (const std::size_t output : set.outputs)
+      for (const data::Observation& point : set.points) settings[{set.material, output}].insert(point.controls);
+  }
+  Load load;
+  for (const auto& [of, different] : settings)
+    load.add(static_cast<double>(different.size()), training_runs(table, of.first, options));
+  return load;
 }
 
 }  // namespace
@@ -42,23 +91,16 @@ std::vector<std::string> effort_notes(const data::Study& study, const data::RunT
   }
   std::vector<std::string> notes;
   for (const data::CalibrationCase& one : study.cases) {
-    double work = 0.0, most_runs = 0.0;
-    std::size_t readings = 0;
-    for (const data::ObservationSet& set : study.observations) {
-      if (std::find(one.observe.begin(), one.observe.end(), set.name) == one.observe.end()) continue;
-      const double runs = training_runs(table, set.material, options);
-      const std::size_t here = set.points.size() * std::max<std::size_t>(1, set.outputs.size());
-      work += static_cast<double>(here) * runs * runs;
-      readings += here;
-      most_runs = std::max(most_runs, runs);
-    }
-    const double seconds = evaluations * work / operations_per_second;
+    const Load load = load_of(study, one, table, options);
+    const double seconds = load.seconds(1.0, 1.0);
     if (seconds < limits.seconds) continue;
+    const auto share = [&](double of) { return 100.0 * of / seconds; };
     notes.push_back(fmt::format(
-        "case '{}': {} readings, each predicted from {:.0f} runs some hundred thousand times: sampling takes about {} "
-        "of processor time or more. A third of the runs take a ninth of it ([surrogate] runs_most = {:.0f}), a third "
-        "of the readings a third (the means of neighbours in [[observe]] file)",
-        one.name, readings, most_runs, data::rough_duration_text(seconds), std::floor(most_runs / 3.0)));
+        "case '{}': {:.0f} different readings, each predicted from {:.0f} runs some hundred thousand times: sampling "
+        "takes about {} of processor time. A third of the runs take {:.0f} % of it ([surrogate] runs_most = {:.0f}), a "
+        "third of the readings {:.0f} % (the means of neighbours in [[observe]] file)",
+        one.name, load.readings(), load.most_runs(), data::rough_duration_text(seconds),
+        share(load.seconds(1.0 / 3.0, 1.0)), std::floor(load.most_runs() / 3.0), share(load.seconds(1.0, 1.0 / 3.0))));
   }
   return notes;
 }

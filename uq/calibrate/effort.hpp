@@ -1,10 +1,11 @@
 #pragma once
-// What a calibration will take, known before anything is fitted, with n training runs and r readings:
+// What a calibration will take, known before anything is fitted, with n training runs and readings at r settings:
 //
 //   memory of a surrogate's fit     56 n^2 bytes: seven matrices of n by n (measured: 45 MB of 1,000 runs, 215 MB of 2,000)
-//   processor time of a sampling    E r n^2 / F: E evaluations of the likelihood, each a triangular product of n by n with
-//                                   r columns, at F operations a second. E depends on the posterior; a case of ten
-//                                   free parameters asks some hundred thousand times.
+//   processor time of a sampling    E (r n^2 + r^2 n + r^3 / 3) / F: E evaluations of the likelihood, at F operations a
+//                                   second. Each is a triangular product of n by n with r columns, the readings'
+//                                   covariance, and its factor. E depends on the posterior; a case of ten free parameters
+//                                   asks some hundred thousand times.
 #include <string>
 #include <vector>
 

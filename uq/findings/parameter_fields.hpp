@@ -86,6 +86,7 @@ void visit_fields(Visit&& visit, T& p) {
   visit.table("profile", [&](auto& profile) {
     profile("x", p.profile_x);
     profile("deviance", p.profile_deviance);
+    profile("drop", p.profile_drop);
     profile.pair("ends_at_the_range", p.low_is_bound, p.high_is_bound);
   });
 }

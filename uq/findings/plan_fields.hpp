@@ -29,6 +29,7 @@ void visit_fields(Visit&& visit, T& c) {
   visit("settings", c.settings);
   visit("cost", c.cost);
   visit("model_only", c.model_only);
+  visit("level_difference", c.level_difference);
   visit("assumed_error", c.assumed_error);
   visit("error", c.error);
   visit("information", c.information);

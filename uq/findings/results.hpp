@@ -10,6 +10,7 @@
 
 #include "data/finding.hpp"
 #include "uq/findings/kinds.hpp"
+#include "uq/findings/thresholds.hpp"
 
 namespace uq {
 
@@ -91,6 +92,7 @@ struct PlanCandidate {
   std::vector<std::map<std::string, double>> settings;  ///< controls of each of its points, their units
   double cost = 1.0;
   bool model_only = false;                            ///< the output need not mean the same in the real powder
+  std::optional<double> level_difference;             ///< of two levels of coarse graining, in errors of a reading
   bool assumed_error = false;                         ///< nobody stated an error of this output
   std::string error;                                  ///< "2 %"
   double information = 0.0, information_error = 0.0;  ///< about all parameters together, nats
@@ -158,6 +160,7 @@ struct ParameterReport {
   std::optional<double> profile_low, profile_high;   ///< 95 % profile-likelihood interval; none: open on that side
   bool low_is_bound = false, high_is_bound = false;  ///< the range ended before the likelihood fell
   std::vector<double> profile_x, profile_deviance;   ///< the profile itself: 2 (log L_max - log L)
+  double profile_drop = deviance_95;                 ///< deviance at the interval's ends
   Verdict verdict = Verdict::not_identified;
   std::optional<Reason> reason;  ///< why it is not known
   bool borderline = false;

@@ -17,12 +17,6 @@ namespace {
 
 using data::Study;
 
-const Emulator* emulator_of(const std::vector<Emulator>& emulators, const std::string& material, std::size_t output) {
-  for (const Emulator& one : emulators)
-    if (one.material == material && one.output == output) return &one;
-  return nullptr;
-}
-
 /// The relative error of the case's readings of an output: their median; none where it reads none.
 std::optional<double> stated_error(const Study& study, const std::vector<std::size_t>& sets, std::size_t output) {
   std::vector<double> shares;
@@ -74,8 +68,7 @@ std::string name_of(const Study& study, const Candidate& candidate, bool of_seve
 /// comparable: the parameters are found through it. Every other one counts as the model's alone.
 bool only_of_model(const Study& study, const std::vector<std::size_t>& sets, std::size_t output,
                    const std::string& material, const CandidateOptions& options) {
-  if (std::find(options.coarse_grained.begin(), options.coarse_grained.end(), material) == options.coarse_grained.end())
-    return false;
+  if (!options.coarse_grained.contains(material)) return false;
   return std::none_of(sets.begin(), sets.end(), [&](std::size_t set) {
     const std::vector<std::size_t>& read = study.observations[set].outputs;
     return std::find(read.begin(), read.end(), output) != read.end();
@@ -302,6 +295,18 @@ class Entry {
 };
 
 }  // namespace
+
+const Emulator* emulator_of(const std::vector<Emulator>& emulators, const std::string& material, std::size_t output) {
+  for (const Emulator& one : emulators)
+    if (one.material == material && one.output == output) return &one;
+  return nullptr;
+}
+
+bool reaches(const Study& study, const Emulator& emulator, const std::vector<double>& setting) {
+  for (std::size_t c = 0; c < setting.size(); ++c)
+    if (!within_reach(study.controls[c], setting[c], range_of(study, emulator, c))) return false;
+  return true;
+}
 
 std::vector<std::size_t> own_sets(const Study& study, std::size_t case_index) {
   std::vector<std::size_t> sets;

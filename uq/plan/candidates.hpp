@@ -2,6 +2,7 @@
 // Measurements that could be made next, for one case of a study: those of [plan], or the usual ones: every observed
 // setting again, all of them together, the observed outputs over the range of every control, and every other output of the
 // run table.
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,21 +26,30 @@ struct Candidate {
   bool stated_error = false;                  ///< the plan states its error
   bool assumed_error = false;                 ///< nobody stated one
   bool model_only = false;                    ///< the output need not mean the same in the real powder
+  /// Between two levels of coarse graining, in errors of a reading (levels.hpp); none: not compared.
+  std::optional<double> level_difference = {};
   int readings = 1;
   double cost = 1.0;
 };
 
 struct CandidateOptions {
-  int settings = 9;                              ///< of each control over its range
-  int settings_other = 5;                        ///< of outputs that the case has not measured
-  double assumed_error = 0.05;                   ///< relative, of those outputs
-  std::vector<std::string> coarse_grained = {};  ///< materials simulated with larger grains than the powder's
+  int settings = 9;             ///< of each control over its range
+  int settings_other = 5;       ///< of outputs that the case has not measured
+  double assumed_error = 0.05;  ///< relative, of those outputs
+  /// Materials simulated with larger grains than the powder's; for each those that are the same powder at other sizes.
+  std::map<std::string, std::vector<std::string>> coarse_grained = {};
 };
 
 /// Throws data::InputError (78): a candidate outside the runs, an output without an emulator or without error.
 std::vector<Candidate> candidates_of(const data::Study& study, const std::vector<Emulator>& emulators,
                                      std::size_t case_index, const data::PlanSection& plan,
                                      const CandidateOptions& options = {});
+
+/// Of a material's output; none where there are no runs of it.
+const Emulator* emulator_of(const std::vector<Emulator>& emulators, const std::string& material, std::size_t output);
+
+/// Whether an emulator's runs reach a setting of all controls, SI.
+bool reaches(const data::Study& study, const Emulator& emulator, const std::vector<double>& setting);
 
 /// The sets that a case observes, as indices into Study::observations.
 std::vector<std::size_t> own_sets(const data::Study& study, std::size_t case_index);

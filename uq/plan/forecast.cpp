@@ -96,8 +96,8 @@ std::vector<std::vector<Verdict>> Forecast::words_of_draws(const std::vector<Ind
     for (std::size_t k = 0; k < paths_.size(); ++k) {
       if (!before[k].usable() || !after[k].usable()) continue;
       const VectorXd deviance = after[k].deviances(y);
-      facts[k] = after[k].facts(found_[k], before[k], found_deviance[k], deviance, thresholds_.profile_drop);
-      by_another[k] = after[k].ends_by_another(deviance, thresholds_.profile_drop);
+      facts[k] = after[k].facts(found_[k], before[k], found_deviance[k], deviance, profiles_[k].drop);
+      by_another[k] = after[k].ends_by_another(deviance, profiles_[k].drop);
       facts[k].influences = deviance.maxCoeff() > thresholds_.silent_deviance;
     }
     for (std::size_t k = 0; k < paths_.size(); ++k) {

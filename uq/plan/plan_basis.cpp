@@ -8,6 +8,7 @@
 
 #include "data/error.hpp"
 #include "data/random.hpp"
+#include "uq/plan/levels.hpp"
 
 namespace uq::plan {
 namespace {
@@ -105,6 +106,8 @@ PlanBasis::PlanBasis(const Study& of_study, const std::vector<Emulator>& emulato
       if (one.kind == CandidateKind::repeat) one.kind = CandidateKind::setting;
   if (options.budget) std::erase_if(candidates, [&](const Candidate& one) { return one.cost > *options.budget; });
   centre = options.prior ? prior_means(model) : found->best_fit.x;
+  const MatrixXd likely = options.prior ? prior_draws(model, 400, 1, options.seed).u : draws;
+  compare_levels(study, emulators, case_index, model, options.candidates, likely, centre, candidates);
   extended = extend(study, emulators, case_index, model, candidates, centre);
   look_out();
 }

@@ -1,9 +1,11 @@
 #include "uq/plan/plan_words.hpp"
-#include "uq/findings/study_units.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+
+#include "uq/findings/study_units.hpp"
 
 namespace uq::plan {
 namespace {
@@ -67,6 +69,37 @@ std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
   return text;
 }
 
+namespace {
+
+/// For each output what its levels of coarse graining say, over its candidates.
+std::vector<std::string> level_notes(const PlanReport& report) {
+  struct Range {
+    double low = 0.0, high = 0.0;
+  };
+  std::map<std::string, Range> ranges;
+  for (const PlanCandidate& one : report.candidates) {
+    if (!one.level_difference) continue;
+    const std::string reads = fmt::format("{}", fmt::join(one.outputs, " and "));
+    Range& range = ranges.try_emplace(reads, Range{*one.level_difference, *one.level_difference}).first->second;
+    range = {std::min(range.low, *one.level_difference), std::max(range.high, *one.level_difference)};
+  }
+  std::vector<std::string> notes;
+  for (const auto& [reads, range] : ranges) {
+    const std::string by = range.high - range.low < 0.005 ? fmt::format("{:.2g}", range.low)
+                                                          : fmt::format("{:.2g} to {:.2g}", range.low, range.high);
+    const char* said = range.high <= 1.0 ? "so that it counts as the powder's own"
+                       : range.low > 1.0 ? "so that it stays the model's"
+                                         : "and it counts as the powder's own where that is at most 1";
+    notes.push_back(
+        fmt::format("{}: two levels of coarse graining differ by {} of a reading's error, the surrogates' "
+                    "errors counted in, {}.",
+                    reads, by, said));
+  }
+  return notes;
+}
+
+}  // namespace
+
 std::vector<std::string> notes_of(const PlanBasis& basis, const PlanReport& report) {
   std::vector<std::string> notes;
   const auto some = [&](auto member) {
@@ -82,6 +115,7 @@ std::vector<std::string> notes_of(const PlanBasis& basis, const PlanReport& repo
     notes.push_back(
         "Outputs marked 'model only' come from enlarged grains: they need not mean the same in the real powder, "
         "and are ranked last.");
+  for (std::string& note : level_notes(report)) notes.push_back(std::move(note));
   for (const RowGroup& group : basis.sampled.model->groups)
     if (!group.emulator.doubt.empty())
       notes.push_back(

@@ -173,4 +173,14 @@ int number_count(const CaseModel& model) {
 
 const CaseModel& distinct_rows(const CaseModel& model) { return model.distinct ? *model.distinct : model; }
 
+Scatter scatter_of(const CaseModel& model, const Repeats& repeats, const Eigen::VectorXd& u) {
+  if (repeats.noise < 0)
+    return {.log_density = repeats.log_constant - 0.5 * repeats.scatter, .chi_squared = repeats.scatter};
+  const Unknown& unknown = model.unknowns[repeats.noise];
+  const double k = unknown.value(u[repeats.noise]), chi = repeats.scatter / (k * k);
+  return {.log_density = repeats.log_constant - 0.5 * chi - repeats.extra * std::log(k),
+          .chi_squared = chi,
+          .slope = (chi - repeats.extra) / k * unknown.slope(u[repeats.noise])};
+}
+
 }  // namespace uq

@@ -23,4 +23,11 @@ int number_count(const CaseModel& model);
 /// data::InputError (65) that says what to average.
 inline constexpr int settings_max = 400;
 
+/// What the scatter of repeats about their means says, with its slope along the noise's factor.
+struct Scatter {
+  double log_density = 0.0, chi_squared = 0.0;
+  double slope = 0.0;  ///< of the log density, to u of the factor's unknown
+};
+Scatter scatter_of(const CaseModel& model, const Repeats& repeats, const Eigen::VectorXd& u);
+
 }  // namespace uq

@@ -241,7 +241,7 @@ Figure profile_figure(const ParameterReport& parameter, const std::string& stem)
       "title '95 % ({0:.3g})', \\\n"
       "  '{2}.dat' index 'profile' using ($1*sx):2 with lines linecolor rgb '{3}' linewidth 2 "
       "title 'profile'",
-      deviance_95, plot::vermillion, stem, plot::blue);
+      parameter.profile_drop, plot::vermillion, stem, plot::blue);
   if (std::isfinite(parameter.map)) {
     figure.data += plot::block("map", {{parameter.map}, {0.0}});
     figure.script += fmt::format(

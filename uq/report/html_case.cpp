@@ -119,8 +119,10 @@ std::string doubts(const ParameterReport& parameter) {
 Markup profile_part(const CaseReport& result, const std::string& id, const Context& context) {
   Markup figures;
   std::size_t drawn = 0;
+  bool unknown_errors = false;
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     const ParameterReport& parameter = result.parameters[i];
+    unknown_errors = unknown_errors || parameter.profile_drop > deviance_95;
     if (parameter.profile_x.size() < 2 || parameter.profile_deviance.size() != parameter.profile_x.size()) continue;
     ++drawn;
     figures += figure(profile_figure(parameter, fmt::format("{}-profile-{}", id, i + 1)),
@@ -129,11 +131,17 @@ Markup profile_part(const CaseReport& result, const std::string& id, const Conte
                       context);
   }
   if (drawn == 0) return {};
+  const std::string longer = unknown_errors
+                                 ? fmt::format(
+                                       " With errors of known size that line would lie at {:.3g}. Their size "
+                                       "is unknown here, and found from the same observations.",
+                                       deviance_95)
+                                 : "";
   return tag::h3("Profile likelihood") +
          tag::p(
-             fmt::format("How much worse the best fit becomes when one parameter is held at a value. Where the curve "
-                         "stays below {:.3g}, the observations do not exclude the value.",
-                         deviance_95)) +
+             "How much worse the best fit becomes when one parameter is held at a value. Where the curve stays below "
+             "the broken line, the observations do not exclude the value." +
+             longer) +
          tag::div.is(drawn == 1 ? "pair single" : "pair")(figures);
 }
 

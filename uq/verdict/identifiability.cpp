@@ -83,6 +83,7 @@ ParameterReport describe_draws(const Unknown& unknown, const Eigen::VectorXd& u,
   const Eigen::VectorXd x = shown(unknown, profile.u);
   report.profile_x.assign(x.begin(), x.end());
   report.profile_deviance.assign(profile.deviance.begin(), profile.deviance.end());
+  report.profile_drop = profile.drop;
   return report;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "uq/posterior/posterior.hpp"
+#include "uq/verdict/interval_drop.hpp"
 
 namespace uq {
 namespace {
@@ -138,6 +139,7 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
   const std::vector<double> values = held_values(box, k, guides.draws.col(k), known, options);
   const auto count = static_cast<Eigen::Index>(values.size());
   Profile profile{.unknown = k,
+                  .drop = known.drops[k],
                   .u = Eigen::Map<const Eigen::VectorXd>(values.data(), count),
                   .deviance = Eigen::VectorXd(count),
                   .path = Eigen::MatrixXd(count, best.x.size()),
@@ -201,6 +203,7 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
   const Box box{model.lower(), model.upper()};
   Profiles found;
   climb(model, box, guides, 0.5 * options.thresholds.profile_drop, found);
+  found.drops = interval_drops(model, found.best.x, guides.draws, options.thresholds.profile_drop);
   found.influence = find_influence(model, found.best.x, guides.draws, options.thresholds);
   for (int k = 0; k < model.dimension(); ++k) {
     if (!model.unknowns[k].own) continue;

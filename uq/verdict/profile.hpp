@@ -3,7 +3,8 @@
 //   deviance(u_k) = 2 (max over all u of log L - max over the other unknowns of log L),
 // log L that of the data and of what calibrated the nuisances, their priors (posterior.hpp, log_certificates),
 // by constrained optimisation (Raue et al., Bioinformatics 25:1923 (2009)). The 95 % interval is where it stays
-// below deviance_95 (thresholds.hpp); it may have several parts. An end is closed when the deviance crosses before the
+// below deviance_95 (thresholds.hpp), or below more where the size of the errors is unknown (interval_drop.hpp); it may
+// have several parts. An end is closed when the deviance crosses before the
 // support ends, open when the support's bound is met first: a bound is not a finding. Nor is an end that is there only
 // because another unknown has come to the end of its range, so that the ridge cannot go on (pinned): with that unknown
 // held where the data would have it, the deviance at the end would be at least twice as large. That side is open, too.
@@ -47,6 +48,7 @@ struct ProfileBarrier {
 
 struct Profile {
   int unknown = 0;
+  double drop = deviance_95;                          ///< deviance at the interval's ends
   Eigen::VectorXd u;                                  ///< held values, rising
   Eigen::VectorXd deviance;                           ///< at each
   Eigen::MatrixXd path;                               ///< points x unknowns: the maximiser at each
@@ -68,6 +70,7 @@ Maximum maximum_likelihood(const CaseModel& model, const Eigen::MatrixXd& starts
 struct Profiles {
   std::vector<Profile> profiles;
   Maximum best;                      ///< largest likelihood of all that was seen
+  Eigen::VectorXd drops;             ///< per unknown: deviance at the ends of its interval
   std::vector<Maximum> maxima;       ///< other places where the likelihood is largest, nearly as good
   std::vector<Influence> influence;  ///< per unknown
   std::vector<RangeEnd> ends;        ///< of unknowns whose range ends where the likelihood still rises

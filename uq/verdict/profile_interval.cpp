@@ -69,13 +69,13 @@ std::optional<int> pinned(const CaseModel& model, const Box& box, const Profiles
     // The middle of where the path has it inside the interval.
     double least = box.upper[other], most = box.lower[other];
     for (Eigen::Index i = 0; i < profile.u.size(); ++i)
-      if (profile.deviance[i] <= thresholds.profile_drop) {
+      if (profile.deviance[i] <= profile.drop) {
         least = std::min(least, profile.path(i, other));
         most = std::max(most, profile.path(i, other));
       }
     const Held k{profile.unknown, end.at};
     const double held = deviance_with_held(model, box, k, {other, 0.5 * (least + most)}, end.maximiser, all.best.value);
-    if (held >= thresholds.pinned_drops * thresholds.profile_drop) return other;
+    if (held >= thresholds.pinned_drops * profile.drop) return other;
   }
   return {};
 }
@@ -124,7 +124,7 @@ bool in_doubt(const CaseModel& model, const Yardstick& yardstick, const Profile&
 void finish_profile(const CaseModel& model, const Profiles& all, Profile& profile,
                     const VerdictThresholds& thresholds) {
   const Box box{model.lower(), model.upper()};
-  const double drop = thresholds.profile_drop;
+  const double drop = profile.drop;
   profile.deviance = (2.0 * (all.best.value - profile.deviance.array())).max(0.0);
   const Eigen::Index count = profile.u.size();
   profile.deviance_at_low = profile.deviance[0];

@@ -212,7 +212,7 @@ std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, c
     std::array<int, possible_words.size()> counts = {};
     for (Eigen::Index b = 0; b < repeats.rows(); ++b) {
       const WordFacts facts = words_of.facts(found[k], words_of, before, words_of.deviances(repeats.row(b).transpose()),
-                                             thresholds.profile_drop);
+                                             found[k].profile->drop);
       const Verdict word = word_of(facts, thresholds);
       for (std::size_t w = 0; w < possible_words.size(); ++w) counts[w] += possible_words[w] == word ? 1 : 0;
     }

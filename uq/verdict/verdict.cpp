@@ -109,7 +109,9 @@ std::vector<std::pair<std::string, std::string>> describe(const VerdictThreshold
   return {
       {"contraction for identified", fmt::format("at least {:g}", thresholds.contraction_identified)},
       {"contraction for weakly identified", fmt::format("at least {:g}", thresholds.contraction_weak)},
-      {"profile likelihood interval", fmt::format("deviance up to {:.4g} (95 %)", thresholds.profile_drop)},
+      {"profile likelihood interval",
+       fmt::format("deviance up to {:.4g} (95 %); more where the size of the errors is unknown",
+                   thresholds.profile_drop)},
       {"no influence",
        fmt::format("its whole range changes the predictions by less than {:g} of the surrogate's sds, or the deviance "
                    "by less than {:g}; contraction below {:g}, or an interval open on both sides",

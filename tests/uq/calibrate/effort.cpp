@@ -1,6 +1,7 @@
 #include "uq/calibrate/effort.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "data/error.hpp"
 
@@ -21,7 +22,7 @@ Large large() {
   large.study.outputs.resize(1);
   data::ObservationSet set{.name = "bench"};
   set.outputs = {0};
-  set.points.resize(200);
+  for (int i = 0; i < 200; ++i) set.points.push_back({.controls = {1.0 * i}});
   large.study.observations = {set};
   data::CalibrationCase one;
   one.name = "powder";
@@ -35,13 +36,13 @@ Large large() {
 
 TEST_CASE("a calibration that takes hours is said before it starts, with what to thin") {
   const Large given = large();
-  // 200 readings x 1000^2 x 2e5 evaluations / 5e9 a second = 8000 s.
+  // (200 x 1000^2 + 200^2 x 1000 + 200^3 / 3) x 2e5 evaluations / 5e9 a second = 9700 s.
   const std::vector<std::string> notes = uq::effort_notes(given.study, given.table, {});
   REQUIRE(notes.size() == 1);
-  CHECK_THAT(notes.front(), Contains("200 readings, each predicted from 1000 runs") && Contains("about 2.2 h ") &&
-                                Contains("runs_most = 333"));
-  // A ninth of it is a quarter of an hour, and a hundredth is not worth a word.
-  CHECK_THAT(uq::effort_notes(given.study, given.table, {.runs_most = 333}).front(), Contains("15 min "));
+  CHECK_THAT(notes.front(), Contains("200 different readings, each predicted from 1000 runs") &&
+                                Contains("about 2.7 h ") && Contains("take 16 % of it ([surrogate] runs_most = 333)") &&
+                                Contains("a third of the readings 29 %"));
+  // A hundredth is not worth a word.
   CHECK(uq::effort_notes(given.study, given.table, {.runs_most = 100}).empty());
 }
 
@@ -58,4 +59,15 @@ TEST_CASE("a surrogate larger than the memory is refused with its estimate and t
                                  Contains("1.4 GB") && Contains("this machine has 1 GB") &&
                                  Contains("lower it to 3700"));
   }
+}
+
+TEST_CASE("many different settings take long of few runs, too, and readings of one setting again do not") {
+  Large given = large();
+  given.table.rows.resize(60);
+  std::vector<data::Observation>& points = given.study.observations[0].points;
+  points.clear();
+  for (int i = 0; i < 400; ++i) points.push_back({.controls = {1.0 * i}});
+  CHECK(uq::effort_notes(given.study, given.table, {}).size() == 1);
+  for (data::Observation& point : points) point.controls = {std::floor(point.controls[0] / 40.0)};
+  CHECK(uq::effort_notes(given.study, given.table, {}).empty());
 }
