@@ -144,8 +144,34 @@ WithoutRuns calibrate_without(const data::Study& study, const std::vector<Fitted
   return found;
 }
 
+/// Tells how far a calibration is, in steps of like length.
+class Steps {
+ public:
+  Steps(std::function<void(const std::string&, double)> progress, double count)
+      : progress_(std::move(progress)), count_(count) {}
+  void begin(std::string step) {
+    step_ = std::move(step);
+    if (progress_) progress_(step_, begun_ / count_);
+    begun_ += 1.0;
+  }
+  void skip(std::size_t steps) { begun_ += static_cast<double>(steps); }
+  /// Of the step that was begun, to be told the share that is done.
+  std::function<void(double)> within() const {
+    if (!progress_) return {};
+    return [this](double share) { progress_(step_, (begun_ - 1.0 + 0.9 * share) / count_); };
+  }
+  void end() const {
+    if (progress_) progress_("done", 1.0);
+  }
+
+ private:
+  std::function<void(const std::string&, double)> progress_;
+  double count_, begun_ = 0.0;
+  std::string step_;
+};
+
 std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& sampled, std::size_t case_index,
-                                   const CalibrateOptions& options) {
+                                   const CalibrateOptions& options, Steps& steps) {
   std::vector<ErrorScan> scans;
   if (sampled.draws.chains.empty()) return scans;
   const Eigen::VectorXd truth = mean_prediction(*sampled.model, sampled.draws.pooled());
@@ -155,7 +181,9 @@ std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& 
   for (double& value : normal) value = random.normal();
   std::uint32_t index = 0;
   for (const double error : options.error_scan) {
+    steps.begin(fmt::format("case {} with errors of {:g} %", sampled.model->name, 100.0 * error));
     CalibrateOptions own = options;
+    own.mixture.progress = own.nuts.progress = steps.within();
     own.seed = data::child_seed(seed_of(study, options), data::Purpose::error_scan_seed,
                                 static_cast<std::uint32_t>(case_index << 8) + index++);
     // Words alone are asked of it, and the case's own search has looked for maxima.
@@ -182,19 +210,15 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
     throw data::InputError(data::ExitStatus::bad_study, {study.file, "the study has no [[calibrate]] case",
                                                          "add one: what to free, given which observations"});
   const auto begin = std::chrono::steady_clock::now();
-  const double steps = 1.0 + static_cast<double>(study.cases.size()) * (options.error_scan.empty() ? 1.0 : 2.0);
-  double done = 0.0;
-  auto tell = [&](const std::string& step) {
-    if (options.progress) options.progress(step, done / steps);
-    done += 1.0;
-  };
+  const std::size_t of_case = 1 + options.error_scan.size();
+  Steps steps(options.progress, 1.0 + static_cast<double>(study.cases.size() * of_case));
   Calibration result;
   CalibrationReport& report = result.report;
   report.study_name = study.name;
   report.study_description = study.description;
   report.study_file = study.file;
 
-  tell("surrogates");
+  steps.begin("surrogates");
   data::RunTable rows = table;
   const std::vector<data::Finding> findings =
       options.findings ? *options.findings
@@ -217,12 +241,9 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   const std::vector<FittedSurrogate> others = without_outlying(study, rows, surrogates, result.surrogates);
 
   for (std::size_t index = 0; index < study.cases.size(); ++index) {
-    tell("case " + study.cases[index].name);
+    steps.begin("case " + study.cases[index].name);
     CalibrateOptions sampling = options;
-    if (options.progress)
-      sampling.nuts.progress = [&](double share) {
-        options.progress("case " + study.cases[index].name, (done - 1.0 + 0.9 * share) / steps);
-      };
+    sampling.nuts.progress = sampling.mixture.progress = steps.within();
     result.cases.push_back(sample_case(study, emulators, index, sampling));
     const SampledCase& sampled = result.cases.back();
     CalibrateOptions own = options;
@@ -241,10 +262,11 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
       put_failed_prediction_first(made, made.predictions.back().name);
     }
     if (made.doubt.empty()) made.comparisons = compare_models(study, sampled, index, own);
-    if (options.error_scan.empty()) continue;
-    tell("error scan of case " + study.cases[index].name);
-    if (!made.doubt.empty()) continue;  // what another error would give is as doubtful
-    for (auto& scan : scan_errors(study, sampled, index, own)) report.error_scan.push_back(std::move(scan));
+    if (!made.doubt.empty()) {  // what another error would give is as doubtful
+      steps.skip(options.error_scan.size());
+      continue;
+    }
+    for (auto& scan : scan_errors(study, sampled, index, own, steps)) report.error_scan.push_back(std::move(scan));
   }
   report.warning = !first_lines(report).empty();
   report.thresholds = describe(options.identify.thresholds);
@@ -253,7 +275,7 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   report.provenance.emplace_back("runs in the table", std::to_string(data::used_rows(rows)));
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   report.provenance.emplace_back("calibration time", fmt::format("{:.1f} s", elapsed.count()));
-  if (options.progress) options.progress("done", 1.0);
+  steps.end();
   return result;
 }
 

@@ -18,6 +18,9 @@ namespace {
 using data::Purpose;
 using data::RandomStream;
 
+// Shares of the time that a sampling takes.
+constexpr double after_scouts = 0.1, after_tempering = 0.4, after_adapting = 0.5, after_search = 0.6;
+
 /// Tempers each chain from its own share of the scouts.
 std::vector<Population> temper_all(const Target& target, const Scouts& scouts, std::vector<Walker>& walkers,
                                    const MixtureSamplerOptions& options) {
@@ -127,6 +130,7 @@ void draw(const Target& target, const std::vector<Population>& populations, std:
       extend(moves[half_of(i)], walkers[i], result.chains[i], more);
     });
     drawn += more;
+    if (options.progress) options.progress(1.0 - (1.0 - after_search) * options.draws / (options.draws + drawn));
     assess(result, options.stop);
     if (result.converged) result.reason = disagreement(result, halves, options);
     result.converged = result.converged && result.reason.empty();
@@ -192,13 +196,18 @@ Draws sample_as_given(const Target& target, const MixtureSamplerOptions& given) 
 
   // Scouts, and each chain's warm-up from its own share of them.
   RandomStream random(options.seed, Purpose::scouts);
+  const auto tell = [&](double share) {
+    if (options.progress) options.progress(share);
+  };
   const Scouts scouts = send_scouts(target, random, options.explore);
+  tell(after_scouts);
   result.scouts = static_cast<int>(scouts.x.rows());
   result.evaluations += result.scouts;
   std::vector<Walker> walkers;
   for (std::size_t c = 0; c < chains; ++c)
     walkers.push_back({.random = RandomStream(options.seed, Purpose::sampler, static_cast<std::uint32_t>(c)), .x = {}});
   const std::vector<Population> populations = temper_all(target, scouts, walkers, options);
+  tell(after_tempering);
   std::size_t best = 0;
   for (std::size_t c = 0; c < chains; ++c) {
     result.evaluations += populations[c].evaluations;
@@ -213,7 +222,9 @@ Draws sample_as_given(const Target& target, const MixtureSamplerOptions& given) 
   std::vector<Half> halves = make_halves(populations, options);
   begin_halves(target, scouts, halves, options);
   adapt_halves(target, halves, options);
+  tell(after_adapting);
   const std::vector<LastMaximum> last = find_unknown(target, scouts, populations[best], halves, options, result);
+  tell(after_search);
   for (int learnt = 0;; ++learnt) {
     draw(target, populations, halves, walkers, options, result);
     const std::string doubt = evidence_doubt(halves, options);

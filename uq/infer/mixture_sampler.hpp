@@ -25,6 +25,7 @@
 //
 // A result depends on (seed, chain) alone, never on the number of threads.
 #include <cstdint>
+#include <functional>
 
 #include "uq/infer/draws.hpp"
 #include "uq/infer/log_density.hpp"
@@ -52,6 +53,8 @@ struct MixtureSamplerOptions {
   StopRule stop = {};
   int threads = 0;  ///< 0: as many as the machine has
   std::uint64_t seed = 1;
+  /// Told how much is done, by the share of time that the steps take; how many rounds of draws there will be is not known.
+  std::function<void(double share)> progress = {};
 };
 
 Draws sample_mixture(const Target& target, const MixtureSamplerOptions& options = {});
