@@ -119,6 +119,27 @@ ParameterAgain again(const ParameterReport& parameter) {
           .sd = parameter.sd};
 }
 
+/// Tells how far a calibration is.
+class Steps {
+ public:
+  Steps(const CalibrateOptions& options, double length) : progress_(options.progress), length_(length) {}
+  void begin(std::string step, double length = 1.0) {
+    step_ = std::move(step);
+    from_ = to_;
+    to_ += length / length_;
+    tell(0.0);
+  }
+  /// What is done of the step that was begun.
+  void tell(double share) const {
+    if (progress_) progress_(step_, from_ + share * (to_ - from_));
+  }
+
+ private:
+  std::function<void(const std::string&, double)> progress_;
+  std::string step_;
+  double length_, from_ = 0.0, to_ = 0.0;
+};
+
 }  // namespace
 
 WithoutRuns calibrate_without(const data::Study& study, const std::vector<FittedSurrogate>& others,
@@ -144,34 +165,8 @@ WithoutRuns calibrate_without(const data::Study& study, const std::vector<Fitted
   return found;
 }
 
-/// Tells how far a calibration is, in steps of like length.
-class Steps {
- public:
-  Steps(std::function<void(const std::string&, double)> progress, double count)
-      : progress_(std::move(progress)), count_(count) {}
-  void begin(std::string step) {
-    step_ = std::move(step);
-    if (progress_) progress_(step_, begun_ / count_);
-    begun_ += 1.0;
-  }
-  void skip(std::size_t steps) { begun_ += static_cast<double>(steps); }
-  /// Of the step that was begun, to be told the share that is done.
-  std::function<void(double)> within() const {
-    if (!progress_) return {};
-    return [this](double share) { progress_(step_, (begun_ - 1.0 + 0.9 * share) / count_); };
-  }
-  void end() const {
-    if (progress_) progress_("done", 1.0);
-  }
-
- private:
-  std::function<void(const std::string&, double)> progress_;
-  double count_, begun_ = 0.0;
-  std::string step_;
-};
-
 std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& sampled, std::size_t case_index,
-                                   const CalibrateOptions& options, Steps& steps) {
+                                   const CalibrateOptions& options) {
   std::vector<ErrorScan> scans;
   if (sampled.draws.chains.empty()) return scans;
   const Eigen::VectorXd truth = mean_prediction(*sampled.model, sampled.draws.pooled());
@@ -181,9 +176,13 @@ std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& 
   for (double& value : normal) value = random.normal();
   std::uint32_t index = 0;
   for (const double error : options.error_scan) {
-    steps.begin(fmt::format("case {} with errors of {:g} %", sampled.model->name, 100.0 * error));
     CalibrateOptions own = options;
-    own.mixture.progress = own.nuts.progress = steps.within();
+    const double before = static_cast<double>(index) / static_cast<double>(options.error_scan.size());
+    if (options.progress)
+      own.mixture.progress = own.nuts.progress = [&, before](double share) {
+        options.progress(fmt::format("errors of {:g} %", 100.0 * error),
+                         before + 0.9 * share / static_cast<double>(options.error_scan.size()));
+      };
     own.seed = data::child_seed(seed_of(study, options), data::Purpose::error_scan_seed,
                                 static_cast<std::uint32_t>(case_index << 8) + index++);
     // Words alone are asked of it, and the case's own search has looked for maxima.
@@ -210,8 +209,8 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
     throw data::InputError(data::ExitStatus::bad_study, {study.file, "the study has no [[calibrate]] case",
                                                          "add one: what to free, given which observations"});
   const auto begin = std::chrono::steady_clock::now();
-  const std::size_t of_case = 1 + options.error_scan.size();
-  Steps steps(options.progress, 1.0 + static_cast<double>(study.cases.size() * of_case));
+  const double scan = static_cast<double>(options.error_scan.size());  // as long as a case for each error
+  Steps steps(options, 1.0 + static_cast<double>(study.cases.size()) * (1.0 + scan));
   Calibration result;
   CalibrationReport& report = result.report;
   report.study_name = study.name;
@@ -243,7 +242,7 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   for (std::size_t index = 0; index < study.cases.size(); ++index) {
     steps.begin("case " + study.cases[index].name);
     CalibrateOptions sampling = options;
-    sampling.nuts.progress = sampling.mixture.progress = steps.within();
+    sampling.nuts.progress = sampling.mixture.progress = [&](double share) { steps.tell(0.9 * share); };
     result.cases.push_back(sample_case(study, emulators, index, sampling));
     const SampledCase& sampled = result.cases.back();
     CalibrateOptions own = options;
@@ -262,11 +261,11 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
       put_failed_prediction_first(made, made.predictions.back().name);
     }
     if (made.doubt.empty()) made.comparisons = compare_models(study, sampled, index, own);
-    if (!made.doubt.empty()) {  // what another error would give is as doubtful
-      steps.skip(options.error_scan.size());
-      continue;
-    }
-    for (auto& scan : scan_errors(study, sampled, index, own, steps)) report.error_scan.push_back(std::move(scan));
+    if (options.error_scan.empty()) continue;
+    steps.begin("error scan of case " + study.cases[index].name, scan);
+    if (!made.doubt.empty()) continue;  // what another error would give is as doubtful
+    own.progress = [&](const std::string&, double share) { steps.tell(share); };
+    for (auto& one : scan_errors(study, sampled, index, own)) report.error_scan.push_back(std::move(one));
   }
   report.warning = !first_lines(report).empty();
   report.thresholds = describe(options.identify.thresholds);
@@ -275,7 +274,7 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   report.provenance.emplace_back("runs in the table", std::to_string(data::used_rows(rows)));
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   report.provenance.emplace_back("calibration time", fmt::format("{:.1f} s", elapsed.count()));
-  steps.end();
+  if (options.progress) options.progress("done", 1.0);
   return result;
 }
 
