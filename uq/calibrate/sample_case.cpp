@@ -7,6 +7,7 @@
 #include "uq/calibrate/calibrate.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/predictive.hpp"
+#include "uq/posterior/prior_reach.hpp"
 #include "uq/posterior/support.hpp"
 
 namespace uq {
@@ -103,7 +104,7 @@ SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& e
     unknown.cut = NormalLaw{.mean = u.mean(), .sd = std::sqrt((u.array() - u.mean()).square().mean())};
   }
   sampled.model = std::make_shared<const CaseModel>(std::move(model));
-  check_priors(study, *sampled.model);
+  refuse_excluding_priors(study, *sampled.model);
   // Each case draws its own numbers.
   CalibrateOptions own = options;
   own.seed =

@@ -1,18 +1,14 @@
 #include "uq/posterior/predictive.hpp"
 
-#include <fmt/core.h>
 #include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
-#include "data/error.hpp"
 #include "data/random.hpp"
 #include "uq/findings/study_units.hpp"
 #include "uq/infer/diagnostics.hpp"
 #include "uq/infer/factor.hpp"
-#include "uq/infer/optimise.hpp"
 #include "uq/posterior/fisher.hpp"
 #include "uq/posterior/posterior.hpp"
 
@@ -227,106 +223,6 @@ std::vector<PredictiveCurve> predictive_curves(const data::Study& study, const C
 
 std::vector<PredictiveCurve> mean_curves(const data::Study& study, const CaseModel& model, const Eigen::VectorXd& u) {
   return curves_of(study, model, u.transpose(), Eigen::VectorXd::Zero(1));
-}
-
-namespace {
-
-/// How far each measured number lies from the prediction of the most likely point that the priors allow, in sd: where
-/// draws of the priors all miss a number, the priors may still allow it. Allowed is the central 99.99 % of each prior.
-Eigen::VectorXd least_deviations(const CaseModel& model, const Eigen::MatrixXd& draws, const Eigen::VectorXd& y) {
-  constexpr Eigen::Index starts = 3;
-  constexpr double tail = 5e-5;
-  Eigen::VectorXd low(model.dimension()), high(model.dimension());
-  for (Eigen::Index s = 0; s < low.size(); ++s) {
-    low[s] = model.unknowns[s].prior.inverse_cdf(tail);
-    high[s] = model.unknowns[s].prior.inverse_cdf(1.0 - tail);
-  }
-  const Eigen::VectorXd level = log_likelihoods(model, draws);
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(draws.rows()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return level[a] > level[b]; });
-  order.resize(std::min<std::size_t>(order.size(), starts));
-  Eigen::MatrixXd from = draws(order, Eigen::all);
-  for (Eigen::Index i = 0; i < from.rows(); ++i)
-    from.row(i) = from.row(i).cwiseMax(low.transpose()).cwiseMin(high.transpose());
-  const Maximum best =
-      maximise([&](const Eigen::VectorXd& u) { return log_likelihood_gradient(model, u); }, {low, high}, from);
-  const StackedPrediction prediction = predict(model, best.x);
-  return (y - prediction.mean).cwiseQuotient(prediction.total().diagonal().cwiseSqrt()).cwiseAbs();
-}
-
-}  // namespace
-
-void check_priors(const data::Study& study, const CaseModel& model) {
-  const Eigen::VectorXd y = observed(model);
-  const std::vector<RowOrigin> from = origins(model);
-  data::RandomStream random(study.seed, data::Purpose::prior_predictive);
-  const Eigen::Index d = model.dimension();
-  // Smallest distance of each measured number from the predictions, in sd, and which side they lie on.
-  struct Reach {
-    Eigen::VectorXd nearest;
-    Eigen::VectorXd lowest, highest;
-    Eigen::MatrixXd draws;
-  };
-  auto reach = [&](int count, auto draw) {
-    Reach found{.nearest = Eigen::VectorXd::Constant(y.size(), 1e300),
-                .lowest = Eigen::VectorXd::Constant(y.size(), 1e300),
-                .highest = Eigen::VectorXd::Constant(y.size(), -1e300),
-                .draws = Eigen::MatrixXd(count, d)};
-    Eigen::MatrixXd& draws = found.draws;
-    for (int i = 0; i < count; ++i) draws.row(i) = draw().transpose();
-    for_each_law(model, draws, [&](Eigen::Index i, const std::vector<GroupLaw>& laws) {
-      const RowMoments prediction = moments(model, laws, draws.row(i).transpose());
-      const Eigen::VectorXd sd = prediction.variance.cwiseSqrt();
-      const Eigen::VectorXd away = (y - prediction.mean).cwiseQuotient(sd);
-      found.nearest = found.nearest.cwiseMin(away.cwiseAbs());
-      found.lowest = found.lowest.cwiseMin(prediction.mean);
-      found.highest = found.highest.cwiseMax(prediction.mean);
-    });
-    return found;
-  };
-  const Reach prior = reach(400, [&] {
-    Eigen::VectorXd u(d);
-    for (Eigen::Index s = 0; s < d; ++s) u[s] = model.unknowns[s].prior.draw(random);
-    return u;
-  });
-  // A value between the lowest and the highest prediction is within reach, however few draws came near it.
-  auto out_of_reach = [&](const Reach& found, Eigen::Index i) {
-    return found.nearest[i] > 5.0 && (y[i] < found.lowest[i] || y[i] > found.highest[i]);
-  };
-  std::vector<Eigen::Index> excluded;
-  for (Eigen::Index i = 0; i < y.size(); ++i)
-    if (out_of_reach(prior, i)) excluded.push_back(i);
-  if (excluded.empty()) return;
-  const Eigen::VectorXd least = least_deviations(model, prior.draws, y);
-  std::erase_if(excluded, [&](Eigen::Index i) { return least[i] <= 5.0; });
-  if (excluded.empty()) return;
-  const Reach range = reach(1000, [&] {
-    // Parameters anywhere in their ranges; a nuisance has no range but its prior's.
-    Eigen::VectorXd u(d);
-    for (Eigen::Index s = 0; s < d; ++s) {
-      const Unknown& unknown = model.unknowns[s];
-      u[s] = unknown.nuisance ? unknown.prior.draw(random) : random.uniform();
-    }
-    return u;
-  });
-  std::vector<data::Problem> problems;
-  for (const Eigen::Index i : excluded) {
-    if (range.nearest[i] > 3.0 && out_of_reach(range, i))
-      continue;  // out of the model's reach altogether: it does not fit
-    const data::ObservationSet& set = study.observations[from[i].set];
-    const data::Unit& unit = study.outputs[from[i].output].unit;
-    std::string names;
-    for (const auto& unknown : model.unknowns) names += (names.empty() ? "" : ", ") + unknown.label;
-    problems.push_back(
-        {fmt::format("{}:{}", set.file, set.points[from[i].point].line),
-         fmt::format("case '{}': the priors of {} only allow {:.4g} to {:.4g}{}, but {:.4g}{} was "
-                     "measured; the parameters' ranges would allow it",
-                     model.name, names, unit.from_si(prior.lowest[i]), unit.from_si(prior.highest[i]),
-                     data::behind_number(unit.symbol), unit.from_si(y[i]), data::behind_number(unit.symbol)),
-         "widen or move the priors"});
-  }
-  if (!problems.empty()) throw data::InputError(data::ExitStatus::bad_study, problems);
 }
 
 }  // namespace uq

@@ -52,9 +52,6 @@ Eigen::MatrixXd replicates(const CaseModel& model, const Eigen::MatrixXd& draws,
 /// Mean over draws of the predicted means of all rows, SI.
 Eigen::VectorXd mean_prediction(const CaseModel& model, const Eigen::MatrixXd& draws);
 
-/// Throws data::InputError (78) when the priors alone put a measured value out of reach that the ranges would allow.
-void check_priors(const data::Study& study, const CaseModel& model);
-
 /// Whether the case itself observes a set (index in Study::observations), not one linked with it.
 bool is_own_set(const data::Study& study, const CaseModel& model, std::size_t set);
 
