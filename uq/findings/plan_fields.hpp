@@ -20,6 +20,13 @@ void visit_fields(Visit&& visit, T& p) {
   visit("floor", p.floor);
 }
 
+template <class Visit, SameAs<PlanLevel> T>
+void visit_fields(Visit&& visit, T& l) {
+  visit("material", l.material);
+  visit("difference", l.difference);
+  visit("doubt", l.doubt);
+}
+
 template <class Visit, SameAs<PlanCandidate> T>
 void visit_fields(Visit&& visit, T& c) {
   visit("name", c.name);
@@ -29,7 +36,7 @@ void visit_fields(Visit&& visit, T& c) {
   visit("settings", c.settings);
   visit("cost", c.cost);
   visit("model_only", c.model_only);
-  visit("level_difference", c.level_difference);
+  visit("levels", c.levels);
   visit("assumed_error", c.assumed_error);
   visit("error", c.error);
   visit("information", c.information);

@@ -83,6 +83,15 @@ struct PlannedParameter {
   std::string floor;  ///< why no number of readings is enough; empty: some is, or not asked
 };
 
+/// Another level of coarse graining of a candidate's powder, and how far its output lies from the candidate's there
+/// (uq/plan/levels.hpp), in errors of a reading.
+struct PlanLevel {
+  std::string material;
+  std::optional<double> difference;  ///< none: its runs do not have the output there
+  std::optional<double> doubt;       ///< the surrogates' error of the difference
+  bool agrees() const { return difference && doubt && *difference * *difference + *doubt * *doubt <= 1.0; }
+};
+
 /// A measurement that could be made next.
 struct PlanCandidate {
   std::string name;  ///< as the terminal shows it: "torque at 300 rpm"
@@ -92,7 +101,7 @@ struct PlanCandidate {
   std::vector<std::map<std::string, double>> settings;  ///< controls of each of its points, their units
   double cost = 1.0;
   bool model_only = false;                            ///< the output need not mean the same in the real powder
-  std::optional<double> level_difference;             ///< of two levels of coarse graining, in errors of a reading
+  std::vector<PlanLevel> levels;                      ///< the powder's other levels of coarse graining
   bool assumed_error = false;                         ///< nobody stated an error of this output
   std::string error;                                  ///< "2 %"
   double information = 0.0, information_error = 0.0;  ///< about all parameters together, nats

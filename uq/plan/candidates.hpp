@@ -10,6 +10,7 @@
 #include "data/plan.hpp"
 #include "data/study.hpp"
 #include "uq/findings/kinds.hpp"
+#include "uq/findings/results.hpp"
 #include "uq/posterior/case_model.hpp"
 
 namespace uq::plan {
@@ -26,8 +27,7 @@ struct Candidate {
   bool stated_error = false;                  ///< the plan states its error
   bool assumed_error = false;                 ///< nobody stated one
   bool model_only = false;                    ///< the output need not mean the same in the real powder
-  /// Between two levels of coarse graining, in errors of a reading (levels.hpp); none: not compared.
-  std::optional<double> level_difference = {};
+  std::vector<PlanLevel> levels = {};         ///< other levels of the powder's coarse graining (levels.hpp)
   int readings = 1;
   double cost = 1.0;
 };

@@ -36,7 +36,8 @@ bool comparable(const Study& study, const std::vector<Emulator>& emulators, cons
   });
 }
 
-/// A candidate's readings: means and surrogate's variances at each draw, draws x readings, and the readings' variances.
+/// What the surrogates say of a candidate's readings, means and variances at each draw, draws x readings; and the variance
+/// of each reading's own error.
 struct Readings {
   MatrixXd mean, variance;
   VectorXd noise;
@@ -46,28 +47,38 @@ std::vector<Readings> readings_of(const Study& study, const std::vector<Emulator
                                   const CaseModel& sampled, const std::vector<Candidate>& candidates,
                                   const MatrixXd& draws, const VectorXd& u) {
   const ExtendedCase extended = extend(study, emulators, case_index, sampled, candidates, u);
-  const VectorXd noise = predict(extended.model, u).noise;
-  std::vector<Readings> found;
-  for (const std::vector<Index>& rows : extended.planned) {
-    const auto count = static_cast<Index>(rows.size());
-    found.push_back({MatrixXd(draws.rows(), count), MatrixXd(draws.rows(), count), noise(rows)});
-  }
-  for_each_law(extended.model, draws, [&](Index draw, const std::vector<GroupLaw>& laws) {
-    const StackedPrediction prediction = stack(extended.model, laws, draws.row(draw).transpose());
-    const VectorXd variance = prediction.covariance.diagonal();
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      found[i].mean.row(draw) = prediction.mean(extended.planned[i]).transpose();
-      found[i].variance.row(draw) = variance(extended.planned[i]).transpose();
+  const CaseModel& model = extended.model;
+  const VectorXd noise = predict(model, u).noise;
+  MatrixXd mean(draws.rows(), model.row_count()), variance = mean;
+  Index first = 0;
+  for (const RowGroup& group : model.groups) {
+    const Index rows = group.observed.size();
+    for (Index draw = 0; draw < draws.rows(); ++draw) {
+      const VectorXd at = draws.row(draw).transpose();
+      const surrogate::Prediction prediction = group.emulator.predict(rows_at(group, at).topRows(rows));
+      for (Index i = 0; i < rows; ++i) {
+        const double factor = meter_at(group.measurement, model.unknowns, at, i).factor;
+        mean(draw, first + i) = factor * prediction.mean[i];
+        variance(draw, first + i) = factor * factor * prediction.covariance(i, i);
+      }
     }
-  });
+    first += rows;
+  }
+  std::vector<Readings> found;
+  for (const std::vector<Index>& rows : extended.planned)
+    found.push_back({mean(Eigen::all, rows), variance(Eigen::all, rows), noise(rows)});
   return found;
 }
 
-/// d at the worst of a candidate's readings.
-double difference(const Readings& own, const Readings& other) {
-  const Eigen::ArrayXXd square =
-      (own.mean - other.mean).array().square() + own.variance.array() + other.variance.array();
-  return (square.colwise().mean().transpose() / own.noise.array()).sqrt().maxCoeff();
+/// At the worst of a candidate's readings.
+void compare(const Readings& own, const Readings& other, PlanLevel& level) {
+  const Eigen::ArrayXd noise = own.noise.array();
+  const Eigen::ArrayXd apart = (own.mean - other.mean).array().square().colwise().mean().transpose() / noise;
+  const Eigen::ArrayXd doubt = (own.variance + other.variance).array().colwise().mean().transpose() / noise;
+  Index worst = 0;
+  (apart + doubt).maxCoeff(&worst);
+  level.difference = std::sqrt(apart[worst]);
+  level.doubt = std::sqrt(doubt[worst]);
 }
 
 }  // namespace
@@ -82,6 +93,7 @@ void compare_levels(const Study& study, const std::vector<Emulator>& emulators, 
     const auto levels = options.coarse_grained.find(candidates[i].material);
     if (!candidates[i].model_only || levels == options.coarse_grained.end()) continue;
     for (const std::string& level : levels->second) {
+      candidates[i].levels.push_back({.material = level});
       if (!comparable(study, emulators, candidates[i], level)) continue;
       own.push_back(candidates[i]);
       other.push_back(candidates[i]);
@@ -93,11 +105,13 @@ void compare_levels(const Study& study, const std::vector<Emulator>& emulators, 
   const MatrixXd used = thinned(draws, asked);
   const std::vector<Readings> here = readings_of(study, emulators, case_index, sampled, own, used, u);
   const std::vector<Readings> there = readings_of(study, emulators, case_index, sampled, other, used, u);
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    Candidate& candidate = candidates[of[i]];
-    const double found = difference(here[i], there[i]);
-    candidate.level_difference = std::min(candidate.level_difference.value_or(found), found);
-    candidate.model_only = *candidate.level_difference > 1.0;
+  for (std::size_t i = 0; i < own.size(); ++i)
+    for (PlanLevel& level : candidates[of[i]].levels)
+      if (level.material == other[i].material) compare(here[i], there[i], level);
+  for (const std::size_t i : of) {
+    const std::vector<PlanLevel>& levels = candidates[i].levels;
+    candidates[i].model_only =
+        !std::all_of(levels.begin(), levels.end(), [](const PlanLevel& level) { return level.agrees(); });
   }
 }
 

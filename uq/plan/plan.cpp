@@ -36,7 +36,7 @@ PlanCandidate describe(const PlanBasis& basis, std::size_t i) {
                     .settings = {},
                     .cost = candidate.cost,
                     .model_only = candidate.model_only,
-                    .level_difference = candidate.level_difference,
+                    .levels = candidate.levels,
                     .assumed_error = candidate.assumed_error,
                     .error = error_text(basis.study, candidate),
                     .parameters = {}};

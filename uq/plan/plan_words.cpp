@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <utility>
 
 #include "uq/findings/study_units.hpp"
 
@@ -71,29 +73,53 @@ std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
 
 namespace {
 
-/// For each output what its levels of coarse graining say, over its candidates.
+/// "0.52", or "0.52 to 1.6".
+std::string range_text(double low, double high) {
+  return high - low < 0.005 * high ? fmt::format("{:.2g}", low) : fmt::format("{:.2g} to {:.2g}", low, high);
+}
+
+/// What all candidates of an output say of one other level of coarse graining.
+struct LevelRange {
+  double low = HUGE_VAL, high = 0.0, doubt = 0.0;
+  int agree = 0, unsure = 0, candidates = 0;
+};
+
+/// For each output what the powder's levels of coarse graining say.
 std::vector<std::string> level_notes(const PlanReport& report) {
-  struct Range {
-    double low = 0.0, high = 0.0;
-  };
-  std::map<std::string, Range> ranges;
-  for (const PlanCandidate& one : report.candidates) {
-    if (!one.level_difference) continue;
-    const std::string reads = fmt::format("{}", fmt::join(one.outputs, " and "));
-    Range& range = ranges.try_emplace(reads, Range{*one.level_difference, *one.level_difference}).first->second;
-    range = {std::min(range.low, *one.level_difference), std::max(range.high, *one.level_difference)};
-  }
+  std::map<std::pair<std::string, std::pair<std::string, std::string>>, LevelRange> ranges;
+  for (const PlanCandidate& one : report.candidates)
+    for (const PlanLevel& level : one.levels) {
+      LevelRange& range = ranges[{fmt::format("{}", fmt::join(one.outputs, " and ")), {one.material, level.material}}];
+      ++range.candidates;
+      if (!level.difference) continue;
+      range.low = std::min(range.low, *level.difference);
+      range.high = std::max(range.high, *level.difference);
+      range.doubt = std::max(range.doubt, *level.doubt);
+      range.agree += level.agrees() ? 1 : 0;
+      range.unsure += !level.agrees() && *level.difference <= 1.0 ? 1 : 0;
+    }
   std::vector<std::string> notes;
-  for (const auto& [reads, range] : ranges) {
-    const std::string by = range.high - range.low < 0.005 ? fmt::format("{:.2g}", range.low)
-                                                          : fmt::format("{:.2g} to {:.2g}", range.low, range.high);
-    const char* said = range.high <= 1.0 ? "so that it counts as the powder's own"
-                       : range.low > 1.0 ? "so that it stays the model's"
-                                         : "and it counts as the powder's own where that is at most 1";
+  for (const auto& [of, range] : ranges) {
+    const auto& [reads, levels] = of;
+    if (range.high < range.low) {
+      notes.push_back(
+          fmt::format("{}: '{}' is the same powder as '{}' at another coarse graining, but its runs do not "
+                      "have this output at these settings over the same parameters, so nothing is compared: "
+                      "make such runs, or it stays the model's.",
+                      reads, levels.second, levels.first));
+      continue;
+    }
+    std::string said = "it stays the model's where they do not agree";
+    if (range.agree == range.candidates)
+      said = "the two agree";
+    else if (range.agree == 0 && range.unsure == range.candidates)
+      said = fmt::format("the surrogates know the difference to {:.2g} only: more runs of the two would tell",
+                         range.doubt);
+    else if (range.agree == 0 && range.unsure == 0)
+      said = "so that it stays the model's";
     notes.push_back(
-        fmt::format("{}: two levels of coarse graining differ by {} of a reading's error, the surrogates' "
-                    "errors counted in, {}.",
-                    reads, by, said));
+        fmt::format("{}: the levels of coarse graining '{}' and '{}' differ by {} of a reading's error; {}.", reads,
+                    levels.first, levels.second, range_text(range.low, range.high), said));
   }
   return notes;
 }
