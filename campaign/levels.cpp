@@ -44,8 +44,8 @@ void check_levels(const data::Study& study, const data::Material& one, const dem
         Property{"fill", 1e3 * dem::summarise_bed(own).mass, 1e3 * dem::summarise_bed(its).mass, "g"}})
     if (std::abs(property.one - property.other) > same * std::max(property.one, property.other))
       problems.push_back({one.place,
-                          fmt::format("materials '{}' and '{}' are both powder '{}', and their {} is {:.3g} {} and "
-                                      "{:.3g} {}",
+                          fmt::format("materials '{}' and '{}' are both powder '{}', and their {} is {:.4g} {} and "
+                                      "{:.4g} {}",
                                       one.name, other.name, one.powder, property.name, property.one, property.unit,
                                       property.other, property.unit),
                           "levels of a powder are the same grains in the same bed: correct it, or name two powders"});

@@ -8,6 +8,39 @@
 #include "data/log_faults.hpp"
 
 namespace cli {
+namespace {
+
+/// Speeds that are held more than once, with torques further apart than their errors say.
+std::vector<std::string> repeats_apart(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
+                                       const Idle& idle) {
+  constexpr double same_speed = 0.01, far = 5.0;  // of the speed; standard errors of the difference
+  std::vector<std::string> warnings;
+  std::vector<bool> told(plateaus.size(), false);
+  for (std::size_t i = 0; i < plateaus.size(); ++i) {
+    if (told[i]) continue;
+    std::vector<double> values;
+    double apart = 0.0;
+    for (std::size_t j = i; j < plateaus.size(); ++j) {
+      if (std::abs(plateaus[j].speed - plateaus[i].speed) > same_speed * std::abs(plateaus[i].speed)) continue;
+      const data::MeanTorque one = observed_torque(plateaus[i], idle, i), other = observed_torque(plateaus[j], idle, j);
+      values.push_back(other.value);
+      told[j] = true;
+      apart = std::max(apart, std::abs(other.value - one.value) / std::hypot(one.error, other.error));
+    }
+    if (values.size() < 2 || !(apart > far)) continue;
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    warnings.push_back(fmt::format(
+        "{:.4g} {} is held {} times, and its torques, {:.4g} to {:.4g} {}, lie {:.2g} standard errors apart: what "
+        "changes "
+        "between the holds is larger than the errors here (raise these in the file, or let the case find them: noise = "
+        "\"unknown\")",
+        log.speed_unit.from_si(plateaus[i].speed), log.speed_unit.symbol, values.size(),
+        log.torque_unit.from_si(*least), log.torque_unit.from_si(*most), log.torque_unit.symbol, apart));
+  }
+  return warnings;
+}
+
+}  // namespace
 
 std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vector<data::Plateau>& plateaus,
                                      const Idle& idle) {
@@ -33,6 +66,7 @@ std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vect
           "{:.4g} {} at {:.4g} s: too short for its correlation, or still drifting: its error is too small; measure "
           "longer",
           log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, log.time[plateau.first]));
+  for (std::string& repeat : repeats_apart(log, plateaus, idle)) warnings.push_back(std::move(repeat));
   return warnings;
 }
 

@@ -39,6 +39,7 @@ enum class FindingKind {
   prior_not_stated,           ///< of a parameter whose range spans decades
   errors_apart,               ///< common errors of several sets that may be one meter's
   error_left_out,             ///< that a file states and the study does not
+  saturated,                  ///< several rows with one extreme value
 };
 template <>
 inline constexpr std::array texts_of<FindingKind> = {"copied rows",
@@ -60,7 +61,8 @@ inline constexpr std::array texts_of<FindingKind> = {"copied rows",
                                                      "standard errors",
                                                      "prior not stated",
                                                      "errors apart",
-                                                     "error left out"};
+                                                     "error left out",
+                                                     "saturated"};
 
 struct Finding {
   FindingKind kind = FindingKind::unit;

@@ -40,7 +40,7 @@ TEST_CASE("materials that are other grains, or another fill, or equally enlarged
   };
   refused([](auto& w) { w.cases["fine"].material.coarse_graining = 1.0; }, "diameter over coarse_graining");
   refused([](auto& w) { w.cases["fine"].material.density = 2500.0; }, "density");
-  refused([](auto& w) { w.cases["fine"].rig.fill_mass = 1.5e-3; }, "fill is 3 g and 1.5 g");
+  refused([](auto& w) { w.cases["fine"].rig.fill_mass = 1.5e-3; }, "fill is 3.001 g and 1.5 g");
   refused([](auto& w) { w.cases["fine"].material.coarse_graining = 20.0; }, "at a coarse_graining of 20");
 }
 

@@ -330,6 +330,7 @@ std::vector<Finding> check_data(const data::Study& study, data::RunTable& table,
   }
   add(check_priors(study));
   add(check_observations(study, table, thresholds));
+  add(check_saturated(study, table));
   if (!data::has(all, Severity::refusal)) add(check_cases(study, table, low));
   return all;
 }

@@ -46,6 +46,7 @@ std::vector<data::Finding> check_design(const data::Study& study, const data::Ru
                                         const DataCheckThresholds& thresholds);
 std::vector<data::Finding> check_observations(const data::Study& study, const data::RunTable& table,
                                               const DataCheckThresholds& thresholds);
+std::vector<data::Finding> check_saturated(const data::Study& study, const data::RunTable& table);
 std::vector<data::Finding> check_priors(const data::Study& study);
 std::vector<data::Finding> check_cases(const data::Study& study, const data::RunTable& table,
                                        const std::optional<data::RunTable>& low);

@@ -16,6 +16,7 @@
 #include "uq/posterior/prior_conflict.hpp"
 #include "uq/posterior/support.hpp"
 #include "uq/verdict/contradiction.hpp"
+#include "uq/verdict/outlying_reading.hpp"
 
 namespace uq {
 namespace {
@@ -231,6 +232,24 @@ void add_poor_fit(Words& words, const FitCheck& check) {
   words.remedies.insert(words.remedies.begin(), "Look first at what the residuals have in common.");
 }
 
+const char* const check_reading =
+    "Check that reading, its unit and its decimal point first; where it is wrong, take its line out.";
+
+std::string outlying_in_words(const std::string& name, const data::Study& study, const OutlyingReading& one) {
+  return fmt::format(
+      "case {}: {} lies {:.2g} errors of the others from what they say (chance {:.1g}), and widens the "
+      "unknown errors by a factor of {:.2g}",
+      name, reading_in_words(study, one.origin), one.errors, one.chance, one.widening);
+}
+
+/// What one wrong reading widens is no finding.
+void put_first(Words& words, const data::Study& study, const OutlyingReading& one) {
+  words.finding +=
+      fmt::format(" {} is far from what all others say, and widens every value.", reading_in_words(study, one.origin));
+  words.consequence = "Look at that reading before any value is used.";
+  words.remedies = {check_reading};
+}
+
 /// A posterior between a prior and data that contradict it is a compromise that neither of them supports.
 void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
                          const VerdictThresholds& thresholds) {
@@ -363,7 +382,7 @@ void say_lone_reading(CaseReport& report, Words& words, const data::Study& study
   report.lone_reading = line_of(study, lone.origin);
   words.finding += fmt::format(" {} contradicts all others, which fit without it (p {:.2g}).",
                                reading_in_words(study, lone.origin), lone.p_without);
-  words.remedies = {"Check that reading, its unit and its decimal point first; where it is wrong, take its line out."};
+  words.remedies = {check_reading};
 }
 
 }  // namespace
@@ -416,12 +435,16 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   if (!found.fits && !lone) add_misfit(words, report, study, model, found, options.identify.thresholds);
   if (doubt.of != DoubtOf::nothing) say_doubt(report, doubt.of, words, study);
   if (lone) say_lone_reading(report, words, study, *lone);
+  const std::optional<OutlyingReading> outlying =
+      found.fits ? outlying_reading(model, found.best_fit.x, judged.thresholds) : std::nullopt;
+  if (outlying) put_first(words, study, *outlying);
   if (found.fits && report.doubt.empty() && found.check.best_fit_p < judged.thresholds.poor_fit_p)
     add_poor_fit(words, found.check);
   report.finding = words.finding;
   report.consequence = words.consequence;
   report.remedy = shown_remedy(words);
   add_warnings(report, doubt.of, sampled);
+  if (outlying) report.warnings.push_back(outlying_in_words(report.name, study, *outlying));
   add_prior_conflicts(report, sampled, draws, judged.thresholds);
   return report;
 }

@@ -1,5 +1,7 @@
 #include "uq/findings/headline.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -70,12 +72,20 @@ std::string next_step(const CaseReport& result, const Standing& found) {
   if (!result.plan || result.plan->candidates.empty()) return " Next: demcal plan says what to measure.";
   const PlanCandidate& first = result.plan->candidates.front();
   if (!first.teaches) return " No candidate of the plan would teach more of " + result.plan->about + ".";
-  const bool never = std::any_of(first.parameters.begin(), first.parameters.end(), [&](const PlannedParameter& one) {
-    return one.name == result.plan->about && !one.repeats_needed && !one.floor.empty();
-  });
-  return " Next: measure " + first.name + (first.model_only ? ", if it means the same in the real powder" : "") +
-         (never ? "; it narrows " + result.plan->about + ", but however often it is read it does not identify it."
-                : ".");
+  const std::string next =
+      " Next: measure " + first.name + (first.model_only ? ", if it means the same in the real powder" : "");
+  const auto asked = std::find_if(first.parameters.begin(), first.parameters.end(),
+                                  [&](const PlannedParameter& one) { return one.name == result.plan->about; });
+  const bool floored = asked != first.parameters.end() && !asked->repeats_needed && !asked->floor.empty();
+  if (!floored) return next + ".";
+  double identified = 0.0;
+  for (const WordProbability& word : asked->words)
+    if (word.verdict == Verdict::identified) identified = word.probability;
+  constexpr double likely = 0.5;
+  return identified >= likely
+             ? next + fmt::format("; {} is then identified with a probability of {:.0f} %.", asked->name,
+                                  100.0 * identified)
+             : next + "; it narrows " + asked->name + ", but however often it is read it does not identify it.";
 }
 
 }  // namespace

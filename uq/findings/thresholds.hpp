@@ -18,6 +18,9 @@ struct VerdictThresholds {
   double told_apart_sd = 3.0;
   /// Deviance that a parameter's whole range brings about: below it the data say nothing of the parameter.
   double silent_deviance = 0.3;
+  /// By how much the data's errors might be lowered. An effect that would be silent even then is none; one that would not is
+  /// hidden by the errors.
+  double errors_lowered = 30.0;
   /// Deviance at an interval's end, in profile_drops, with the parameter that stands at the end of its range held in
   /// the middle of what the data allow it: from here on most of the interval is that parameter's range.
   double pinned_drops = 2.0;
@@ -32,6 +35,7 @@ struct VerdictThresholds {
   double curve_share = 0.3;        ///< of the room that independent values would fill, at most: a curved relation
   double mode_weight = 0.01;       ///< posterior probability of a separate region, at least
   double prior_conflict_sd = 3.0;  ///< between the data and a stated prior; from here on they contradict each other
+  double outlying_chance = 0.01;   ///< of a reading as far from all others, errors of unknown size; below, it is named
   double borderline_probability = 0.2;  ///< of another word over repeats of the data, at least
 };
 

@@ -60,8 +60,8 @@ Forecast::Forecast(const ExtendedCase& extended, const CaseModel& judged, const 
   data_ = observed(extended.model)(extended.measured);
 }
 
-std::vector<std::vector<Verdict>> Forecast::words_of_draws(const std::vector<Index>& rows, double readings,
-                                                           Uncertain uncertain, OthersEnds ends) const {
+std::vector<std::vector<WordFacts>> Forecast::facts_of_draws(const std::vector<Index>& rows, double readings,
+                                                             Uncertain uncertain, OthersEnds ends) const {
   const auto measured = static_cast<Index>(extended_.measured.size()), planned = static_cast<Index>(rows.size());
   std::vector<Index> both = extended_.measured;
   both.insert(both.end(), rows.begin(), rows.end());
@@ -79,7 +79,7 @@ std::vector<std::vector<Verdict>> Forecast::words_of_draws(const std::vector<Ind
   }
   data::RandomStream random(seed_, data::Purpose::planned_words);
   const auto draws = static_cast<int>(std::min<Index>(readings_drawn, outlook_.draws()));
-  std::vector<std::vector<Verdict>> words(paths_.size());
+  std::vector<std::vector<WordFacts>> found(paths_.size());
   for (int b = 0; b < draws; ++b) {
     ReadingLaw law = outlook_.law(b * outlook_.draws() / draws, rows);
     if (uncertain == Uncertain::all) {
@@ -106,15 +106,46 @@ std::vector<std::vector<Verdict>> Forecast::words_of_draws(const std::vector<Ind
         one.open_low = one.open_low || by_another[k].first;
         one.open_high = one.open_high || by_another[k].second;
       }
-      words[k].push_back(word_of(one, thresholds_));
+      found[k].push_back(one);
     }
+  }
+  return found;
+}
+
+std::vector<double> Forecast::width_factors(const std::vector<Index>& rows, const std::vector<double>& widths) const {
+  std::vector<double> factors(paths_.size(), 1.0);
+  const std::vector<Unknown>& unknowns = extended_.model.unknowns;
+  const bool errors_known =
+      std::none_of(unknowns.begin(), unknowns.end(), [](const Unknown& unknown) { return unknown.only_widens(); });
+  if (errors_known || widths.size() != factors.size()) return factors;
+  const std::vector<std::vector<WordFacts>> drawn = facts_of_draws(rows, 1.0, Uncertain::all, OthersEnds::open);
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    double sum = 0.0;
+    for (const WordFacts& one : drawn[k]) sum += std::sqrt(std::max(1.0 - one.contraction, 0.0));
+    const double mean = sum / std::max(1.0, static_cast<double>(drawn[k].size()));
+    const double wanted = widths[k] * std::sqrt(std::max(1.0 - found_[k].facts.contraction, 0.0));
+    if (mean > 0.0 && wanted > 0.0) factors[k] = std::pow(wanted / mean, 2);
+  }
+  return factors;
+}
+
+std::vector<Verdict> Forecast::words_of(const std::vector<WordFacts>& drawn, double width_factor) const {
+  std::vector<Verdict> words;
+  for (WordFacts one : drawn) {
+    one.contraction = 1.0 - width_factor * (1.0 - one.contraction);
+    one.contraction_within = 1.0 - width_factor * (1.0 - one.contraction_within);
+    words.push_back(word_of(one, thresholds_));
   }
   return words;
 }
 
-std::vector<std::vector<WordProbability>> Forecast::words(const std::vector<Index>& rows, double readings) const {
+std::vector<std::vector<WordProbability>> Forecast::words(const std::vector<Index>& rows,
+                                                          const std::vector<double>& widths) const {
+  const std::vector<double> factors = width_factors(rows, widths);
+  const std::vector<std::vector<WordFacts>> facts = facts_of_draws(rows, 1.0, Uncertain::all, OthersEnds::open);
   std::vector<std::vector<WordProbability>> found;
-  for (const std::vector<Verdict>& drawn : words_of_draws(rows, readings, Uncertain::all, OthersEnds::open)) {
+  for (std::size_t k = 0; k < facts.size(); ++k) {
+    const std::vector<Verdict> drawn = words_of(facts[k], factors[k]);
     std::vector<WordProbability> words;
     for (const Verdict word : all_words)
       if (const auto count = std::count(drawn.begin(), drawn.end(), word); count > 0)
@@ -126,18 +157,21 @@ std::vector<std::vector<WordProbability>> Forecast::words(const std::vector<Inde
   return found;
 }
 
-double Forecast::identified(const std::vector<Index>& rows, double readings, int parameter, Uncertain uncertain,
+double Forecast::identified(const std::vector<Index>& rows, double readings, Asked asked, Uncertain uncertain,
                             OthersEnds ends) const {
-  const std::vector<Verdict> drawn = words_of_draws(rows, readings, uncertain, ends)[parameter];
+  const std::vector<Verdict> drawn =
+      words_of(facts_of_draws(rows, readings, uncertain, ends)[asked.parameter], asked.width_factor);
   return static_cast<double>(std::count(drawn.begin(), drawn.end(), Verdict::identified)) /
          std::max(1.0, static_cast<double>(drawn.size()));
 }
 
-ReadingsNeeded Forecast::readings_needed(const std::vector<Index>& rows, int parameter) const {
+ReadingsNeeded Forecast::readings_needed(const std::vector<Index>& rows, int parameter,
+                                         const std::vector<double>& widths) const {
+  const Asked asked{parameter, width_factors(rows, widths)[parameter]};
   const auto enough_with = [&](Uncertain uncertain, OthersEnds ends = OthersEnds::open) {
-    return identified(rows, readings_most, parameter, uncertain, ends) >= sure;
+    return identified(rows, readings_most, asked, uncertain, ends) >= sure;
   };
-  const double at_most = identified(rows, readings_most, parameter, Uncertain::all);
+  const double at_most = identified(rows, readings_most, asked, Uncertain::all);
   if (at_most < sure) {
     Floor floor = Floor::structural;
     if (enough_with(Uncertain::not_surrogate))
@@ -155,7 +189,7 @@ ReadingsNeeded Forecast::readings_needed(const std::vector<Index>& rows, int par
     while (enough > few + 1) {
       const int middle = few < enough / 4 ? std::max(few + 1, enough / 4) : (few + enough) / 2;
       const auto [known, is_new] = chance.try_emplace(middle);
-      if (is_new) known->second = identified(rows, middle, parameter, Uncertain::all);
+      if (is_new) known->second = identified(rows, middle, asked, Uncertain::all);
       (known->second >= wanted ? enough : few) = middle;
     }
     return enough;

@@ -36,20 +36,31 @@ class Forecast {
   Forecast(const ExtendedCase& extended, const CaseModel& judged, const Identification& found, const Outlook& outlook,
            const VerdictThresholds& thresholds, std::uint64_t seed);
 
-  /// Per own parameter, by falling probability, after the rows were read `readings` times each and averaged.
-  std::vector<std::vector<WordProbability>> words(const std::vector<Eigen::Index>& rows, double readings = 1.0) const;
+  /// Per own parameter, by falling probability, after the rows were read. `widths`: the sds that are expected then over
+  /// those now, per own parameter. Where the errors' size is unknown a path holds it at what suits the data that are
+  /// there, so that its widths come too small or too large; they are scaled to these.
+  std::vector<std::vector<WordProbability>> words(const std::vector<Eigen::Index>& rows,
+                                                  const std::vector<double>& widths) const;
 
-  /// Readings for "identified" with 90 % probability, at most a thousand.
-  ReadingsNeeded readings_needed(const std::vector<Eigen::Index>& rows, int parameter) const;
+  /// Readings for "identified" with 90 % probability, at most a thousand. `widths`: as above, after one.
+  ReadingsNeeded readings_needed(const std::vector<Eigen::Index>& rows, int parameter,
+                                 const std::vector<double>& widths) const;
 
  private:
   /// What is uncertain of the law of data, beside their noise.
   enum class Uncertain { all, not_surrogate, nothing };
   /// Whether an interval that ends where another parameter's range ends is closed.
   enum class OthersEnds { open, closed };
-  std::vector<std::vector<Verdict>> words_of_draws(const std::vector<Eigen::Index>& rows, double readings,
-                                                   Uncertain uncertain, OthersEnds ends) const;
-  double identified(const std::vector<Eigen::Index>& rows, double readings, int parameter, Uncertain uncertain,
+  /// A parameter, and by how much the variances along its path are scaled.
+  struct Asked {
+    int parameter = 0;
+    double width_factor = 1.0;
+  };
+  std::vector<std::vector<WordFacts>> facts_of_draws(const std::vector<Eigen::Index>& rows, double readings,
+                                                     Uncertain uncertain, OthersEnds ends) const;
+  std::vector<double> width_factors(const std::vector<Eigen::Index>& rows, const std::vector<double>& widths) const;
+  std::vector<Verdict> words_of(const std::vector<WordFacts>& drawn, double width_factor) const;
+  double identified(const std::vector<Eigen::Index>& rows, double readings, Asked asked, Uncertain uncertain,
                     OthersEnds ends = OthersEnds::open) const;
 
   const ExtendedCase& extended_;

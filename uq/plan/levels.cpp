@@ -91,7 +91,7 @@ void compare_levels(const Study& study, const std::vector<Emulator>& emulators, 
   std::vector<std::size_t> of;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const auto levels = options.coarse_grained.find(candidates[i].material);
-    if (!candidates[i].model_only || levels == options.coarse_grained.end()) continue;
+    if (levels == options.coarse_grained.end()) continue;
     for (const std::string& level : levels->second) {
       candidates[i].levels.push_back({.material = level});
       if (!comparable(study, emulators, candidates[i], level)) continue;
@@ -111,6 +111,7 @@ void compare_levels(const Study& study, const std::vector<Emulator>& emulators, 
   for (const std::size_t i : of) {
     const std::vector<PlanLevel>& levels = candidates[i].levels;
     candidates[i].model_only =
+        candidates[i].model_only &&
         !std::all_of(levels.begin(), levels.end(), [](const PlanLevel& level) { return level.agrees(); });
   }
 }

@@ -20,8 +20,8 @@
 
 namespace uq::plan {
 
-/// Writes `levels` into candidates that are the model's alone, for each other level d and w at the worst of their readings,
-/// and takes that mark from those where all agree. A level whose runs do not have the output, do not reach the settings or
+/// Writes `levels` into the candidates, for each other level d and w at the worst of their readings, and takes the mark
+/// "model only" from those where all agree. What the case reads has no such mark; that its levels differ is said. A level whose runs do not have the output, do not reach the settings or
 /// vary other parameters is not compared, and is no agreement. `draws`: rows in u; `u`: where errors in per cent are taken.
 void compare_levels(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
                     const CaseModel& sampled, const CandidateOptions& options, const Eigen::MatrixXd& draws,

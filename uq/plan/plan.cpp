@@ -45,8 +45,11 @@ PlanCandidate describe(const PlanBasis& basis, std::size_t i) {
   const Information information = basis.information_of(rows);
   one.information = information.total.value;
   one.information_error = information.total.error;
+  std::vector<double> widths;
+  for (std::size_t k = 0; k < information.about.size(); ++k)
+    widths.push_back(information.about[k].sd_after.value / basis.sd_now(static_cast<int>(k)));
   std::vector<std::vector<WordProbability>> words;
-  if (basis.forecast) words = basis.forecast->words(rows);
+  if (basis.forecast) words = basis.forecast->words(rows, widths);
   for (std::size_t k = 0; k < information.about.size(); ++k) {
     const InformationAbout& about = information.about[k];
     PlannedParameter parameter{.name = basis.name_of(static_cast<int>(k)),
@@ -93,7 +96,9 @@ void count_readings(const PlanBasis& basis, std::vector<PlanCandidate>& all, con
   ask_first([](const Candidate& one) { return one.settings.size() > 1; });
   for_each_index(static_cast<int>(asked.size()), basis.options.threads, [&](int i) {
     const std::size_t which = asked[i];
-    const ReadingsNeeded needed = basis.forecast->readings_needed(basis.extended.planned[which], basis.about);
+    std::vector<double> widths;
+    for (const PlannedParameter& one : all[which].parameters) widths.push_back(one.sd_after / one.sd_now);
+    const ReadingsNeeded needed = basis.forecast->readings_needed(basis.extended.planned[which], basis.about, widths);
     PlannedParameter& parameter = all[which].parameters[basis.about];
     parameter.repeats_needed = needed.count;
     parameter.repeats_low = needed.low;

@@ -82,6 +82,7 @@ std::string range_text(double low, double high) {
 struct LevelRange {
   double low = HUGE_VAL, high = 0.0, doubt = 0.0;
   int agree = 0, unsure = 0, candidates = 0;
+  bool measured = false;  ///< the case reads it
 };
 
 /// For each output what the powder's levels of coarse graining say.
@@ -91,6 +92,7 @@ std::vector<std::string> level_notes(const PlanReport& report) {
     for (const PlanLevel& level : one.levels) {
       LevelRange& range = ranges[{fmt::format("{}", fmt::join(one.outputs, " and ")), {one.material, level.material}}];
       ++range.candidates;
+      range.measured = range.measured || (!one.model_only && !level.agrees());
       if (!level.difference) continue;
       range.low = std::min(range.low, *level.difference);
       range.high = std::max(range.high, *level.difference);
@@ -115,6 +117,8 @@ std::vector<std::string> level_notes(const PlanReport& report) {
     else if (range.agree == 0 && range.unsure == range.candidates)
       said = fmt::format("the surrogates know the difference to {:.2g} only: more runs of the two would tell",
                          range.doubt);
+    else if (range.measured)
+      said = "the parameters are found through it, and hang on the coarse graining by as much";
     else if (range.agree == 0 && range.unsure == 0)
       said = "so that it stays the model's";
     notes.push_back(

@@ -198,6 +198,7 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
     one.surrogate_share = surrogate.shares[k];
     one.common = common[k];
     one.facts.influences = all.influence[k].some || limited(one.facts, thresholds);
+    one.hidden = all.influence[k].hidden;
     one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);
     words.push_back(word_of(one.facts, thresholds));
     facts.push_back({one.facts, &found.profiles[k]});

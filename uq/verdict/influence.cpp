@@ -163,6 +163,8 @@ std::vector<Influence> find_influence(const CaseModel& model, const Eigen::Vecto
     const double least = thresholds.told_apart_sd * thresholds.told_apart_sd;
     influence.shown = effect > least * doubt || ends_effect > least * ends_doubt;
     influence.some = influence.shown && influence.deviance >= thresholds.silent_deviance;
+    const double lowered = influence.deviance * thresholds.errors_lowered * thresholds.errors_lowered;
+    influence.hidden = influence.shown && !influence.some && lowered >= thresholds.profile_drop;
   }
   return found;
 }

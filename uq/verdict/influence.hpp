@@ -56,6 +56,7 @@ struct Influence {
   double deviance = 0.0;  ///< that the whole range brings about, largest of the points looked at
   double doubt = 0.0;     ///< the surrogate's variance of such a change, in the same unit
   bool some = true;       ///< shown, and large enough for the data
+  bool hidden = false;    ///< shown, and too small for the data's errors, but not for smaller ones
 };
 
 /// Per unknown of the model; nuisances have some. `draws`: rows in u, of which a few are looked at beside `best`.

@@ -114,8 +114,11 @@ std::vector<std::pair<std::string, std::string>> describe(const VerdictThreshold
                    thresholds.profile_drop)},
       {"no influence",
        fmt::format("its whole range changes the predictions by less than {:g} of the surrogate's sds, or the deviance "
-                   "by less than {:g}; contraction below {:g}, or an interval open on both sides",
-                   thresholds.told_apart_sd, thresholds.silent_deviance, thresholds.contraction_weak)},
+                   "by less than {:g}, and would with errors {:g} times smaller; contraction below {:g}, or an "
+                   "interval open on "
+                   "both sides",
+                   thresholds.told_apart_sd, thresholds.silent_deviance, thresholds.errors_lowered,
+                   thresholds.contraction_weak)},
       {"interval open for another parameter's range",
        fmt::format("deviance at its end at least {:g} times as large with that parameter in the middle of its own "
                    "interval",
@@ -137,6 +140,8 @@ std::vector<std::pair<std::string, std::string>> describe(const VerdictThreshold
        fmt::format("along at least {:g} of the interval the others can keep the predictions the same, to {:g} of what "
                    "the parameter does alone, the surrogate's error counted in",
                    thresholds.structural_span, thresholds.same_share)},
+      {"reading far from all others, errors of unknown size",
+       fmt::format("chance below {:g} among so many readings", thresholds.outlying_chance)},
       {"borderline", fmt::format("another word has a probability of at least {:g} over repeats of the measurement",
                                  thresholds.borderline_probability)},
   };

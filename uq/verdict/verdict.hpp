@@ -60,6 +60,7 @@ struct ParameterEvidence {
   bool undecided = false;           ///< the surrogate is not sharp enough to tell
   double surrogate_share = 0.0;     ///< of the variance, where two values are compared
   CommonShare common = {};          ///< held by errors that repeated readings share
+  bool hidden = false;              ///< without influence only since the data's errors are large
   double silent_sds = 0.0;  ///< of the data's errors: what the surrogate's own error leaves room for, without influence
 };
 

@@ -351,7 +351,7 @@ std::string remedy_of(const std::vector<CommonError>& errors) {
 std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict verdict) {
   if (verdict != Verdict::not_identified && verdict != Verdict::weakly_identified) return {};
   const WordFacts& facts = parameter.facts;
-  if (!facts.influences) return Reason::no_influence;
+  if (!facts.influences) return parameter.hidden ? Reason::practical : Reason::no_influence;
   if (parameter.runs_end_low || parameter.runs_end_high) return Reason::unsupported;
   if (parameter.common.share > mostly && parameter.surrogate_share <= mostly) return Reason::common_error;
   if (parameter.structural) return Reason::structural;
