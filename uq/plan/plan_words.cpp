@@ -107,7 +107,7 @@ std::vector<std::string> level_notes(const PlanReport& report) {
       notes.push_back(
           fmt::format("{}: '{}' is the same powder as '{}' at another coarse graining, but its runs do not "
                       "have this output at these settings over the same parameters, so nothing is compared: "
-                      "make such runs, or it stays the model's.",
+                      "make such runs to see whether the two agree.",
                       reads, levels.second, levels.first));
       continue;
     }
