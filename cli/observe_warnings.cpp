@@ -31,9 +31,8 @@ std::vector<std::string> repeats_apart(const data::TorqueLog& log, const std::ve
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     warnings.push_back(fmt::format(
         "{:.4g} {} is held {} times, and its torques, {:.4g} to {:.4g} {}, lie {:.2g} standard errors apart: what "
-        "changes "
-        "between the holds is larger than the errors here (raise these in the file, or let the case find them: noise = "
-        "\"unknown\")",
+        "changes between the holds is larger than the errors here (raise these in the file, or let the case find them: "
+        "noise = \"unknown\")",
         log.speed_unit.from_si(plateaus[i].speed), log.speed_unit.symbol, values.size(),
         log.torque_unit.from_si(*least), log.torque_unit.from_si(*most), log.torque_unit.symbol, apart));
   }

@@ -190,3 +190,23 @@ TEST_CASE("a machine that stands still within a hold, and a zero that moves, are
   const auto moved = folder.demcal({"observe", "moves.csv"});
   CHECK_THAT(moved.err, Contains("its zero moves") && !Contains("take it off (--idle"));
 }
+
+TEST_CASE("a speed that is held twice, at torques further apart than their errors, is said") {
+  const Folder folder;
+  const auto log = [](double second) {
+    data::RandomStream random(5, data::Purpose::test);
+    std::string text = "time [s],torque [mN m],rpm\n";
+    for (int i = 0; i < 6000; ++i) {
+      const int hold = i / 2000;
+      const double torque = hold == 1 ? 6.0 : (hold == 0 ? 5.0 : second);
+      text += fmt::format("{:.2f},{:.6f},{}\n", 0.01 * i, torque + 0.05 * random.normal(), hold == 1 ? 200 : 100);
+    }
+    return text;
+  };
+  write(folder, "apart.csv", log(5.5));
+  write(folder, "alike.csv", log(5.001));
+  const auto apart = folder.demcal({"observe", "apart.csv"}), alike = folder.demcal({"observe", "alike.csv"});
+  CHECK(apart.status == 2);
+  CHECK_THAT(apart.err, Contains("100 rpm is held 2 times") && Contains("standard errors apart"));
+  CHECK(alike.status == 0);
+}
