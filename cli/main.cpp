@@ -21,7 +21,7 @@ namespace {
 int status(data::ExitStatus s) { return static_cast<int>(s); }
 
 /// Keeps the memory of matrices of some hundred rows for the next one. A likelihood makes and drops them by the hundred
-/// thousand, and giving each back to the system took a quarter of a calibration's time.
+/// thousand, and giving each back to the system took a quarter of the time of a calibration on 400 readings.
 void keep_freed_memory() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, 256 << 20);

@@ -8,6 +8,7 @@
 #include "data/random.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/refine/acquire.hpp"
+#include "uq/verdict/interval_drop.hpp"
 
 namespace uq::plan {
 namespace {
@@ -91,20 +92,17 @@ std::vector<std::vector<WordFacts>> Forecast::facts_of_draws(const std::vector<I
     }
     VectorXd y(measured + planned);
     y << data_, law.mean;
-    std::vector<WordFacts> facts(paths_.size());
-    std::vector<std::pair<bool, bool>> by_another(paths_.size(), {false, false});
     for (std::size_t k = 0; k < paths_.size(); ++k) {
-      if (!before[k].usable() || !after[k].usable()) continue;
-      const VectorXd deviance = after[k].deviances(y);
-      facts[k] = after[k].facts(found_[k], before[k], found_deviance[k], deviance, profiles_[k].drop);
-      by_another[k] = after[k].ends_by_another(deviance, profiles_[k].drop);
-      facts[k].influences = deviance.maxCoeff() > thresholds_.silent_deviance;
-    }
-    for (std::size_t k = 0; k < paths_.size(); ++k) {
-      WordFacts one = facts[k];
-      if (ends == OthersEnds::open) {
-        one.open_low = one.open_low || by_another[k].first;
-        one.open_high = one.open_high || by_another[k].second;
+      WordFacts one;
+      if (before[k].usable() && after[k].usable()) {
+        const VectorXd deviance = after[k].deviances(y);
+        one = after[k].facts(found_[k], before[k], found_deviance[k], deviance, profiles_[k].drop);
+        one.influences = deviance.maxCoeff() > thresholds_.silent_deviance;
+        const auto [low, high] = after[k].ends_by_another(deviance, profiles_[k].drop);
+        if (ends == OthersEnds::open) {
+          one.open_low = one.open_low || low;
+          one.open_high = one.open_high || high;
+        }
       }
       found[k].push_back(one);
     }
@@ -112,21 +110,13 @@ std::vector<std::vector<WordFacts>> Forecast::facts_of_draws(const std::vector<I
   return found;
 }
 
-std::vector<double> Forecast::width_factors(const std::vector<Index>& rows, const std::vector<double>& widths) const {
-  std::vector<double> factors(paths_.size(), 1.0);
-  const std::vector<Unknown>& unknowns = extended_.model.unknowns;
-  const bool errors_known =
-      std::none_of(unknowns.begin(), unknowns.end(), [](const Unknown& unknown) { return unknown.only_widens(); });
-  if (errors_known || widths.size() != factors.size()) return factors;
-  const std::vector<std::vector<WordFacts>> drawn = facts_of_draws(rows, 1.0, Uncertain::all, OthersEnds::open);
-  for (std::size_t k = 0; k < factors.size(); ++k) {
-    double sum = 0.0;
-    for (const WordFacts& one : drawn[k]) sum += std::sqrt(std::max(1.0 - one.contraction, 0.0));
-    const double mean = sum / std::max(1.0, static_cast<double>(drawn[k].size()));
-    const double wanted = widths[k] * std::sqrt(std::max(1.0 - found_[k].facts.contraction, 0.0));
-    if (mean > 0.0 && wanted > 0.0) factors[k] = std::pow(wanted / mean, 2);
-  }
-  return factors;
+double Forecast::width_factor(const std::vector<WordFacts>& drawn, std::size_t parameter, double width) const {
+  if (!errors_unknown(extended_.model) || drawn.empty()) return 1.0;
+  double sum = 0.0;
+  for (const WordFacts& one : drawn) sum += std::sqrt(std::max(1.0 - one.contraction, 0.0));
+  const double mean = sum / static_cast<double>(drawn.size());
+  const double wanted = width * std::sqrt(std::max(1.0 - found_[parameter].facts.contraction, 0.0));
+  return mean > 0.0 && wanted > 0.0 ? std::pow(wanted / mean, 2) : 1.0;
 }
 
 std::vector<Verdict> Forecast::words_of(const std::vector<WordFacts>& drawn, double width_factor) const {
@@ -141,11 +131,10 @@ std::vector<Verdict> Forecast::words_of(const std::vector<WordFacts>& drawn, dou
 
 std::vector<std::vector<WordProbability>> Forecast::words(const std::vector<Index>& rows,
                                                           const std::vector<double>& widths) const {
-  const std::vector<double> factors = width_factors(rows, widths);
   const std::vector<std::vector<WordFacts>> facts = facts_of_draws(rows, 1.0, Uncertain::all, OthersEnds::open);
   std::vector<std::vector<WordProbability>> found;
   for (std::size_t k = 0; k < facts.size(); ++k) {
-    const std::vector<Verdict> drawn = words_of(facts[k], factors[k]);
+    const std::vector<Verdict> drawn = words_of(facts[k], width_factor(facts[k], k, widths[k]));
     std::vector<WordProbability> words;
     for (const Verdict word : all_words)
       if (const auto count = std::count(drawn.begin(), drawn.end(), word); count > 0)
@@ -165,9 +154,11 @@ double Forecast::identified(const std::vector<Index>& rows, double readings, Ask
          std::max(1.0, static_cast<double>(drawn.size()));
 }
 
-ReadingsNeeded Forecast::readings_needed(const std::vector<Index>& rows, int parameter,
-                                         const std::vector<double>& widths) const {
-  const Asked asked{parameter, width_factors(rows, widths)[parameter]};
+ReadingsNeeded Forecast::readings_needed(const std::vector<Index>& rows, int parameter, double width) const {
+  Asked asked{parameter};
+  if (errors_unknown(extended_.model))
+    asked.width_factor =
+        width_factor(facts_of_draws(rows, 1.0, Uncertain::all, OthersEnds::open)[parameter], parameter, width);
   const auto enough_with = [&](Uncertain uncertain, OthersEnds ends = OthersEnds::open) {
     return identified(rows, readings_most, asked, uncertain, ends) >= sure;
   };

@@ -42,9 +42,8 @@ class Forecast {
   std::vector<std::vector<WordProbability>> words(const std::vector<Eigen::Index>& rows,
                                                   const std::vector<double>& widths) const;
 
-  /// Readings for "identified" with 90 % probability, at most a thousand. `widths`: as above, after one.
-  ReadingsNeeded readings_needed(const std::vector<Eigen::Index>& rows, int parameter,
-                                 const std::vector<double>& widths) const;
+  /// Readings for "identified" with 90 % probability, at most a thousand. `width`: that of the parameter after one, as above.
+  ReadingsNeeded readings_needed(const std::vector<Eigen::Index>& rows, int parameter, double width) const;
 
  private:
   /// What is uncertain of the law of data, beside their noise.
@@ -58,7 +57,8 @@ class Forecast {
   };
   std::vector<std::vector<WordFacts>> facts_of_draws(const std::vector<Eigen::Index>& rows, double readings,
                                                      Uncertain uncertain, OthersEnds ends) const;
-  std::vector<double> width_factors(const std::vector<Eigen::Index>& rows, const std::vector<double>& widths) const;
+  /// By which the variances of drawn facts are to be scaled; 1 where the errors' size is known.
+  double width_factor(const std::vector<WordFacts>& drawn, std::size_t parameter, double width) const;
   std::vector<Verdict> words_of(const std::vector<WordFacts>& drawn, double width_factor) const;
   double identified(const std::vector<Eigen::Index>& rows, double readings, Asked asked, Uncertain uncertain,
                     OthersEnds ends = OthersEnds::open) const;

@@ -96,10 +96,9 @@ void count_readings(const PlanBasis& basis, std::vector<PlanCandidate>& all, con
   ask_first([](const Candidate& one) { return one.settings.size() > 1; });
   for_each_index(static_cast<int>(asked.size()), basis.options.threads, [&](int i) {
     const std::size_t which = asked[i];
-    std::vector<double> widths;
-    for (const PlannedParameter& one : all[which].parameters) widths.push_back(one.sd_after / one.sd_now);
-    const ReadingsNeeded needed = basis.forecast->readings_needed(basis.extended.planned[which], basis.about, widths);
     PlannedParameter& parameter = all[which].parameters[basis.about];
+    const ReadingsNeeded needed = basis.forecast->readings_needed(basis.extended.planned[which], basis.about,
+                                                                  parameter.sd_after / parameter.sd_now);
     parameter.repeats_needed = needed.count;
     parameter.repeats_low = needed.low;
     parameter.repeats_high = needed.high;

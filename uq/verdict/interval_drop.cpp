@@ -71,13 +71,16 @@ double half_width(const Eigen::ArrayXd& sds) {
 
 }  // namespace
 
+bool errors_unknown(const CaseModel& model) {
+  return std::any_of(model.unknowns.begin(), model.unknowns.end(),
+                     [](const Unknown& unknown) { return unknown.only_widens(); });
+}
+
 Eigen::VectorXd interval_drops(const CaseModel& full, const Eigen::VectorXd& best, const Eigen::MatrixXd& draws,
                                double drop) {
   const CaseModel& model = distinct_rows(full);
   Eigen::VectorXd drops = Eigen::VectorXd::Constant(model.dimension(), drop);
-  const bool some = std::any_of(model.unknowns.begin(), model.unknowns.end(),
-                                [](const Unknown& unknown) { return unknown.only_widens(); });
-  if (!some || draws.rows() == 0) return drops;
+  if (!errors_unknown(model) || draws.rows() == 0) return drops;
 
   const Eigen::MatrixXd points = with_spreads_of(model, best, draws);
   Eigen::ArrayXd level = log_likelihoods(model, points).array();

@@ -17,6 +17,9 @@
 
 namespace uq {
 
+/// Whether a nuisance acts on the spread of the data alone: a noise or a discrepancy of unknown size.
+bool errors_unknown(const CaseModel& model);
+
 /// Per unknown. `best`: the most likely point; `draws` of the posterior, rows in u; `drop`: where the errors are known.
 Eigen::VectorXd interval_drops(const CaseModel& model, const Eigen::VectorXd& best, const Eigen::MatrixXd& draws,
                                double drop);

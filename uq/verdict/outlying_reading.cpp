@@ -8,6 +8,7 @@
 #include "uq/infer/factor.hpp"
 #include "uq/posterior/fisher.hpp"
 #include "uq/posterior/posterior.hpp"
+#include "uq/verdict/interval_drop.hpp"
 #include "uq/verdict/profile.hpp"
 
 namespace uq {
@@ -55,9 +56,7 @@ double own_sd(const CaseModel& model, const Eigen::VectorXd& u, Eigen::Index row
 
 std::optional<OutlyingReading> outlying_reading(const CaseModel& model, const Eigen::VectorXd& best,
                                                 const VerdictThresholds& thresholds) {
-  const bool unknown_errors = std::any_of(model.unknowns.begin(), model.unknowns.end(),
-                                          [](const Unknown& unknown) { return unknown.only_widens(); });
-  if (!unknown_errors) return {};
+  if (!errors_unknown(model)) return {};
   const LeftOut all = left_out(model, best);
   Eigen::Index farthest = 0;
   all.distance.cwiseQuotient(all.sd).cwiseAbs().maxCoeff(&farthest);
