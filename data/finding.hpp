@@ -40,6 +40,7 @@ enum class FindingKind {
   errors_apart,               ///< common errors of several sets that may be one meter's
   error_left_out,             ///< that a file states and the study does not
   saturated,                  ///< several rows with one extreme value
+  not_measured,               ///< an output that some rows of a file lack, or all
 };
 template <>
 inline constexpr std::array texts_of<FindingKind> = {"copied rows",
@@ -62,7 +63,8 @@ inline constexpr std::array texts_of<FindingKind> = {"copied rows",
                                                      "prior not stated",
                                                      "errors apart",
                                                      "error left out",
-                                                     "saturated"};
+                                                     "saturated",
+                                                     "not measured"};
 
 struct Finding {
   FindingKind kind = FindingKind::unit;

@@ -16,12 +16,74 @@ namespace {
 double measured(const Csv& csv, const CsvRow& row, std::size_t column) {
   const double value = csv.number(row, column);
   if (!std::isfinite(value)) {
-    throw InputError(
-        ExitStatus::bad_data,
-        Problem{csv.place(row, column), fmt::format("'{}' is not a measured value", row.fields[column]),
-                "give a number, or remove the line; outputs of which some are missing go into files of their own"});
+    throw InputError(ExitStatus::bad_data,
+                     Problem{csv.place(row, column), fmt::format("'{}' is not a measured value", row.fields[column]),
+                             "give a number, or remove the line"});
   }
   return value;
+}
+
+/// Columns of an output and of its standard errors.
+struct OutputColumns {
+  std::size_t output = 0;            ///< index into Study::outputs
+  std::size_t value = 0;             ///< column of the file
+  std::optional<std::size_t> error;  ///< none: MissingErrors::nan
+  Unit unit, error_unit;
+};
+
+/// Those that the file has. An output whose column holds no value at all joins set.empty_outputs instead.
+std::vector<OutputColumns> output_columns(const Csv& csv, const Study& study, MissingErrors missing,
+                                          ObservationSet& set) {
+  std::vector<OutputColumns> found;
+  for (std::size_t i = 0; i < study.outputs.size(); ++i) {
+    const std::string &name = study.outputs[i].name, error_name = name + "_se";
+    const bool has_errors = csv.find(error_name, Csv::Capitals::any).has_value();
+    if (!csv.find(name, Csv::Capitals::any) && !has_errors) continue;
+    OutputColumns one{.output = i, .value = csv.column(name)};
+    if (has_errors || missing == MissingErrors::refused) one.error = csv.column(error_name);
+    one.unit = csv.unit(one.value, study.outputs[i].unit);
+    one.error_unit = one.error ? csv.unit(*one.error, one.unit) : one.unit;
+    found.push_back(std::move(one));
+  }
+  if (found.empty() && !study.outputs.empty()) csv.column(study.outputs.front().name);  // says what is missing
+  const auto is_empty = [&](const OutputColumns& one) {
+    return std::all_of(csv.rows.begin(), csv.rows.end(),
+                       [&](const CsvRow& row) { return std::isnan(csv.number(row, one.value)); });
+  };
+  std::vector<OutputColumns> measured_ones;
+  for (OutputColumns& one : found)
+    if (is_empty(one))
+      set.empty_outputs.push_back(one.output);
+    else
+      measured_ones.push_back(std::move(one));
+  if (measured_ones.empty()) {  // nothing was measured: the caller says of which row
+    set.empty_outputs.clear();
+    return found;
+  }
+  return measured_ones;
+}
+
+/// Adds what a row measures of each output: NaN of one whose field is empty, where another's is not.
+void read_outputs(const Csv& csv, const CsvRow& row, const std::vector<OutputColumns>& outputs, Observation& point) {
+  const bool measures_some = std::any_of(outputs.begin(), outputs.end(), [&](const OutputColumns& one) {
+    return !std::isnan(csv.number(row, one.value));
+  });
+  for (const OutputColumns& one : outputs) {
+    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+    const bool is_measured = !measures_some || !std::isnan(csv.number(row, one.value));
+    point.values.push_back(is_measured ? one.unit.to_si(measured(csv, row, one.value)) : nothing);
+    if (!is_measured || !one.error) {
+      point.standard_errors.push_back(nothing);
+      continue;
+    }
+    const double error = measured(csv, row, *one.error);
+    if (error <= 0.0) {
+      throw InputError(ExitStatus::bad_data,
+                       Problem{csv.place(row, *one.error), fmt::format("{} is not above 0", error),
+                               "give the standard error of the measured mean"});
+    }
+    point.standard_errors.push_back(one.error_unit.factor * error);  // a difference: no offset
+  }
 }
 
 }  // namespace
@@ -56,8 +118,7 @@ ObservationSet read_observations(const std::string& path, const Study& study,
   set.header = csv.comments;
 
   std::vector<std::optional<std::size_t>> control_columns;  // none: a setting of the whole set
-  std::vector<std::size_t> value_columns;
-  std::vector<std::optional<std::size_t>> error_columns;  // none: MissingErrors::nan
+  std::vector<Unit> control_units;
   for (const Control& control : study.controls) {
     const bool set_once = settings.contains(control.name);
     if (set_once && csv.find(control.name, Csv::Capitals::any))
@@ -65,27 +126,12 @@ ObservationSet read_observations(const std::string& path, const Study& study,
                        Problem{csv.file, fmt::format("has a column {}, which the study also sets", control.name),
                                "keep one of the two"});
     control_columns.push_back(set_once ? std::nullopt : std::optional(csv.column(control.name)));
+    control_units.push_back(control_columns.back() ? csv.unit(*control_columns.back(), control.unit) : control.unit);
   }
-  for (std::size_t i = 0; i < study.outputs.size(); ++i) {
-    const std::string& name = study.outputs[i].name;
-    if (!csv.find(name, Csv::Capitals::any) && !csv.find(name + "_se", Csv::Capitals::any)) continue;
-    set.outputs.push_back(i);
-    value_columns.push_back(csv.column(name));
-    const bool without = missing == MissingErrors::nan && !csv.find(name + "_se", Csv::Capitals::any);
-    error_columns.push_back(without ? std::nullopt : std::optional(csv.column(name + "_se")));
-  }
-  if (set.outputs.empty() && !study.outputs.empty()) csv.column(study.outputs.front().name);  // says what is missing
+  const std::vector<OutputColumns> outputs = output_columns(csv, study, missing, set);
+  for (const OutputColumns& one : outputs) set.outputs.push_back(one.output);
   if (csv.rows.empty()) {
     throw InputError(ExitStatus::bad_data, Problem{csv.file, "has a header but no rows", "add the measured points"});
-  }
-
-  std::vector<Unit> control_units, value_units, error_units;
-  for (std::size_t i = 0; i < control_columns.size(); ++i)
-    control_units.push_back(control_columns[i] ? csv.unit(*control_columns[i], study.controls[i].unit)
-                                               : study.controls[i].unit);
-  for (std::size_t i = 0; i < value_columns.size(); ++i) {
-    value_units.push_back(csv.unit(value_columns[i], study.outputs[set.outputs[i]].unit));
-    error_units.push_back(error_columns[i] ? csv.unit(*error_columns[i], value_units.back()) : value_units.back());
   }
 
   for (const CsvRow& row : csv.rows) {
@@ -102,25 +148,19 @@ ObservationSet read_observations(const std::string& path, const Study& study,
                                              control.unit.from_si(point.controls.back())),
                                  fmt::format("correct it, or set controls.{}.scale = \"linear\"", control.name)});
     }
-    for (std::size_t i = 0; i < value_columns.size(); ++i) {
-      point.values.push_back(value_units[i].to_si(measured(csv, row, value_columns[i])));
-      if (!error_columns[i]) {
-        point.standard_errors.push_back(std::numeric_limits<double>::quiet_NaN());
-        continue;
-      }
-      const double error = measured(csv, row, *error_columns[i]);
-      if (error <= 0.0) {
-        throw InputError(ExitStatus::bad_data,
-                         Problem{csv.place(row, *error_columns[i]), fmt::format("{} is not above 0", error),
-                                 "give the standard error of the measured mean"});
-      }
-      point.standard_errors.push_back(error_units[i].factor * error);  // a difference: no offset
-    }
+    read_outputs(csv, row, outputs, point);
     set.points.push_back(std::move(point));
   }
-  if (std::all_of(error_columns.begin(), error_columns.end(), [](const auto& one) { return one.has_value(); }))
+  if (std::all_of(outputs.begin(), outputs.end(), [](const OutputColumns& one) { return one.error.has_value(); }))
     count_copies_once(set, study);
   return set;
+}
+
+std::vector<std::size_t> points_with(const ObservationSet& set, std::size_t column) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < set.points.size(); ++i)
+    if (set.points[i].has(column)) found.push_back(i);
+  return found;
 }
 
 const Nuisance* noise_instead(const Study& study, const ObservationSet& set, std::size_t output) {

@@ -1,6 +1,7 @@
 #pragma once
 // Measured points from a CSV: one column per control, one per output, and OUTPUT_se beside each, in the study's units.
-// Other columns are left alone.
+// Other columns are left alone. A field of an output may be empty where the row has another output's value: that output
+// was not measured there (Observation::has).
 #include <map>
 #include <string>
 #include <string_view>
@@ -12,12 +13,15 @@ namespace data {
 /// In the head of a file of observations, before what a study must state: the error of an idle torque, common to all rows.
 inline constexpr std::string_view idle_error_mark = "its error is common to all of them: ";
 
+/// Indices into set.points of those at which the output of this column (an index into set.outputs) was measured.
+std::vector<std::size_t> points_with(const ObservationSet& set, std::size_t column);
+
 /// Whether a file may lack the column OUTPUT_se of an output: its standard errors are NaN then, and copies are left in.
 enum class MissingErrors { refused, nan };
 
 /// Reads the points of `path`; `settings` (SI) gives the controls that it has no column of. Name, material and place
-/// are the caller's. Throws InputError: 66 missing; 65 missing column, no rows, text or nothing for a number, a
-/// standard error that is not above 0.
+/// are the caller's. Throws InputError: 66 missing; 65 missing column, no rows, a row without any output, text or nothing for a
+/// number, a standard error that is not above 0.
 ObservationSet read_observations(const std::string& path, const Study& study,
                                  const std::map<std::string, double>& settings = {},
                                  MissingErrors missing = MissingErrors::refused);

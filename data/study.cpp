@@ -171,7 +171,10 @@ void replace_missing_errors(Study& study, ObservationFiles& files) {
     ObservationSet& set = study.observations[index];
     bool replaced = false;
     for (std::size_t k = 0; !set.points.empty() && k < set.outputs.size(); ++k) {
-      if (!std::isnan(set.points.front().standard_errors[k])) continue;
+      const auto is_missing = [k](const Observation& point) {
+        return point.has(k) && std::isnan(point.standard_errors[k]);
+      };
+      if (std::none_of(set.points.begin(), set.points.end(), is_missing)) continue;
       const Nuisance* noise = noise_instead(study, set, set.outputs[k]);
       if (noise == nullptr) {
         try {
@@ -182,7 +185,8 @@ void replace_missing_errors(Study& study, ObservationFiles& files) {
         replaced = false;
         break;
       }
-      for (Observation& point : set.points) point.standard_errors[k] = middle_of(noise->parameter.prior);
+      for (Observation& point : set.points)
+        if (point.has(k)) point.standard_errors[k] = middle_of(noise->parameter.prior);
       replaced = true;
     }
     if (replaced) count_copies_once(set, study);

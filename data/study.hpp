@@ -2,6 +2,7 @@
 // What a study says about parameters, controls, outputs, observations and cases. The sections [rig], [materials.*]
 // beyond `fixed` and `runs`, [contact] and [run] belong to the DEM (dem/reading/read_case.cpp).
 // All numbers are SI; a Unit beside them is for display only.
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -110,12 +111,15 @@ struct Training {
   std::string place;
 };
 
-/// One measured point: outputs at given controls.
+/// One measured point: outputs at given controls. Not every output need have been measured there.
 struct Observation {
   std::vector<double> controls;         ///< SI, in the order of Study::controls
-  std::vector<double> values;           ///< SI, in the order of ObservationSet::outputs
-  std::vector<double> standard_errors;  ///< SI
+  std::vector<double> values;           ///< SI, in the order of ObservationSet::outputs; NaN: not measured
+  std::vector<double> standard_errors;  ///< SI; NaN where the value is
   int line = 0;
+
+  /// Whether the output of this column (an index into ObservationSet::outputs) was measured.
+  bool has(std::size_t column) const { return !std::isnan(values[column]); }
 };
 
 /// A row of an observation file that is another one again, to the last digit (data/copies.hpp); it is counted once.
@@ -145,6 +149,7 @@ struct ObservationSet {
   std::vector<std::size_t> outputs;  ///< indices into Study::outputs, of the columns that the file has
   std::vector<Observation> points;   ///< without copies
   std::vector<ObservationCopy> copies = {};
+  std::vector<std::size_t> empty_outputs = {};  ///< indices into Study::outputs, of columns without any value
   std::string meter = {};  ///< sets that name the same one have its common errors together; empty: each its own
   std::vector<CommonError> common_errors;
   std::vector<ErrorCorrelation> correlations = {};

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
+#include "data/observations.hpp"
 #include "tests/temporary.hpp"
 
 namespace {
@@ -258,14 +259,40 @@ TEST_CASE("what is wrong with an observation file is named with its line") {
   CHECK(problem(text, "speed,torque,torque_se\n50,8,0\n") ==
         "65: bench.csv:2: torque_se: 0 is not above 0 (give the standard error of the measured mean)");
   CHECK(problem(text, "speed,torque,torque_se\n50,nan,1\n") ==
-        "65: bench.csv:2: torque: 'nan' is not a measured value (give a number, or remove the line; outputs of "
-        "which some are missing go into files of their own)");
+        "65: bench.csv:2: torque: 'nan' is not a measured value (give a number, or remove the line)");
   CHECK(problem(text, "speed,torque,torque_se\n") ==
         "65: bench.csv: has a header but no rows (add the measured points)");
   CHECK(problem(head + "[[observe]]\nname = \"b\"\nfile = \"none.csv\"\n") ==
         "66: study.toml:20: observe.b.file: there is no file 'none.csv' (paths start at the study's folder)");
   CHECK(problem(head + "[[observe]]\nname = \"b\"\nfile = 3\n[[observe]]\nname = \"c\"\nfile = \"none.csv\"\n")
             .find("78: ") == 0);
+}
+
+TEST_CASE("an output that some rows of a file do not measure is left open there, and one that none does is not read") {
+  const TemporaryFolder folder;
+  const std::string text =
+      head + "[outputs.angle]\nunit = \"degree\"\n[outputs.level]\n" + observe +
+      "[[calibrate]]\nname = \"powder\"\nobserve = [\"bench\"]\nfree = [\"friction\", \"cohesion\"]\n";
+  const std::string columns = "speed,torque,torque_se,angle,angle_se,level,level_se\n";
+  folder.write("bench.csv", columns + "50,8,1,,,,\n100,,,40,2,,\n150,9,1,41,2,-,-\n");
+  const data::ObservationSet set = read(folder, text).observations.at(0);
+  CHECK(set.outputs == std::vector<std::size_t>{0, 1});
+  CHECK(set.empty_outputs == std::vector<std::size_t>{2});
+  REQUIRE(set.points.size() == 3);
+  CHECK(data::points_with(set, 0) == std::vector<std::size_t>{0, 2});
+  CHECK(data::points_with(set, 1) == std::vector<std::size_t>{1, 2});
+  CHECK(set.points[1].values[1] == Approx(40.0 * std::numbers::pi / 180.0));
+  // A row that measures nothing, and a value without its error, are mistakes.
+  CHECK(problem(text, columns + "50,8,1,,,,\n100,,,,,,\n") ==
+        "65: bench.csv:3: torque: '' is not a measured value (give a number, or remove the line)");
+  CHECK(problem(text, columns + "50,8,1,40,,,\n") ==
+        "65: bench.csv:2: angle_se: '' is not a measured value (give a number, or remove the line)");
+  // Without a column of errors a noise of unknown size stands in their place.
+  folder.write("bench.csv", "speed,torque,angle,angle_se\n50,8,40,2\n100,,41,2\n150,9,,\n");
+  const data::Study noisy =
+      read(folder, text + "noise = { absolute = true, mean = \"0.5 mN m\", sd = \"0.2 mN m\" }\n");
+  CHECK(noisy.observations[0].points[0].standard_errors[0] > 0.0);
+  CHECK(std::isnan(noisy.observations[0].points[1].standard_errors[0]));
 }
 
 TEST_CASE("observed controls outside their range are named, not refused") {

@@ -109,7 +109,7 @@ std::optional<Finding> exchanged_output(const data::Study& study, const data::Ru
     for (const data::ObservationSet& set : study.observations)
       for (std::size_t c = 0; c < set.outputs.size(); ++c)
         for (const data::Observation& point : set.points) {
-          if (set.outputs[c] != k) continue;
+          if (set.outputs[c] != k || !point.has(c)) continue;
           low = std::min(low, unit.from_si(point.values[c]));
           high = std::max(high, unit.from_si(point.values[c]));
         }

@@ -56,6 +56,31 @@ void check_copies(const data::ObservationSet& set, std::vector<Finding>& finding
   findings.push_back(std::move(finding));
 }
 
+/// Outputs that a set's file has and that were not measured everywhere.
+void check_unmeasured(const data::Study& study, const data::ObservationSet& set, std::vector<Finding>& findings) {
+  const auto note = [&](std::string place, std::string what, std::string remedy) {
+    findings.push_back({.kind = data::FindingKind::not_measured,
+                        .place = std::move(place),
+                        .severity = Severity::note,
+                        .what = std::move(what),
+                        .remedy = std::move(remedy),
+                        .places = {}});
+  };
+  for (const std::size_t output : set.empty_outputs)
+    note(file_of(set), fmt::format("the column {} holds no value: it is not used", study.outputs[output].name),
+         "fill it in, or remove the column");
+  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    std::vector<std::string> places;
+    for (const data::Observation& point : set.points)
+      if (!point.has(column)) places.push_back(place_of(set, point));
+    if (places.empty()) continue;
+    note(data::list_places(places),
+         fmt::format("{} of {} rows have no {}: they count for the outputs that they have", places.size(),
+                     set.points.size(), study.outputs[set.outputs[column]].name),
+         "nothing, if it was not measured there");
+  }
+}
+
 /// Whether the meter's reading may be another multiple of the runs' output than one.
 bool is_scaled(const data::Study& study, const data::ObservationSet& set, std::size_t output) {
   if (set.of_machine && study.scale) return true;
@@ -79,7 +104,8 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
     for (const data::RunRow& row : table.rows)
       if (!row.left_out && row.material == set.material && std::isfinite(row.outputs[set.outputs[column]]))
         runs.add(row.outputs[set.outputs[column]]);
-    for (const data::Observation& point : set.points) seen.add(point.values[column]);
+    for (const data::Observation& point : set.points)
+      if (point.has(column)) seen.add(point.values[column]);
     if (runs.values.size() < 5 || seen.values.empty() || is_scaled(study, set, set.outputs[column])) continue;
     const double reach = runs.high - runs.low;
     const double ratio = data::median_of(seen.values) / data::median_of(runs.values);
@@ -210,10 +236,12 @@ bool one_spoils_all(const data::Study& study, const data::ObservationSet& set, s
   return false;
 }
 
-void check_errors(const data::Study& study, const data::ObservationSet& set, const DataCheckThresholds& t,
+void check_errors(const data::Study& study, const data::ObservationSet& whole, const DataCheckThresholds& t,
                   std::vector<Finding>& findings) {
-  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
-    if (data::noise_instead(study, set, set.outputs[column]) != nullptr) continue;  // nothing reads them
+  for (std::size_t column = 0; column < whole.outputs.size(); ++column) {
+    if (data::noise_instead(study, whole, whole.outputs[column]) != nullptr) continue;  // nothing reads them
+    data::ObservationSet set = whole;
+    std::erase_if(set.points, [column](const data::Observation& point) { return !point.has(column); });
     const auto points = static_cast<Eigen::Index>(set.points.size());
     const auto found = residuals2(study, set, column, terms_of(points));
     const auto bent = residuals2(study, set, column, terms_of(points) + 1);
@@ -334,6 +362,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
   std::vector<Finding> findings;
   for (const data::ObservationSet& set : study.observations) {
     check_copies(set, findings);
+    check_unmeasured(study, set, findings);
     if (set.points.empty()) continue;
     check_magnitude(study, table, set, findings);
     check_control_unit(study, table, set, findings);

@@ -84,6 +84,7 @@ std::vector<Finding> check_saturated(const data::Study& study, const data::RunTa
       const data::Output& output = study.outputs[set.outputs[c]];
       OutputColumn column{.name = output.name, .unit = output.unit.symbol};
       for (const data::Observation& point : set.points) {
+        if (!point.has(c)) continue;
         column.values.push_back(output.unit.from_si(point.values[c]));
         column.places.push_back(fmt::format("{}:{}", set.file, point.line));
         column.settings.push_back(point.controls);

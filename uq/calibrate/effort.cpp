@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "data/error.hpp"
+#include "data/observations.hpp"
 #include "data/progress.hpp"
 #include "data/provenance.hpp"
 
@@ -63,8 +64,9 @@ Load load_of(const data::Study& study, const data::CalibrationCase& one, const d
   std::map<std::pair<std::string, std::size_t>, std::set<std::vector<double>>> settings;
   for (const data::ObservationSet& set : study.observations) {
     if (std::find(one.observe.begin(), one.observe.end(), set.name) == one.observe.end()) continue;
-    for (const std::size_t output : set.outputs)
-      for (const data::Observation& point : set.points) settings[{set.material, output}].insert(point.controls);
+    for (std::size_t column = 0; column < set.outputs.size(); ++column)
+      for (const std::size_t i : data::points_with(set, column))
+        settings[{set.material, set.outputs[column]}].insert(set.points[i].controls);
   }
   Load load;
   for (const auto& [of, different] : settings)

@@ -123,7 +123,8 @@ class Group {
 struct Block {
   std::string name, dimension;
   std::size_t set = 0, output = 0;
-  std::vector<Eigen::Index> rows;  // of the model
+  std::vector<Eigen::Index> rows;   // of the model
+  std::vector<std::size_t> points;  // of the set, by row
 };
 
 std::vector<Block> blocks_of(const data::Study& study, const CaseModel& model) {
@@ -139,11 +140,15 @@ std::vector<Block> blocks_of(const data::Study& study, const CaseModel& model) {
                         .dimension = set + "_point",
                         .set = from[row].set,
                         .output = from[row].output,
-                        .rows = {}});
+                        .rows = {},
+                        .points = {}});
       found = blocks.end() - 1;
     }
     found->rows.push_back(static_cast<Eigen::Index>(row));
+    found->points.push_back(from[row].point);
   }
+  for (Block& block : blocks)  // one dimension for all outputs of a set, but of those that some points lack
+    if (block.points.size() < study.observations[block.set].points.size()) block.dimension = block.name + "_point";
   return blocks;
 }
 
@@ -154,13 +159,15 @@ void point_dimensions(Group& group, const data::Study& study, const std::vector<
     if (std::find(done.begin(), done.end(), block.dimension) != done.end()) continue;
     done.push_back(block.dimension);
     const data::ObservationSet& set = study.observations[block.set];
-    group.index_dimension(block.dimension, set.points.size());
+    group.index_dimension(block.dimension, block.points.size());
+    const std::string owner = block.dimension.substr(0, block.dimension.rfind("_point"));
     std::string names;
     for (std::size_t c = 0; c < study.controls.size(); ++c) {
       const data::Control& control = study.controls[c];
-      const std::string name = set.name + "_" + control.name;
+      const std::string name = owner + "_" + control.name;
       std::vector<double> values;
-      for (const auto& point : set.points) values.push_back(control.unit.from_si(point.controls[c]));
+      for (const std::size_t point : block.points)
+        values.push_back(control.unit.from_si(set.points[point].controls[c]));
       group.doubles(name, {block.dimension}, values, control.unit.symbol);
       names += (names.empty() ? "" : " ") + name;
     }

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include "data/error.hpp"
+#include "data/observations.hpp"
 #include "data/time_series.hpp"
 #include "uq/findings/study_units.hpp"
 #include "uq/posterior/control_reach.hpp"
@@ -27,10 +29,21 @@ std::optional<double> stated_error(const Study& study, const std::vector<std::si
     if (column == set.outputs.end()) continue;
     const auto c = static_cast<std::size_t>(column - set.outputs.begin());
     for (const data::Observation& point : set.points)
-      if (point.values[c] != 0.0) shares.push_back(std::abs(point.standard_errors[c] / point.values[c]));
+      if (point.has(c) && point.values[c] != 0.0)
+        shares.push_back(std::abs(point.standard_errors[c] / point.values[c]));
   }
   if (shares.empty()) return {};
   return data::median_of(std::move(shares));
+}
+
+/// Settings at which a set has a reading of an output.
+std::set<std::vector<double>> settings_of(const data::ObservationSet& set, std::size_t output) {
+  std::set<std::vector<double>> found;
+  const auto column = std::find(set.outputs.begin(), set.outputs.end(), output);
+  if (column == set.outputs.end()) return found;
+  for (const std::size_t i : data::points_with(set, static_cast<std::size_t>(column - set.outputs.begin())))
+    found.insert(set.points[i].controls);
+  return found;
 }
 
 /// Range of a control that the runs of a material cover.
@@ -85,20 +98,19 @@ class Usual {
     std::set<std::string> materials;
     for (const std::size_t index : sets_) materials.insert(study_.observations[index].material);
     for (const std::string& material : materials) {
-      std::set<std::vector<double>> observed;
-      std::set<std::size_t> measured;
+      std::set<std::vector<double>> observed;                      // settings, of any output
+      std::map<std::size_t, std::set<std::vector<double>>> where;  // of each output
       for (const std::size_t index : sets_) {
         const data::ObservationSet& set = study_.observations[index];
         if (set.material != material) continue;
-        measured.insert(set.outputs.begin(), set.outputs.end());
+        for (const std::size_t output : set.outputs) where[output].merge(settings_of(set, output));
         for (const data::Observation& point : set.points) observed.insert(point.controls);
       }
       if (observed.empty()) continue;
       for (std::size_t output = 0; output < study_.outputs.size(); ++output) {
         const Emulator* emulator = emulator_of(emulators_, material, output);
         if (emulator == nullptr) continue;
-        const bool known = measured.contains(output);
-        add_output(material, output, *emulator, observed, known);
+        add_output(material, output, *emulator, {observed, where[output]});
       }
     }
     for (Candidate& one : found_) one.name = name_of(study_, one, materials.size() > 1);
@@ -106,8 +118,13 @@ class Usual {
   }
 
  private:
-  void add_output(const std::string& material, std::size_t output, const Emulator& emulator,
-                  const std::set<std::vector<double>>& observed, bool known) {
+  /// Settings at which the case's data were taken.
+  struct Observed {
+    const std::set<std::vector<double>>&of_any, &of_this;  ///< of any output, of the one asked for
+  };
+
+  void add_output(const std::string& material, std::size_t output, const Emulator& emulator, const Observed& observed) {
+    const bool known = !observed.of_this.empty();
     const std::optional<double> stated = stated_error(study_, sets_, output);
     std::set<std::vector<double>> taken;
     const auto add_all = [&](const std::vector<std::vector<double>>& settings, CandidateKind kind) {
@@ -122,12 +139,15 @@ class Usual {
       if (taken.insert(controls).second) add_all({controls}, kind);
     };
     if (known) {
-      const std::vector<std::vector<double>> again = few(observed);
+      const std::vector<std::vector<double>> again = few(observed.of_this);
       for (const auto& controls : again) add(controls, CandidateKind::repeat);
       if (again.size() > 1) add_all(again, CandidateKind::repeat);
+      for (const auto& controls : few(observed.of_any))  // where only others were read
+        if (!near_observed(observed.of_this, controls)) add(controls, CandidateKind::setting);
     }
     // One control at a time, the others as they were measured.
-    const std::vector<double> centre = *std::next(observed.begin(), static_cast<std::ptrdiff_t>(observed.size() / 2));
+    const std::vector<double> centre =
+        *std::next(observed.of_any.begin(), static_cast<std::ptrdiff_t>(observed.of_any.size() / 2));
     const int count = known ? options_.settings : options_.settings_other;
     bool any = false;
     for (std::size_t c = 0; c < study_.controls.size(); ++c) {
@@ -140,7 +160,7 @@ class Usual {
         const double value = covered.from_unit(i / (count - 1.0));
         controls[c] =
             std::clamp(study_.controls[c].unit.rounded(value, 2), study_.controls[c].low, study_.controls[c].high);
-        if (known && near_observed(observed, controls)) continue;
+        if (known && near_observed(observed.of_this, controls)) continue;
         add(controls, known ? CandidateKind::setting : CandidateKind::output);
       }
     }
@@ -239,10 +259,7 @@ class Entry {
     return std::all_of(candidate.outputs.begin(), candidate.outputs.end(), [&](std::size_t output) {
       return std::any_of(sets_.begin(), sets_.end(), [&](std::size_t index) {
         const data::ObservationSet& set = study_.observations[index];
-        return set.material == candidate.material &&
-               std::find(set.outputs.begin(), set.outputs.end(), output) != set.outputs.end() &&
-               std::any_of(set.points.begin(), set.points.end(),
-                           [&](const data::Observation& point) { return point.controls == controls; });
+        return set.material == candidate.material && settings_of(set, output).contains(controls);
       });
     });
   }

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "data/observations.hpp"
 #include "uq/posterior/more_data.hpp"
 #include "uq/posterior/posterior.hpp"
 
@@ -36,9 +37,11 @@ std::vector<std::size_t> sets_of_one_output(Study& study, std::size_t case_index
       data::ObservationSet one = whole;
       one.read_with = whole.name;
       one.outputs = {whole.outputs[column]};
-      for (data::Observation& point : one.points) {
-        point.values = {point.values[column]};
-        point.standard_errors = {point.standard_errors[column]};
+      one.points.clear();
+      for (const std::size_t point : data::points_with(whole, column)) {
+        one.points.push_back(whole.points[point]);
+        one.points.back().values = {whole.points[point].values[column]};
+        one.points.back().standard_errors = {whole.points[point].standard_errors[column]};
       }
       if (column == 0) {
         study.observations[sets[i]] = std::move(one);

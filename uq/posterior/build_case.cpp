@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "data/error.hpp"
+#include "data/observations.hpp"
 #include "uq/posterior/build_measurement.hpp"
 #include "uq/posterior/case_checks.hpp"
 #include "uq/posterior/distinct.hpp"
@@ -185,7 +186,8 @@ class Builder {
       group = model.groups.end() - 1;
     }
     const data::ObservationSet& set = study_.observations[set_index];
-    const auto rows = static_cast<Eigen::Index>(set.points.size());
+    const std::vector<std::size_t> points = data::points_with(set, column);
+    const auto rows = static_cast<Eigen::Index>(points.size());
     const Eigen::Index before = group->base.rows();
     group->base.conservativeResize(before + rows, inputs);
     group->unknown.conservativeResize(before + rows, inputs);
@@ -195,8 +197,8 @@ class Builder {
       const EmulatorInput& input = emulator.inputs[k];
       if (input.kind == InputKind::control) {
         for (Eigen::Index i = 0; i < rows; ++i)
-          group->base(before + i, k) = study_.controls[input.index].axis().to_unit(
-              set.points[static_cast<std::size_t>(i)].controls[input.index]);
+          group->base(before + i, k) =
+              study_.controls[input.index].axis().to_unit(set.points[points[i]].controls[input.index]);
         group->unknown.col(k).tail(rows).setConstant(-1);
         for (const auto& error : set.setting_errors)
           if (rows > 0 && error.unknown && error.control == input.index)
@@ -209,17 +211,17 @@ class Builder {
     }
     add_problems(against_the_runs(study_, item, set, emulator));
     for (Eigen::Index i = 0; i < rows; ++i) {
-      const data::Observation& point = set.points[i];
+      const data::Observation& point = set.points[points[i]];
       group->observed[before + i] = point.values[column];
       group->variance[before + i] = point.standard_errors[column] * point.standard_errors[column];
-      group->origin.push_back({.set = set_index, .point = static_cast<std::size_t>(i), .output = set.outputs[column]});
+      group->origin.push_back({.set = set_index, .point = points[i], .output = set.outputs[column]});
     }
     std::vector<Acting> unknowns;
     for (const auto& nuisance : item.nuisances)
       unknowns.push_back({nuisance, unknown_of(links_.home(item, nuisance.parameter.name))});
     for (const auto& nuisance : set_unknowns(study_, set))
       unknowns.push_back({nuisance, unknown_of(home_of(nuisance))});
-    add_problems(add_measurement(*group, study_, {set, set.outputs[column], before}, unknowns));
+    add_problems(add_measurement(*group, study_, {set, set.outputs[column], before, points}, unknowns));
   }
 
   struct Value {

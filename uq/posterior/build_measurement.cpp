@@ -19,13 +19,12 @@ std::optional<int> column_of(const Emulator& emulator, std::size_t control) {
 }
 
 /// A control's error as a covariance: common to the rows at one value of it, or to all rows where it is said to be.
-SettingShift shift_of(const data::Control& control, const data::ObservationSet& set, const data::SettingError& error,
-                      int column) {
-  const auto rows = static_cast<Eigen::Index>(set.points.size());
+SettingShift shift_of(const data::Control& control, const SetRows& of, const data::SettingError& error, int column) {
+  const auto rows = static_cast<Eigen::Index>(of.points.size());
   SettingShift shift{
       .control = error.control, .column = column, .error = Eigen::VectorXd(rows), .level = Eigen::VectorXd::Zero(rows)};
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const double value = set.points[i].controls[error.control];
+    const double value = of.set.points[of.points[i]].controls[error.control];
     const data::Axis axis = control.axis();
     shift.error[i] = std::hypot(error.spread.absolute, error.spread.relative * value) / axis.slope(axis.to_unit(value));
     if (!error.shared) shift.level[i] = value;
@@ -50,7 +49,7 @@ void add_discrepancy(RowGroup& group, const data::Study& study, const SetRows& r
   for (Eigen::Index i = 0; i < count; ++i)
     for (std::size_t c = 0; c < study.controls.size(); ++c)
       part.controls(part.count + i, static_cast<Eigen::Index>(c)) =
-          study.controls[c].axis().to_unit(rows.set.points[i].controls[c]);
+          study.controls[c].axis().to_unit(rows.set.points[rows.points[i]].controls[c]);
   part.count += count;
 }
 
@@ -109,7 +108,7 @@ std::vector<data::Problem> add_measurement(RowGroup& group, const data::Study& s
                                       set.material, control.name),
                           fmt::format("vary it in training, or state its effect as common_error of '{}'", set.name)});
     else if (!error.unknown)
-      read.settings.push_back(shift_of(control, set, error, *column));
+      read.settings.push_back(shift_of(control, rows, error, *column));
   }
   if (!is_plain(read)) group.measurement.sets.push_back(read);
   if (discrepancy.sd >= 0) add_discrepancy(group, study, rows, discrepancy);

@@ -13,6 +13,7 @@ struct SetRows {
   const data::ObservationSet& set;
   std::size_t output = 0;  ///< in Study::outputs
   Eigen::Index first = 0;
+  const std::vector<std::size_t>& points;  ///< of the set, by row: those at which the output was measured
 };
 
 /// One of the model's unknowns that act on them, of the case or of the set.

@@ -126,6 +126,16 @@ class BesideRuns {
 
 }  // namespace
 
+namespace {
+
+/// Equal numbers, and nothing measured in the same places.
+bool is_same(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+}  // namespace
+
 bool hold_the_same(const data::ObservationSet& a, const data::ObservationSet& b) {
   if (a.assumed || b.assumed) return false;
   if (std::none_of(a.outputs.begin(), a.outputs.end(), [&](std::size_t output) {
@@ -136,8 +146,8 @@ bool hold_the_same(const data::ObservationSet& a, const data::ObservationSet& b)
   std::size_t common = 0;
   for (const data::Observation& point : b.points)
     common += std::any_of(a.points.begin(), a.points.end(), [&](const data::Observation& other) {
-      return (one_file || other.controls == point.controls) && other.values == point.values &&
-             other.standard_errors == point.standard_errors;
+      return (one_file || other.controls == point.controls) && is_same(other.values, point.values) &&
+             is_same(other.standard_errors, point.standard_errors);
     });
   return common > 0 && 2 * common >= std::min(a.points.size(), b.points.size());
 }

@@ -65,11 +65,12 @@ void condense(data::ObservationSet& set, const data::CalibrationCase& wanted) {
     for (std::size_t c = 0; c < one.values.size(); ++c) {
       double weight = 0.0, sum = 0.0;
       for (const auto* point : same) {
+        if (!point->has(c)) continue;
         const double w = 1.0 / std::pow(point->standard_errors[c], 2);
         weight += w;
         sum += w * point->values[c];
       }
-      one.values[c] = sum / weight;
+      one.values[c] = sum / weight;  // NaN where none of them measures it
       one.standard_errors[c] = 1.0 / std::sqrt(weight);
     }
     points.push_back(std::move(one));

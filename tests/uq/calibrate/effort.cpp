@@ -22,7 +22,7 @@ Large large() {
   large.study.outputs.resize(1);
   data::ObservationSet set{.name = "bench"};
   set.outputs = {0};
-  for (int i = 0; i < 200; ++i) set.points.push_back({.controls = {1.0 * i}});
+  for (int i = 0; i < 200; ++i) set.points.push_back({.controls = {1.0 * i}, .values = {1.0}});
   large.study.observations = {set};
   data::CalibrationCase one;
   one.name = "powder";
@@ -66,7 +66,7 @@ TEST_CASE("many different settings take long of few runs, too, and readings of o
   given.table.rows.resize(60);
   std::vector<data::Observation>& points = given.study.observations[0].points;
   points.clear();
-  for (int i = 0; i < 400; ++i) points.push_back({.controls = {1.0 * i}});
+  for (int i = 0; i < 400; ++i) points.push_back({.controls = {1.0 * i}, .values = {1.0}});
   CHECK(uq::effort_notes(given.study, given.table, {}).size() == 1);
   for (data::Observation& point : points) point.controls = {std::floor(point.controls[0] / 40.0)};
   CHECK(uq::effort_notes(given.study, given.table, {}).empty());

@@ -81,6 +81,32 @@ TEST_CASE("outputs read at settings of one error have the density of their joint
   }
 }
 
+TEST_CASE("an output that a row does not measure leaves the density of the readings that are there", "[uq]") {
+  // The marginal of the joint normal law: rows and columns 1 (second torque) and 3 (first angle) struck out.
+  const std::vector<Eigen::Index> there{0, 2, 4, 5};
+  for (const bool shared : {true, false}) {
+    const data::Study whole = study_with(shared);
+    data::Study study = whole;
+    std::vector<data::Observation>& points = study.observations[0].points;
+    points[1].values[0] = points[1].standard_errors[0] = NAN;
+    points[0].values[1] = points[0].standard_errors[1] = NAN;
+    const CaseModel model = build_case(study, formula::emulators(0.0, lines), 0);
+    REQUIRE(model.row_count() == 4);
+    const MatrixXd covariance = covariance_by_hand(shared)(there, there);
+    for (const double a : {0.2, 0.5, 0.8}) {
+      VectorXd residual(6);
+      for (Eigen::Index i = 0; i < 6; ++i) {
+        const data::Observation& point = whole.observations[0].points[i % 3];
+        residual[i] = point.values[i / 3] - (a + (i < 3 ? 2.0 : 3.0) * point.controls[0]);
+      }
+      const VectorXd left = residual(there);
+      const double exact = -0.5 * left.dot(covariance.inverse() * left) - 0.5 * std::log(covariance.determinant()) -
+                           2.0 * std::log(2.0 * std::numbers::pi);
+      CHECK(log_likelihood(model, Eigen::Vector2d(a, 0.5)) == Approx(exact).epsilon(1e-9));
+    }
+  }
+}
+
 TEST_CASE("replicate data share the error of the setting that they are read at", "[uq]") {
   for (const bool shared : {true, false}) {
     const CaseModel model = build_case(study_with(shared), formula::emulators(0.0, lines), 0);
