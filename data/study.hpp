@@ -101,13 +101,19 @@ struct Material {
   std::string place;
 };
 
+/// What makes the study's runs.
+enum class Engine {
+  demcal,
+  none,  ///< another code: the study brings its table
+};
+
 struct Training {
   int runs = 64;                 ///< per material
   double standard_error = 0.02;  ///< wanted relative standard error of the first output
   std::string table;             ///< file of rows that come with the study, absolute path; empty if none
   std::string low;               ///< rows of a cheaper level of the model under the table's, absolute path; or empty
   std::vector<std::string> leave_out;  ///< rows not to learn from: "31" (a line of the table) or "training.csv:31"
-  std::string engine = "demcal";       ///< "demcal", or "none" for a study on another code's runs
+  Engine engine = Engine::demcal;
   std::string place;
 };
 

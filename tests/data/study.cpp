@@ -51,7 +51,7 @@ TEST_CASE("the other-code study reads as it is shipped, in SI") {
   CHECK(study.parameters[1].prior.high == study.parameters[1].high);
   REQUIRE(study.controls.size() == 1);
   CHECK(study.controls[0].high == Approx(10.0 * std::numbers::pi));
-  CHECK(study.training.engine == "none");
+  CHECK(study.training.engine == data::Engine::none);
   CHECK(study.training.table == std::string(DEMCAL_SOURCE_DIR) + "/data/other-code/runs.csv");
   CHECK(study.outputs.at(0).unit.symbol == "mN m");
   REQUIRE(study.observations.size() == 1);
@@ -80,7 +80,7 @@ TEST_CASE(
   const data::Study study = data::read_study(file);
   file.root().child("rig");
   CHECK_NOTHROW(file.finish());
-  CHECK(study.training.engine == "demcal");
+  CHECK(study.training.engine == data::Engine::demcal);
   CHECK(study.material("z-800").fixed.at("cohesion") == 0.0);
   CHECK(study.material("z-800").runs == 12);
   CHECK_FALSE(study.material("z-100").runs.has_value());

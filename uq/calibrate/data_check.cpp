@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "uq/calibrate/data_columns.hpp"
 #include "uq/findings/study_units.hpp"
@@ -36,7 +37,7 @@ double span(const InputColumn& column, double factor = 1.0) {
 std::optional<Finding> other_unit(const InputColumn& column) {
   const double inside = share_inside(column, column.low, column.high);
   if (!(span(column) > 0.0) || (inside > 0.5 && span(column) > 0.05)) return {};
-  for (const UnitFactor& known : unit_factors())
+  for (const UnitFactor& known : unit_factors(column.unit))
     for (const double factor : {known.factor, 1.0 / known.factor}) {
       if (share_inside(column, column.low, column.high, factor) < 0.95 || span(column, factor) < 0.4) continue;
       const auto [least, most] = std::minmax_element(column.values.begin(), column.values.end());
@@ -65,7 +66,7 @@ std::optional<UnitFactor> unit_of_some(const InputColumn& column, const std::vec
   if (outside.size() < fewest) return {};
   InputColumn some = column;
   some.values = outside;
-  for (const UnitFactor& known : unit_factors())
+  for (const UnitFactor& known : unit_factors(column.unit))
     for (const double factor : {known.factor, 1.0 / known.factor})
       if (share_inside(some, column.low, column.high, factor) == 1.0 && span(some, factor) >= 0.4) return known;
   return {};
@@ -142,28 +143,46 @@ std::optional<Finding> exchanged_output(const data::Study& study, const data::Ru
 
 }  // namespace
 
-const std::vector<UnitFactor>& unit_factors() {
-  static const std::vector<UnitFactor> factors{
-      {1000.0, "one prefix (m, k) more or less"},
-      {1e6, "two prefixes (u, M) more or less"},
-      {60.0, "minutes against seconds"},
-      {60.0 / (2.0 * std::numbers::pi), "rpm against rad/s"},
-      {2.0 * std::numbers::pi, "turns against radians"},
-      {180.0 / std::numbers::pi, "degrees against radians"},
-      {100.0, "percent, or cm against m"},
-      {1e4, "cm2 against m2"},
-      {9.80665, "kgf against N"},
-      {1e9, "three prefixes (n, G) more or less"},
+std::vector<UnitFactor> unit_factors(const data::Unit& unit) {
+  struct Known {
+    UnitFactor factor;
+    std::vector<std::string> dimensions;  // SI base units of which the quantity has one; none: any quantity
+    bool of_ratios = false;               // what numbers without a unit are most often written in
   };
-  return factors;
+  static const std::vector<Known> all{
+      {{1000.0, "one prefix (m, k) more or less"}, {}},
+      {{1e6, "two prefixes (u, M) more or less"}, {}},
+      {{60.0, "minutes against seconds"}, {"s"}},
+      {{60.0 / (2.0 * std::numbers::pi), "rpm against rad/s"}, {"rad"}},
+      {{2.0 * std::numbers::pi, "turns against radians"}, {"rad"}},
+      {{180.0 / std::numbers::pi, "degrees against radians"}, {"rad"}, true},
+      {{100.0, "percent, or cm against m"}, {"m"}, true},
+      {{1e4, "cm2 against m2"}, {"m"}},
+      {{9.80665, "kgf against N"}, {"kg"}},
+      {{1e9, "three prefixes (n, G) more or less"}, {}},
+  };
+  const bool bare = data::is_bare(unit.symbol);  // nothing is known of what it measures
+  const auto has = [&](const std::string& base) {
+    std::istringstream terms(unit.si_symbol);
+    for (std::string term; terms >> term;)
+      if (term.substr(0, term.find_first_of("-0123456789")) == base) return true;
+    return false;
+  };
+  std::vector<UnitFactor> found;
+  for (const bool of_ratios : {true, false})
+    for (const Known& known : all)
+      if ((bare ? known.of_ratios : false) == of_ratios &&
+          (bare || known.dimensions.empty() || std::any_of(known.dimensions.begin(), known.dimensions.end(), has)))
+        found.push_back(known.factor);
+  return found;
 }
 
-std::optional<UnitFactor> known_factor(double typical, double expected, double slack) {
+std::optional<UnitFactor> known_factor(const data::Unit& unit, double typical, double expected, double slack) {
   if (!(typical * expected > 0.0)) return {};
   const double wanted = std::abs(std::log(expected / typical));
   std::optional<UnitFactor> best;
   double nearest = std::log(slack);
-  for (const UnitFactor& known : unit_factors())
+  for (const UnitFactor& known : unit_factors(unit))
     if (const double off = std::abs(wanted - std::log(known.factor)); off < nearest) {
       nearest = off;
       best = known;

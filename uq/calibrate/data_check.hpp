@@ -57,7 +57,8 @@ struct UnitFactor {
   std::string between;  ///< "a prefix (m against none)"
 };
 
-/// The factor that takes values of about `typical` to about `expected`, within `slack` (a ratio), if one is known.
-std::optional<UnitFactor> known_factor(double typical, double expected, double slack);
+/// The factor that takes values of about `typical` to about `expected`, within `slack` (a ratio), if one between units of
+/// that quantity is known.
+std::optional<UnitFactor> known_factor(const data::Unit& unit, double typical, double expected, double slack);
 
 }  // namespace uq

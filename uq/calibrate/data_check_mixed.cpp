@@ -48,7 +48,8 @@ std::optional<Finding> two_units(const data::Output& output, std::vector<Entry> 
   const double gap = size(high.front()) - size(low.back());
   const double widest = std::max(size(low.back()) - size(low.front()), size(high.back()) - size(high.front()));
   if (std::min(low.size(), high.size()) < group_least || gap < std::log(gap_least) || gap < widest) return {};
-  const std::optional<UnitFactor> known = known_factor(std::abs(middle(low)), std::abs(middle(high)), factor_slack);
+  const std::optional<UnitFactor> known =
+      known_factor(output.unit, std::abs(middle(low)), std::abs(middle(high)), factor_slack);
   if (!known || parted_by_an_input(low, high)) return {};
   std::vector<std::string> places;
   for (const Entry& entry : low.size() < high.size() ? low : high) places.push_back(entry.row->place);
@@ -81,7 +82,7 @@ std::optional<Finding> other_readings(const data::Study& study, const data::RunT
     const double value = point.values[column];
     if (value >= least && value <= most) ++inside;
     if (!(value < least / gap_least || value > most * gap_least)) continue;
-    for (const UnitFactor& known : unit_factors())
+    for (const UnitFactor& known : unit_factors(study.outputs[k].unit))
       for (const double times : {known.factor, 1.0 / known.factor})
         if (value * times >= least && value * times <= most && (!factor || factor->factor == known.factor)) {
           const std::string place = place_of(set, point);

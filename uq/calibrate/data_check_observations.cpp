@@ -123,7 +123,7 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
                             seen.low < seen.high ? "" : "s", shown(runs.low), shown(runs.high), unit),
         .remedy = "",
         .places = {}};
-    if (const auto known = known_factor(data::median_of(seen.values), data::median_of(runs.values), 2.0))
+    if (const auto known = known_factor(output.unit, data::median_of(seen.values), data::median_of(runs.values), 2.0))
       finding.what += fmt::format(": {:.3g} times the runs'. Is another unit meant, {}?", ratio, known->between);
     finding.remedy = fmt::format(
         "check the unit of {} in {} and in the run table, the fill and the geometry; where they are "
@@ -156,7 +156,8 @@ void check_control_unit(const data::Study& study, const data::RunTable& table, c
     const double middle = data::median_of(seen.values);
     if (middle < least_factor * runs.high && least_factor * middle > runs.low) continue;
     const UnitFactor* known = nullptr;  // that takes all readings into the range
-    for (const UnitFactor& candidate : unit_factors())
+    const std::vector<UnitFactor> factors = unit_factors(control.unit);
+    for (const UnitFactor& candidate : factors)
       for (const double factor : {candidate.factor, 1.0 / candidate.factor})
         if (known == nullptr && factor * seen.low > control.low - 0.2 * slack &&
             factor * seen.high < control.high + 0.2 * slack)

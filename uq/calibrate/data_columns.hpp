@@ -35,6 +35,7 @@ std::size_t input_column(const data::RunTable& table, const std::string& name);
 /// "bench.csv:7"
 std::string place_of(const data::ObservationSet& set, const data::Observation& point);
 
-const std::vector<UnitFactor>& unit_factors();
+/// Factors between units that a quantity of this unit is written in by mistake, the likeliest first.
+std::vector<UnitFactor> unit_factors(const data::Unit& unit);
 
 }  // namespace uq

@@ -5,17 +5,15 @@
 #include <cmath>
 
 #include "uq/calibrate/calibrate.hpp"
-#include "uq/calibrate/data_columns.hpp"
+#include "uq/calibrate/case_warnings.hpp"
+#include "uq/calibrate/case_words.hpp"
 #include "uq/calibrate/misfit.hpp"
-#include "uq/emulate/scale_hint.hpp"
 #include "uq/findings/study_units.hpp"
 #include "uq/infer/diagnostics.hpp"
 #include "uq/infer/quadrature.hpp"
 #include "uq/posterior/discrepancy.hpp"
 #include "uq/posterior/posterior.hpp"
-#include "uq/posterior/prior_conflict.hpp"
 #include "uq/posterior/support.hpp"
-#include "uq/verdict/contradiction.hpp"
 #include "uq/verdict/outlying_reading.hpp"
 
 namespace uq {
@@ -137,32 +135,10 @@ void take_cut_verdicts(Identification& found, const SampledCase& sampled, const 
   }
 }
 
-void add_sampler_warnings(CaseReport& report, const Draws& draws) {
-  for (const auto& chain : draws.chains)
-    if (chain.energy.size() > 0) {
-      const double fraction = energy_fraction(chain.energy);
-      if (!(report.energy_fraction <= fraction)) report.energy_fraction = fraction;
-    }
-  if (report.divergences > 0)
-    report.warnings.push_back(fmt::format(
-        "case {}: {} divergent trajectories: the draws may miss a sharp corner of the posterior (sampler = \"mixture\" "
-        "does not follow gradients)",
-        report.name, report.divergences));
-  if (report.energy_fraction < 0.3)
-    report.warnings.push_back(fmt::format("case {}: E-BFMI {:.2f} is below 0.3: the chains explore the energies slowly",
-                                          report.name, report.energy_fraction));
-  const bool has_evidence = !std::isnan(report.log_evidence);
-  if (has_evidence && !(report.log_evidence_error < 0.2))
-    report.warnings.push_back(
-        fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
-}
-
-/// What it is that cannot carry a verdict.
-enum class DoubtOf { nothing, surrogate, support, draws, runs };
-
+/// What cannot carry a verdict, and why, of each parameter, in words (as IdentifyOptions has it).
 struct Doubt {
   DoubtOf of = DoubtOf::nothing;
-  std::vector<std::string> unsupported;  ///< of each parameter, in words; as IdentifyOptions has it
+  std::vector<std::string> unsupported;
 };
 
 Doubt doubt_about(const SampledCase& sampled, const std::vector<std::string>& already) {
@@ -177,124 +153,6 @@ Doubt doubt_about(const SampledCase& sampled, const std::vector<std::string>& al
     found.unsupported.assign(static_cast<std::size_t>(model.own_count()), "the sampler has not converged");
   }
   return found;
-}
-
-/// Where the runs or the draws cannot carry a verdict, that is the finding, and what is printed beside it is no result.
-void say_doubt(CaseReport& report, DoubtOf of, Words& words, const data::Study& study) {
-  const bool own_engine = study.training.engine == "demcal";
-  words.finding = fmt::format("No verdict: {}.{}", report.doubt,
-                              report.fits ? "" : " As it stands, the surrogate does not reproduce the data either.");
-  if (const std::string off = farthest_off(report.predictive); !report.fits && !off.empty()) words.finding += " " + off;
-  report.traded.clear();
-  if (of == DoubtOf::surrogate) {
-    words.consequence = "What the surrogate gives for the parameters is not the model's, and is not shown.";
-    words.remedies = {"See the surrogate's remedy above; then calibrate again."};
-  } else if (of == DoubtOf::support) {
-    words.consequence = "The values are extrapolated, and no results.";
-    words.remedies = {
-        fmt::format("Run {} of the posterior's points ({}), and calibrate again.", report.support.next_runs.size(),
-                    own_engine ? "demcal train STUDY --at-posterior N" : "next-runs.csv beside the report")};
-  } else if (of == DoubtOf::draws) {
-    words.consequence = "The values are those of draws that do not agree yet, and no results.";
-    words.remedies = {
-        "Fix what the data say nothing of, or try the other sampler (--sampler nuts, --sampler mixture)."};
-  } else {
-    words.consequence = "The values with and without those runs are both shown; neither is a result yet.";
-    words.remedies = {"Correct the runs or leave them out ([training] leave_out), and calibrate again."};
-  }
-}
-
-std::string line_of(const data::Study& study, const RowOrigin& origin) {
-  const data::ObservationSet& set = study.observations[origin.set];
-  return place_of(set, set.points[origin.point]);
-}
-
-/// "torque 31.2 mN m at rpm 150 (bench.csv:5)".
-std::string reading_in_words(const data::Study& study, const RowOrigin& origin) {
-  const data::ObservationSet& set = study.observations[origin.set];
-  const data::Observation& point = set.points[origin.point];
-  const auto column = std::find(set.outputs.begin(), set.outputs.end(), origin.output) - set.outputs.begin();
-  const data::Output& output = study.outputs[origin.output];
-  std::string at;
-  for (std::size_t c = 0; c < study.controls.size(); ++c)
-    at += fmt::format("{} {} {:.4g}{}", at.empty() ? " at" : ",", study.controls[c].name,
-                      study.controls[c].unit.from_si(point.controls[c]), behind_number(study.controls[c].unit.symbol));
-  return fmt::format("{} {:.4g}{}{} ({})", output.name, output.unit.from_si(point.values[column]),
-                     behind_number(output.unit.symbol), at, line_of(study, origin));
-}
-
-/// A fit that is not refused, and that data of the model's own would seldom give.
-void add_poor_fit(Words& words, const FitCheck& check) {
-  words.finding += fmt::format(
-      " The fit is poor: chi2 {:.1f} for {} degrees of freedom, as far off as {:.1g} % of the model's own data.",
-      check.chi2, check.dof, 100.0 * check.best_fit_p);
-  words.consequence += " The errors do not cover a model that is off, nor readings that scatter more than is stated.";
-  words.remedies.insert(words.remedies.begin(), "Look first at what the residuals have in common.");
-}
-
-const char* const check_reading =
-    "Check that reading, its unit and its decimal point first; where it is wrong, take its line out.";
-
-std::string outlying_in_words(const std::string& name, const data::Study& study, const OutlyingReading& one) {
-  return fmt::format(
-      "case {}: {} lies {:.2g} errors of the others from what they say (chance {:.1g}), and widens the "
-      "unknown errors by a factor of {:.2g}",
-      name, reading_in_words(study, one.origin), one.errors, one.chance, one.widening);
-}
-
-/// What one wrong reading widens is no finding.
-void put_first(Words& words, const data::Study& study, const OutlyingReading& one) {
-  words.finding +=
-      fmt::format(" {} is far from what all others say, and widens every value.", reading_in_words(study, one.origin));
-  words.consequence = "Look at that reading before any value is used.";
-  words.remedies = {check_reading};
-}
-
-/// A posterior between a prior and data that contradict it is a compromise that neither of them supports.
-void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
-                         const VerdictThresholds& thresholds) {
-  if (!report.converged) return;
-  for (const PriorConflict& conflict : prior_conflicts(*sampled.model, draws, thresholds.prior_conflict_sd)) {
-    const NuisanceReport found = summary_of(sampled, conflict.unknown);
-    const std::string unit = behind_number(found.unit);
-    report.warnings.push_back(
-        fmt::format("case {}: the data contradict the prior of {} by {:.2g} standard deviations: {:.3g} +- {:.2g}{} "
-                    "was stated, and {:.3g} +- {:.2g}{} is a compromise of both (check the prior, and what it was "
-                    "measured on; then "
-                    "the data's errors)",
-                    report.name, found.name, std::abs(conflict.z), found.prior_mean, found.prior_sd, unit, found.mean,
-                    found.sd, unit));
-  }
-}
-
-void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
-  if (of == DoubtOf::support || of == DoubtOf::runs)
-    report.warnings.push_back(fmt::format("case {}: {}", report.name, report.doubt));
-  if (!sampled.draws.converged)
-    report.warnings.push_back(
-        fmt::format("case {}: the chains have not converged: {}", report.name, sampled.draws.reason));
-  if (!report.fits && report.doubt.empty())
-    report.warnings.push_back(fmt::format("case {}: the model does not fit the data", report.name));
-  add_sampler_warnings(report, sampled.draws);
-  if (!report.discrepancies.empty()) {
-    double largest = 0.0;
-    for (const auto& band : report.discrepancies) largest = std::max(largest, band.share);
-    report.warnings.push_back(
-        fmt::format("case {}: a discrepancy competes with the parameters for the data (it takes {:.0f} % of the spread "
-                    "about the model); what it takes, the parameters need not explain",
-                    report.name, 100.0 * largest));
-  }
-  for (const auto& unknown : sampled.model->unknowns)
-    if (unknown.nuisance == data::NuisanceKind::setting && unknown.prior.kept_mass() < 0.99)
-      report.warnings.push_back(
-          fmt::format("case {}: {:.0f} % of what {} may be lies beyond the control's range and is cut off, which "
-                      "biases the parameters "
-                      "(widen the control's range with runs there, or set as = \"covariance\" in its uncertainty)",
-                      report.name, 100.0 * (1.0 - unknown.prior.kept_mass()), unknown.label));
-  for (const auto& unknown : sampled.model->unknowns)
-    if (!unknown.nuisance && unknown.prior.kept_mass() < 0.99)
-      report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
-                                            unknown.label, 100.0 * (1.0 - unknown.prior.kept_mass())));
 }
 
 /// What is known of a case before its draws are looked at.
@@ -312,6 +170,11 @@ CaseReport begun(const data::Study& study, const SampledCase& sampled) {
   report.divergences = sampled.draws.divergences;
   report.sampler = sampled.draws.sampler;
   report.search = search_in_words(sampled.draws);
+  for (const auto& chain : sampled.draws.chains)
+    if (chain.energy.size() > 0) {
+      const double fraction = energy_fraction(chain.energy);
+      if (!(report.energy_fraction <= fraction)) report.energy_fraction = fraction;
+    }
   for (const auto& unknown : model.unknowns)
     if (!unknown.cut_from.empty()) report.cuts.push_back(unknown.label + " from " + unknown.cut_from);
   report.log_evidence = sampled.draws.log_evidence;
@@ -363,28 +226,6 @@ void add_bands(CaseReport& report, const data::Study& study, const CaseModel& mo
   report.discrepancies = discrepancy_bands(study, model, draws, seed);
 }
 
-/// Where a model that does not fit is farthest off, which sets contradict each other, and units that would explain it.
-void add_misfit(Words& words, const CaseReport& report, const data::Study& study, const CaseModel& model,
-                const Identification& found, const VerdictThresholds& thresholds) {
-  if (const std::string off = farthest_off(report.predictive); !off.empty()) words.finding += " " + off;
-  const Contradiction sets = describe_contradiction(fits_alone(study, model, found.best_fit.x), thresholds.best_fit_p);
-  if (!sets.finding.empty()) {
-    words.finding += " " + sets.finding;
-    words.remedies.insert(words.remedies.begin(), sets.remedy);
-  }
-  for (const RowGroup& group : model.groups)
-    if (const std::string hint = scale_hint(study, group.emulator.control_range);
-        !hint.empty() && shown_remedy(words).find(hint) == std::string::npos)
-      words.remedies.push_back(hint);
-}
-
-void say_lone_reading(CaseReport& report, Words& words, const data::Study& study, const LoneReading& lone) {
-  report.lone_reading = line_of(study, lone.origin);
-  words.finding += fmt::format(" {} contradicts all others, which fit without it (p {:.2g}).",
-                               reading_in_words(study, lone.origin), lone.p_without);
-  words.remedies = {check_reading};
-}
-
 }  // namespace
 
 NuisanceReport summary_of(const SampledCase& sampled, int k) {
@@ -429,22 +270,22 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
     add_quadrature(report, sampled, draws, options);
   report.modes_parted_by = parted_by(study, model, found.modes);
 
-  Words words = summarise(found, report.modes_parted_by, study.training.engine == "demcal");
+  Words words = summarise(found, report.modes_parted_by, study.training.engine == data::Engine::demcal);
   const std::optional<LoneReading> lone =
       found.fits ? std::nullopt : lone_reading(study, model, found.best_fit.x, options.identify.thresholds);
-  if (!found.fits && !lone) add_misfit(words, report, study, model, found, options.identify.thresholds);
+  if (!found.fits && !lone) say_misfit(words, report, study, model, found, options.identify.thresholds);
   if (doubt.of != DoubtOf::nothing) say_doubt(report, doubt.of, words, study);
   if (lone) say_lone_reading(report, words, study, *lone);
   const std::optional<OutlyingReading> outlying =
       found.fits ? outlying_reading(model, found.best_fit.x, judged.thresholds) : std::nullopt;
-  if (outlying) put_first(words, study, *outlying);
+  if (outlying) say_outlying_reading(words, study, *outlying);
   if (found.fits && report.doubt.empty() && found.check.best_fit_p < judged.thresholds.poor_fit_p)
-    add_poor_fit(words, found.check);
+    say_poor_fit(words, found.check);
   report.finding = words.finding;
   report.consequence = words.consequence;
   report.remedy = shown_remedy(words);
   add_warnings(report, doubt.of, sampled);
-  if (outlying) report.warnings.push_back(outlying_in_words(report.name, study, *outlying));
+  if (outlying) report.warnings.push_back(outlying_warning(report.name, study, *outlying));
   add_prior_conflicts(report, sampled, draws, judged.thresholds);
   return report;
 }

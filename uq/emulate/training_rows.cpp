@@ -154,7 +154,7 @@ std::vector<TrainingRows> training_rows(const data::Study& study, const data::Ru
                             fmt::format("{} has {} runs of {}{}, fewer than the {} that {} inputs need at the very "
                                         "least",
                                         name, rows, study.outputs[output].name, level, needed, found.inputs.size()),
-                            study.training.engine == "none"
+                            study.training.engine == data::Engine::none
                                 ? "add rows to the table, ten per input is a good start"
                                 : "run `demcal train` for more, ten per input is a good start"});
       };

@@ -227,6 +227,13 @@ TEST_CASE("a column in another unit is suspected from its range, and refused whe
     REQUIRE_FALSE(looked.findings.empty());
     CHECK_THAT(looked.findings[0].what, Contains("rpm against rad/s"));
   }
+  SECTION("friction as an angle in degrees: of a ratio neither time nor force is another unit") {
+    files.each_run([](Row& row) { row.friction = std::atan(row.friction) * 180.0 / 3.14159265; });
+    const Looked looked = look(files);
+    REQUIRE_FALSE(looked.findings.empty());
+    CHECK(looked.findings[0].severity == Severity::refusal);
+    CHECK_THAT(looked.findings[0].what, Contains("Is another unit meant, degrees against radians?"));
+  }
   SECTION("the bench's speed in turns per second") {
     files.each_reading([](Row& row) { row.speed /= 60.0; });
     bool said = false;

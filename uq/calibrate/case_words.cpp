@@ -1,0 +1,106 @@
+#include "uq/calibrate/case_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "uq/calibrate/data_columns.hpp"
+#include "uq/emulate/scale_hint.hpp"
+#include "uq/findings/study_units.hpp"
+
+namespace uq {
+namespace {
+
+constexpr const char* check_reading =
+    "Check that reading, its unit and its decimal point first; where it is wrong, take its line out.";
+
+std::string line_of(const data::Study& study, const RowOrigin& origin) {
+  const data::ObservationSet& set = study.observations[origin.set];
+  return place_of(set, set.points[origin.point]);
+}
+
+/// "torque 31.2 mN m at rpm 150 (bench.csv:5)".
+std::string reading_in_words(const data::Study& study, const RowOrigin& origin) {
+  const data::ObservationSet& set = study.observations[origin.set];
+  const data::Observation& point = set.points[origin.point];
+  const auto column = std::find(set.outputs.begin(), set.outputs.end(), origin.output) - set.outputs.begin();
+  const data::Output& output = study.outputs[origin.output];
+  std::string at;
+  for (std::size_t c = 0; c < study.controls.size(); ++c)
+    at += fmt::format("{} {} {:.4g}{}", at.empty() ? " at" : ",", study.controls[c].name,
+                      study.controls[c].unit.from_si(point.controls[c]), behind_number(study.controls[c].unit.symbol));
+  return fmt::format("{} {:.4g}{}{} ({})", output.name, output.unit.from_si(point.values[column]),
+                     behind_number(output.unit.symbol), at, line_of(study, origin));
+}
+
+}  // namespace
+
+void say_doubt(CaseReport& report, DoubtOf of, Words& words, const data::Study& study) {
+  const bool own_engine = study.training.engine == data::Engine::demcal;
+  words.finding = fmt::format("No verdict: {}.{}", report.doubt,
+                              report.fits ? "" : " As it stands, the surrogate does not reproduce the data either.");
+  if (const std::string off = farthest_off(report.predictive); !report.fits && !off.empty()) words.finding += " " + off;
+  report.traded.clear();
+  if (of == DoubtOf::surrogate) {
+    words.consequence = "What the surrogate gives for the parameters is not the model's, and is not shown.";
+    words.remedies = {"See the surrogate's remedy above; then calibrate again."};
+  } else if (of == DoubtOf::support) {
+    words.consequence = "The values are extrapolated, and no results.";
+    words.remedies = {
+        fmt::format("Run {} of the posterior's points ({}), and calibrate again.", report.support.next_runs.size(),
+                    own_engine ? "demcal train STUDY --at-posterior N" : "next-runs.csv beside the report")};
+  } else if (of == DoubtOf::draws) {
+    words.consequence = "The values are those of draws that do not agree yet, and no results.";
+    words.remedies = {
+        "Fix what the data say nothing of, or try the other sampler (--sampler nuts, --sampler mixture)."};
+  } else {
+    words.consequence = "The values with and without those runs are both shown; neither is a result yet.";
+    words.remedies = {"Correct the runs or leave them out ([training] leave_out), and calibrate again."};
+  }
+}
+
+void say_poor_fit(Words& words, const FitCheck& check) {
+  words.finding += fmt::format(
+      " The fit is poor: chi2 {:.1f} for {} degrees of freedom, as far off as {:.1g} % of the model's own data.",
+      check.chi2, check.dof, 100.0 * check.best_fit_p);
+  words.consequence += " The errors do not cover a model that is off, nor readings that scatter more than is stated.";
+  words.remedies.insert(words.remedies.begin(), "Look first at what the residuals have in common.");
+}
+
+std::string outlying_warning(const std::string& name, const data::Study& study, const OutlyingReading& one) {
+  return fmt::format(
+      "case {}: {} lies {:.2g} errors of the others from what they say (chance {:.1g}), and widens the "
+      "unknown errors by a factor of {:.2g}",
+      name, reading_in_words(study, one.origin), one.errors, one.chance, one.widening);
+}
+
+void say_outlying_reading(Words& words, const data::Study& study, const OutlyingReading& one) {
+  words.finding +=
+      fmt::format(" {} is far from what all others say, and widens every value.", reading_in_words(study, one.origin));
+  words.consequence = "Look at that reading before any value is used.";
+  words.remedies = {check_reading};
+}
+
+void say_misfit(Words& words, const CaseReport& report, const data::Study& study, const CaseModel& model,
+                const Identification& found, const VerdictThresholds& thresholds) {
+  if (const std::string off = farthest_off(report.predictive); !off.empty()) words.finding += " " + off;
+  const Contradiction sets = describe_contradiction(fits_alone(study, model, found.best_fit.x), thresholds.best_fit_p);
+  if (!sets.finding.empty()) {
+    words.finding += " " + sets.finding;
+    words.remedies.insert(words.remedies.begin(), sets.remedy);
+  }
+  for (const RowGroup& group : model.groups)
+    if (const std::string hint = scale_hint(study, group.emulator.control_range);
+        !hint.empty() && shown_remedy(words).find(hint) == std::string::npos)
+      words.remedies.push_back(hint);
+}
+
+void say_lone_reading(CaseReport& report, Words& words, const data::Study& study, const LoneReading& lone) {
+  report.lone_reading = line_of(study, lone.origin);
+  words.finding += fmt::format(" {} contradicts all others, which fit without it (p {:.2g}).",
+                               reading_in_words(study, lone.origin), lone.p_without);
+  words.remedies = {check_reading};
+}
+
+}  // namespace uq
