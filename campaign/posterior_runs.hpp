@@ -69,7 +69,4 @@ std::vector<PlannedRun> without_rows(const Workspace& workspace, const std::vect
 /// CPU time of a run of the table, s: the median; 0 when no row says.
 double median_run_time(const data::RunTable& table);
 
-/// Value typed with five digits in the unit.
-double five_digits(double si, const data::Unit& unit);
-
 }  // namespace campaign

@@ -121,11 +121,11 @@ data::ExitStatus collect(const ExportOptions& options, Workspace workspace) {
   const data::Unit& unit = torque->unit;
   answer(options.common,
          fmt::format("{}: torque {:.4g} +- {:.2g} {}, {}\nRow {} of {}", describe(workspace.study, point),
-                     unit.from_si(measured.torque.mean), unit.from_si(measured.torque.standard_error), unit.symbol,
+                     unit.from_si(measured.torque.mean), measured.torque.standard_error / unit.factor, unit.symbol,
                      row.state, table.rows.size(), path));
   print_json(options.common, {{"torque",
                                {{"mean", unit.from_si(measured.torque.mean)},
-                                {"standard_error", unit.from_si(measured.torque.standard_error)},
+                                {"standard_error", measured.torque.standard_error / unit.factor},
                                 {"unit", unit.symbol}}},
                               {"state", row.state},
                               {"table", path}});

@@ -113,7 +113,7 @@ Action add_sample(CLI::App& program) {
       const uq::SampledCase sampled = [&] {
         JobProgress progress(*common, "sampling " + study.cases[i].name);
         uq::CalibrateOptions own = options;
-        own.nuts.progress = [&](double share) { progress("", share); };
+        own.sampling_progress = [&](double share) { progress("", share); };
         return uq::sample_case(study, uq::emulators_of(fitted), i, own);
       }();
       const std::string path = posterior_path(workspace, study.cases[i].name);

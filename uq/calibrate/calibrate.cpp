@@ -156,9 +156,9 @@ WithoutRuns calibrate_without(const data::Study& study, const std::vector<Fitted
   found.fits = identified.fits;
   for (const ParameterReport& parameter : identified.parameters) {
     found.parameters.push_back(again(parameter));
-    found.sentence += fmt::format("{}{} {} +- {}{} ({})", found.sentence.empty() ? "" : ", ", parameter.name,
-                                  with_error(parameter.mean, parameter.sd), with_error(parameter.sd, parameter.sd),
-                                  behind_number(parameter.unit), to_text(parameter.verdict));
+    found.sentence += fmt::format("{}{} {} ({})", found.sentence.empty() ? "" : ", ", parameter.name,
+                                  format_with_error(parameter.mean, parameter.sd, parameter.unit, Typography::ascii),
+                                  to_text(parameter.verdict));
   }
   if (!sampled.draws.converged) found.sentence += "; the chains have not converged";
   found.sentence += ".";
@@ -179,7 +179,7 @@ std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& 
     CalibrateOptions own = options;
     const double before = static_cast<double>(index) / static_cast<double>(options.error_scan.size());
     if (options.progress)
-      own.mixture.progress = own.nuts.progress = [&, before](double share) {
+      own.sampling_progress = [&, before](double share) {
         options.progress(fmt::format("errors of {:g} %", 100.0 * error),
                          before + 0.9 * share / static_cast<double>(options.error_scan.size()));
       };
@@ -242,7 +242,7 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   for (std::size_t index = 0; index < study.cases.size(); ++index) {
     steps.begin("case " + study.cases[index].name);
     CalibrateOptions sampling = options;
-    sampling.nuts.progress = sampling.mixture.progress = [&](double share) { steps.tell(0.9 * share); };
+    sampling.sampling_progress = [&](double share) { steps.tell(0.9 * share); };
     result.cases.push_back(sample_case(study, emulators, index, sampling));
     const SampledCase& sampled = result.cases.back();
     CalibrateOptions own = options;

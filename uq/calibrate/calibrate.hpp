@@ -35,6 +35,7 @@ struct CalibrateOptions {
   /// What uq/calibrate/data_check.hpp and the readers found, for the report; none: the data are looked at first.
   std::optional<std::vector<data::Finding>> findings = {};
   std::function<void(const std::string& step, double share)> progress = {};  ///< share of the whole job done, 0 to 1
+  std::function<void(double share)> sampling_progress = {};  ///< of a case's draws, whatever the sampler
 };
 
 /// One case, resolved and sampled.

@@ -69,12 +69,14 @@ Draws sample_model(const data::Study& study, const SampledCase& sampled, const s
     nuts.seed = seed;
     nuts.threads = options.threads;
     nuts.draws = draws.value_or(nuts.draws);
+    if (options.sampling_progress) nuts.progress = options.sampling_progress;
     return sample_nuts(target, nuts);
   }
   MixtureSamplerOptions mixture = options.mixture;
   mixture.seed = seed;
   mixture.threads = options.threads;
   mixture.draws = draws.value_or(mixture.draws);
+  if (options.sampling_progress) mixture.progress = options.sampling_progress;
   return sample_mixture(target, mixture);
 }
 

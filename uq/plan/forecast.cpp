@@ -1,13 +1,11 @@
 #include "uq/plan/forecast.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
 #include "data/random.hpp"
 #include "uq/posterior/posterior.hpp"
-#include "uq/refine/acquire.hpp"
 #include "uq/verdict/interval_drop.hpp"
 
 namespace uq::plan {
@@ -20,8 +18,6 @@ using Eigen::VectorXd;
 constexpr int readings_drawn = 200;
 constexpr double sure = 0.9;
 constexpr int readings_most = 1024;
-constexpr std::array all_words = {Verdict::identified, Verdict::weakly_identified, Verdict::several_values,
-                                  Verdict::not_identified};
 
 }  // namespace
 
@@ -135,13 +131,7 @@ std::vector<std::vector<WordProbability>> Forecast::words(const std::vector<Inde
   std::vector<std::vector<WordProbability>> found;
   for (std::size_t k = 0; k < facts.size(); ++k) {
     const std::vector<Verdict> drawn = words_of(facts[k], width_factor(facts[k], k, widths[k]));
-    std::vector<WordProbability> words;
-    for (const Verdict word : all_words)
-      if (const auto count = std::count(drawn.begin(), drawn.end(), word); count > 0)
-        words.push_back({word, static_cast<double>(count) / static_cast<double>(drawn.size())});
-    std::stable_sort(words.begin(), words.end(),
-                     [](const auto& a, const auto& b) { return a.probability > b.probability; });
-    found.push_back(std::move(words));
+    found.push_back(probabilities_of(drawn));
   }
   return found;
 }

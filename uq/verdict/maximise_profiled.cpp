@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uq/posterior/curvature.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/verdict/profile.hpp"
 
@@ -14,21 +15,6 @@ namespace {
 
 constexpr int steps_most = 40;
 constexpr double least_gain = 1e-3;  // log likelihood
-
-/// J' S^-1 J + P at u.
-Eigen::MatrixXd curvature(const CaseModel& full, const Eigen::VectorXd& u) {
-  const CaseModel& model = distinct_rows(full);
-  const Eigen::LLT<Eigen::MatrixXd> factor(predict(model, u).total());
-  Eigen::MatrixXd slopes = sensitivity(model, u);
-  factor.matrixL().solveInPlace(slopes);
-  Eigen::MatrixXd found = slopes.transpose() * slopes;
-  for (Eigen::Index s = 0; s < u.size(); ++s) {
-    const Unknown& unknown = full.unknowns[s];
-    if (unknown.nuisance) found(s, s) += 1.0 / std::pow(unknown.prior.sd(), 2);
-    if (unknown.cut) found(s, s) += 1.0 / std::pow(unknown.cut->sd, 2);
-  }
-  return found;
-}
 
 /// Unknowns that may move: not held, and not at an end that the gradient points beyond.
 std::vector<Eigen::Index> movable(const Box& box, const Maximum& at, const Eigen::VectorXd& gradient,
@@ -53,7 +39,9 @@ void climb_on(const CaseModel& model, const Box& box, const std::vector<Held>& h
     const std::vector<Eigen::Index> free = movable(box, at, gradient, held);
     if (free.empty() || !gradient.allFinite()) return;
     const Eigen::VectorXd slope = gradient(free);
-    const Eigen::MatrixXd bend = curvature(model, at.x)(free, free);
+    const std::optional<Eigen::MatrixXd> curved = curvature(model, at.x, KnownBeside::nuisances);
+    if (!curved) return;
+    const Eigen::MatrixXd bend = (*curved)(free, free);
     bool moved = false;
     for (int attempt = 0; attempt < 8 && !moved; ++attempt) {
       Eigen::MatrixXd damped = bend;

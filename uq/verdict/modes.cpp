@@ -8,6 +8,7 @@
 
 #include "uq/findings/study_units.hpp"
 #include "uq/findings/wording.hpp"
+#include "uq/posterior/curvature.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/verdict/verdict.hpp"
 
@@ -15,6 +16,11 @@ namespace uq {
 namespace {
 
 using Cell = std::vector<std::size_t>;
+
+/// A value to the digits that its error leaves.
+std::string rounded(double value, double error, const std::string& unit) {
+  return format_value(value, rounding_of(value, error), unit, Typography::ascii);
+}
 
 Cell cell_of(const Profiles& all, const Eigen::VectorXd& u) {
   Cell cell;
@@ -25,13 +31,9 @@ Cell cell_of(const Profiles& all, const Eigen::VectorXd& u) {
 
 /// Log of the posterior mass about a point, by the curvature of the likelihood and the prior's width.
 double log_mass(const CaseModel& model, const Eigen::VectorXd& u) {
-  Eigen::MatrixXd slopes = sensitivity(model, u);
-  const Eigen::LLT<Eigen::MatrixXd> noise(predict(model, u).total());
-  if (noise.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
-  noise.matrixL().solveInPlace(slopes);
-  Eigen::MatrixXd precision = slopes.transpose() * slopes;
-  for (Eigen::Index k = 0; k < u.size(); ++k) precision(k, k) += 1.0 / std::pow(model.unknowns[k].prior.sd(), 2);
-  const Eigen::LLT<Eigen::MatrixXd> factor(precision);
+  const std::optional<Eigen::MatrixXd> precision = curvature(model, u, KnownBeside::all);
+  if (!precision) return -std::numeric_limits<double>::infinity();
+  const Eigen::LLT<Eigen::MatrixXd> factor(*precision);
   if (factor.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
   return log_likelihood(model, u) + log_prior(model, u) - factor.matrixLLT().diagonal().array().log().sum();
 }
@@ -165,7 +167,7 @@ std::vector<std::string> unvisited(const CaseModel& model, const Profiles& all, 
                            std::abs(unknown.slope(profile.u[profile.parts[i].best])) / unit.factor;
       names.push_back(
           unknown.label + " near " +
-          with_error(in_study_unit(unknown.prior.parameter(), profile.u[profile.parts[i].best]), 0.25 * width));
+          rounded(in_study_unit(unknown.prior.parameter(), profile.u[profile.parts[i].best]), 0.25 * width, ""));
     }
   }
   return names;
@@ -191,9 +193,8 @@ std::string parted_by(const data::Study& study, const CaseModel& model, const st
   const double sd = std::abs(found.first - found.second) / found.errors / output.unit.factor;
   return fmt::format("measure {} at {} {}, where the values part: {} against {}, {:.1f} standard errors", output.name,
                      control.name, fmt::format("{:.4g}", setting) + behind_number(control.unit.symbol),
-                     with_error(output.unit.from_si(found.first), sd),
-                     with_error(output.unit.from_si(found.second), sd) + behind_number(output.unit.symbol),
-                     found.errors);
+                     rounded(output.unit.from_si(found.first), sd, ""),
+                     rounded(output.unit.from_si(found.second), sd, output.unit.symbol), found.errors);
 }
 
 }  // namespace uq

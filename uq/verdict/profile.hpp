@@ -56,9 +56,8 @@ struct Profile {
   std::optional<int> low_pinned, high_pinned;         ///< unknown at the end of whose range an open side ends
   std::optional<double> runs_end_low, runs_end_high;  ///< u: where the runs end on an open side, short of the support
   std::optional<int> conditional_on;                  ///< unknown whose range's end decides the value, if one does
-  double deviance_at_low = 0.0, deviance_at_high = 0.0;  ///< at the support's bounds
-  std::vector<ProfilePart> parts;                        ///< rising; holes in doubt are filled
-  std::vector<ProfileBarrier> barriers;                  ///< all, those in doubt too
+  std::vector<ProfilePart> parts;                     ///< rising; holes in doubt are filled
+  std::vector<ProfileBarrier> barriers;               ///< all, those in doubt too
   bool closed() const { return low && high; }
   bool flat() const { return !low && !high; }
 };

@@ -127,8 +127,6 @@ void finish_profile(const CaseModel& model, const Profiles& all, Profile& profil
   const double drop = profile.drop;
   profile.deviance = (2.0 * (all.best.value - profile.deviance.array())).max(0.0);
   const Eigen::Index count = profile.u.size();
-  profile.deviance_at_low = profile.deviance[0];
-  profile.deviance_at_high = profile.deviance[count - 1];
 
   // Runs of points inside, their ends where the deviance crosses the drop.
   std::vector<std::pair<Eigen::Index, Eigen::Index>> runs;

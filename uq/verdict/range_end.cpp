@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "uq/infer/factor.hpp"
+#include "uq/posterior/curvature.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/verdict/profile.hpp"
 
@@ -15,15 +15,6 @@ enum class End { inside, low_end, high_end };
 End end_of(const Eigen::VectorXd& best, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper, Eigen::Index s) {
   const double slack = 1e-4 * (upper[s] - lower[s]);
   return best[s] - lower[s] <= slack ? End::low_end : upper[s] - best[s] <= slack ? End::high_end : End::inside;
-}
-
-/// J' S^-1 J, with what the priors add.
-Eigen::MatrixXd information(const CaseModel& model, const Eigen::VectorXd& best) {
-  Eigen::MatrixXd slopes = sensitivity(model, best);
-  factor(predict(model, best).total(), "the data at the best fit").llt.matrixL().solveInPlace(slopes);
-  Eigen::MatrixXd found = slopes.transpose() * slopes;
-  for (Eigen::Index s = 0; s < best.size(); ++s) found(s, s) += 1.0 / std::pow(model.unknowns[s].prior.sd(), 2);
-  return found;
 }
 
 }  // namespace
@@ -45,7 +36,9 @@ std::vector<RangeEnd> range_ends(const CaseModel& model, const Eigen::VectorXd& 
   }
   std::vector<RangeEnd> found;
   if (pulled.empty() || inside.empty()) return found;
-  const Eigen::MatrixXd all = information(model, best);
+  const std::optional<Eigen::MatrixXd> curved = curvature(model, best, KnownBeside::all);
+  if (!curved) return found;
+  const Eigen::MatrixXd& all = *curved;
   const Eigen::VectorXd held_variance = Eigen::MatrixXd(all(inside, inside))
                                             .llt()
                                             .solve(Eigen::MatrixXd::Identity(std::ssize(inside), std::ssize(inside)))

@@ -14,8 +14,6 @@ namespace {
 
 constexpr double least_log_prior = -200.0;  // below, as good as impossible
 constexpr double far = 40.0;                // deviance beyond which a path's point plays no part, whatever the noise
-constexpr std::array possible_words = {Verdict::identified, Verdict::weakly_identified, Verdict::several_values,
-                                       Verdict::not_identified};
 
 }  // namespace
 
@@ -209,17 +207,13 @@ std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, c
     const PathWords words_of(path_points(model, model, *found[k].profile, best), rows, ones);
     if (!words_of.usable()) continue;
     const Eigen::VectorXd before = words_of.deviances(y);
-    std::array<int, possible_words.size()> counts = {};
+    std::vector<Verdict> words;
     for (Eigen::Index b = 0; b < repeats.rows(); ++b) {
       const WordFacts facts = words_of.facts(found[k], words_of, before, words_of.deviances(repeats.row(b).transpose()),
                                              found[k].profile->drop);
-      const Verdict word = word_of(facts, thresholds);
-      for (std::size_t w = 0; w < possible_words.size(); ++w) counts[w] += possible_words[w] == word ? 1 : 0;
+      words.push_back(word_of(facts, thresholds));
     }
-    for (std::size_t w = 0; w < possible_words.size(); ++w)
-      if (counts[w] > 0) all[k].push_back({possible_words[w], counts[w] / static_cast<double>(repeats.rows())});
-    std::stable_sort(all[k].begin(), all[k].end(),
-                     [](const auto& a, const auto& b) { return a.probability > b.probability; });
+    all[k] = probabilities_of(words);
   }
   return all;
 }

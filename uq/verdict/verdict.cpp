@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "uq/findings/study_units.hpp"
+#include "uq/findings/wording.hpp"
 #include "uq/verdict/verdict_words.hpp"
 
 namespace uq {
@@ -16,11 +17,18 @@ std::string number(double value) { return fmt::format("{:.3g}", value); }
 
 std::string in_unit(const std::string& text, const std::string& unit) { return text + behind_number(unit); }
 
+/// A value to the digits that the parameter's error leaves.
+std::string rounded(double value, const ParameterEvidence& parameter) {
+  return format_value(value, rounding_of(value, parameter.sd), parameter.unit, Typography::ascii);
+}
+
 std::string interval(const ParameterEvidence& parameter) {
   std::string text;
-  for (const ValueRange& part : parameter.parts)
-    text += (text.empty() ? "" : " and ") + with_error(part.low, part.sd > 0.0 ? part.sd : parameter.sd) + " to " +
-            with_error(part.high, part.sd > 0.0 ? part.sd : parameter.sd);
+  for (const ValueRange& part : parameter.parts) {
+    const double sd = part.sd > 0.0 ? part.sd : parameter.sd;
+    text += (text.empty() ? "" : " and ") +
+            format_interval(part.low, part.high, rounding_of(part.high, sd), parameter.unit, Typography::ascii);
+  }
   return text;
 }
 
@@ -64,8 +72,7 @@ std::string open_sentence(const ParameterEvidence& parameter, Reason reason) {
                        because(reason, parameter));
   }
   const double end = facts.open_high ? parameter.parts.front().low : parameter.parts.back().high;
-  const std::string limit =
-      (facts.open_high ? "at least " : "at most ") + in_unit(with_error(end, parameter.sd), parameter.unit);
+  const std::string limit = (facts.open_high ? "at least " : "at most ") + rounded(end, parameter);
   const std::string& by = facts.open_high ? parameter.high_pinned_by : parameter.low_pinned_by;
   if (!by.empty())
     return fmt::format(
@@ -82,28 +89,17 @@ std::string several_sentence(const ParameterEvidence& parameter) {
   std::string values;
   for (std::size_t i = 0; i < parameter.parts.size(); ++i) {
     const ValueRange& part = parameter.parts[i];
-    values += fmt::format("{}{} +- {} ({} to {}, {:.0f} % of the posterior)", i == 0 ? "" : "; ",
-                          with_error(part.mean, part.sd), with_error(part.sd, part.sd), with_error(part.low, part.sd),
-                          in_unit(with_error(part.high, part.sd), parameter.unit), 100.0 * part.weight);
+    constexpr Typography ascii = Typography::ascii;
+    values += fmt::format("{}{} ({}, {:.0f} % of the posterior)", i == 0 ? "" : "; ",
+                          format_with_error(part.mean, part.sd, parameter.unit, ascii),
+                          format_interval(part.low, part.high, rounding_of(part.mean, part.sd), parameter.unit, ascii),
+                          100.0 * part.weight);
   }
   return fmt::format("{} has {} separate values that fit: {}; what lies between does not fit.", parameter.name,
                      count_word(parameter.parts.size()), values);
 }
 
 }  // namespace
-
-std::string with_error(double value, double error) {
-  if (!(error > 0.0) || !std::isfinite(value)) return number(value);
-  // Two digits of the error.
-  const int decimals = 1 - static_cast<int>(std::floor(std::log10(error)));
-  if (decimals > 4 || decimals < 0) {
-    const double leading = std::max(std::abs(value), error);
-    const int digits = std::clamp(static_cast<int>(std::floor(std::log10(leading / error))) + 2, 2, 12);
-    return fmt::format("{:.{}g}", value, digits);
-  }
-  const std::string text = fmt::format("{:.{}f}", value, decimals);
-  return text.front() == '-' && text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
-}
 
 std::vector<std::pair<std::string, std::string>> describe(const VerdictThresholds& thresholds) {
   return {
@@ -159,11 +155,21 @@ Verdict word_of(const WordFacts& facts, const VerdictThresholds& thresholds) {
   return upper_limit && narrowed ? Verdict::weakly_identified : Verdict::not_identified;
 }
 
+std::vector<WordProbability> probabilities_of(const std::vector<Verdict>& drawn) {
+  std::vector<WordProbability> found;
+  for (const Verdict word :
+       {Verdict::identified, Verdict::weakly_identified, Verdict::several_values, Verdict::not_identified})
+    if (const auto count = std::count(drawn.begin(), drawn.end(), word); count > 0)
+      found.push_back({word, static_cast<double>(count) / static_cast<double>(drawn.size())});
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  return found;
+}
+
 ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fit,
                        const std::vector<WordProbability>& repeats, const VerdictThresholds& thresholds) {
   ParameterVerdict found;
-  const std::string value = in_unit(
-      with_error(parameter.mean, parameter.sd) + " +- " + with_error(parameter.sd, parameter.sd), parameter.unit);
+  const std::string value = format_with_error(parameter.mean, parameter.sd, parameter.unit, Typography::ascii);
   if (!parameter.unsupported.empty() && (!parameter.unusable || fit.fits(thresholds))) {
     found.reason = Reason::unsupported;
     found.sentence = fmt::format("{} is not identified: {}.", parameter.name, parameter.unsupported);
@@ -201,15 +207,13 @@ ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fi
                     interval(parameter), left_variance(parameter), because(*reason, parameter));
   } else if (facts.closed()) {
     found.sentence = fmt::format("{} is not identified: the interval {} is closed but {}{}.", parameter.name,
-                                 in_unit(interval(parameter), parameter.unit), left_variance(parameter),
-                                 because(*reason, parameter));
+                                 interval(parameter), left_variance(parameter), because(*reason, parameter));
   } else if (facts.open_low && !facts.open_high && facts.physical_low) {
     found.sentence = fmt::format(
         "{}: only an upper limit, {} at most (95 % profile; 95 % of the posterior lies below {}); it cannot be told "
         "from {}, its physical bound{}.",
-        parameter.name, in_unit(with_error(parameter.parts.back().high, parameter.sd), parameter.unit),
-        in_unit(with_error(parameter.q95, parameter.sd), parameter.unit), number(parameter.range_low),
-        *reason == Reason::bound ? "" : because(*reason, parameter));
+        parameter.name, rounded(parameter.parts.back().high, parameter), rounded(parameter.q95, parameter),
+        number(parameter.range_low), *reason == Reason::bound ? "" : because(*reason, parameter));
   } else {
     found.sentence = open_sentence(parameter, *reason);
   }

@@ -80,11 +80,11 @@ struct ParameterVerdict {
   WidthShares shares;
 };
 
+/// The share of each word among those drawn, the most frequent first; words that do not come are left out.
+std::vector<WordProbability> probabilities_of(const std::vector<Verdict>& drawn);
+
 /// `repeats`: the words' probabilities, or none.
 ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fit,
                        const std::vector<WordProbability>& repeats, const VerdictThresholds& thresholds);
-
-/// A number to the digits that its error deserves.
-std::string with_error(double value, double error);
 
 }  // namespace uq
