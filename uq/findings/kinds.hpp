@@ -17,7 +17,8 @@ enum class Reason {
   no_influence,
   unsupported,
   range_of_another,
-  common_error
+  common_error,
+  traded
 };
 
 /// An error that all readings of a case share (uq/posterior/common_share.hpp): a meter's offset or gain that is sampled, or
@@ -42,8 +43,8 @@ inline constexpr std::array data::texts_of<uq::Verdict> = {"identified", "weakly
                                                            "not identified", "model does not fit"};
 template <>
 inline constexpr std::array data::texts_of<uq::Reason> = {
-    "structural",   "practical",   "surrogate",        "one-sided",   "bound",
-    "no influence", "unsupported", "range of another", "common error"};
+    "structural",   "practical",   "surrogate",        "one-sided",    "bound",
+    "no influence", "unsupported", "range of another", "common error", "traded"};
 template <>
 inline constexpr std::array data::texts_of<uq::CommonErrorKind> = {"offset",  "gain",  "scale",
                                                                    "setting", "meter", "discrepancy"};

@@ -7,7 +7,7 @@
 namespace uq::page {
 
 Markup glossary_section() {
-  static constexpr std::array<std::pair<const char*, const char*>, 16> words{{
+  static constexpr std::array<std::pair<const char*, const char*>, 17> words{{
       {"identified",
        "The data limit the parameter on both sides, to a small part of what was thought possible before."},
       {"weakly identified", "The data limit it on both sides, but not to a small part."},
@@ -21,9 +21,10 @@ Markup glossary_section() {
        "An error that repeated readings share, as a meter's offset, hides it. Repeats do not help; to find that error "
        "by "
        "itself does."},
-      {"surrogate",
-       "The error of the surrogate decides. More runs help; until then it is open whether a better "
-       "measurement would."},
+      {"traded",
+       "Other parameters can undo most of each change of this one. Another kind of measurement parts them, whatever a "
+       "smaller error of the same one would do."},
+      {"surrogate", "The error of the surrogate decides. More training runs help."},
       {"one-sided", "The data give a lower or an upper limit alone."},
       {"bound", "The interval ends at a bound that physics sets."},
       {"no influence", "What was measured does not change with the parameter, as far as it can be told."},

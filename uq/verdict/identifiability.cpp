@@ -95,17 +95,17 @@ WordFacts facts_of(const ParameterReport& report, const Profile& profile, const 
           .parts = std::max(1, static_cast<int>(profile.parts.size())),
           .open_low = !profile.low,
           .open_high = !profile.high,
-          .physical_low = physical_low(unknown) && !profile.low_pinned && !profile.runs_end_low,
+          .physical_low = physical_low(unknown) && !profile.low_pinned && !profile.runs_end_low && !profile.low_unknown,
+          .open_beyond = profile.low_pinned || profile.high_pinned || profile.runs_end_low || profile.runs_end_high ||
+                         profile.low_unknown || profile.high_unknown,
           .contraction = report.contraction,
           .contraction_within =
               profile.parts.size() > 1 ? 1.0 - within / (report.prior_sd * report.prior_sd) : report.contraction};
 }
 
-/// The data narrow it and end its interval, the surrogate's error counted in: it acts, even where the surrogate cannot
-/// tell by how much over the whole range.
-bool limited(const WordFacts& facts, const VerdictThresholds& thresholds) {
-  return facts.contraction >= thresholds.contraction_weak && !(facts.open_low && facts.open_high);
-}
+/// The data exclude a part of its range, the surrogate's error counted in: it acts, even where the surrogate cannot tell
+/// by how much over the whole range.
+bool limited(const WordFacts& facts) { return !(facts.open_low && facts.open_high); }
 
 /// Of the posterior.
 Eigen::VectorXd mode_of(const CaseModel& model, const Eigen::MatrixXd& guiding, const Eigen::VectorXd& level,
@@ -136,7 +136,10 @@ void add_structure(const CaseModel& model, const Profiles& all, std::vector<Para
     const bool some = std::any_of(evidence.begin(), evidence.end(),
                                   [&](const ParameterEvidence& one) { return member(one) && one.structural; });
     for (ParameterEvidence& one : evidence)
-      if (some && member(one) && one.undecided) one.structural = true;
+      if (member(one)) {
+        one.traded = true;
+        if (some && one.undecided) one.structural = true;
+      }
   }
 }
 
@@ -190,14 +193,16 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
                           .low_pinned_by = report.low_pinned_by,
                           .high_pinned_by = report.high_pinned_by,
                           .runs_end_low = report.runs_end_low,
-                          .runs_end_high = report.runs_end_high};
+                          .runs_end_high = report.runs_end_high,
+                          .unknown_beyond = profile.low_unknown || profile.high_unknown};
     if (profile.conditional_on)
       one.conditional_on = model.unknowns[static_cast<std::size_t>(*profile.conditional_on)].label;
     if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
     one.unusable = !doubt_of(model).empty();
     one.surrogate_share = surrogate.shares[k];
     one.common = common[k];
-    one.facts.influences = all.influence[k].some || limited(one.facts, thresholds);
+    one.faint = !all.influence[k].some && limited(one.facts);
+    one.facts.influences = all.influence[k].some || one.faint;
     one.hidden = all.influence[k].hidden;
     one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);
     words.push_back(word_of(one.facts, thresholds));

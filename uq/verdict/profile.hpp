@@ -10,7 +10,9 @@
 // held where the data would have it, the deviance at the end would be at least twice as large. That side is open, too.
 // So is the side to which the unknown would move if another could go beyond the end of its range (range_end.hpp).
 // So is an end that lies where no run was made (runs_reach): there the deviance is the surrogate's prior, which nothing has
-// tested.
+// tested. So is an end beyond which, up to the end of the range, values are unlikely only since the surrogate knows less
+// of them (a gap among the runs, a corner): with S(u) the data's covariance and N(u) the same without the surrogate's part, the
+// deviance less the growth of log |S| / |N| from the best fit on stays below the drop there. Ignorance excludes nothing.
 // An unknown without influence (influence.hpp) pins nothing, and nor does a bound at 0 that nature sets.
 // Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take it away, the
 // hole is in doubt, and the interval goes through it.
@@ -55,6 +57,7 @@ struct Profile {
   std::optional<double> low, high;                    ///< ends of the interval, in u; none: open
   std::optional<int> low_pinned, high_pinned;         ///< unknown at the end of whose range an open side ends
   std::optional<double> runs_end_low, runs_end_high;  ///< u: where the runs end on an open side, short of the support
+  bool low_unknown = false, high_unknown = false;     ///< an open side beyond which the surrogate knows too little
   std::optional<int> conditional_on;                  ///< unknown whose range's end decides the value, if one does
   std::vector<ProfilePart> parts;                     ///< rising; holes in doubt are filled
   std::vector<ProfileBarrier> barriers;               ///< all, those in doubt too

@@ -106,6 +106,37 @@ void open_beyond_runs(const CaseModel& model, const std::vector<ProfilePart>& pa
   }
 }
 
+/// Log |S| - log |N| at u, of the data's covariance with the surrogate's part and without it.
+double ignorance(const CaseModel& model, const CaseModel& exact, const Eigen::VectorXd& u) {
+  const Eigen::LLT<Eigen::MatrixXd> with(predict(model, u).total()), without(predict(exact, u).total());
+  if (with.info() != Eigen::Success || without.info() != Eigen::Success) return 0.0;
+  return 2.0 * (with.matrixLLT().diagonal().array().log().sum() - without.matrixLLT().diagonal().array().log().sum());
+}
+
+/// Opens the sides beyond which only the surrogate's ignorance speaks against every value. `inside`: the outermost points of
+/// the interval.
+void open_to_ignorance(const CaseModel& model, const Eigen::VectorXd& best,
+                       std::pair<Eigen::Index, Eigen::Index> inside, Profile& profile) {
+  const CaseModel exact = without_surrogate_error(model);
+  const double at_best = ignorance(model, exact, best);
+  const auto excluded = [&](Eigen::Index from, Eigen::Index to) {
+    for (Eigen::Index i = from; i <= to; ++i) {
+      if (profile.deviance[i] <= profile.drop) continue;
+      const double grown = ignorance(model, exact, profile.path.row(i).transpose()) - at_best;
+      if (profile.deviance[i] - std::max(grown, 0.0) > profile.drop) return true;
+    }
+    return false;
+  };
+  if (profile.low && !excluded(0, inside.first - 1)) {
+    profile.low.reset();
+    profile.low_unknown = true;
+  }
+  if (profile.high && !excluded(inside.second + 1, profile.u.size() - 1)) {
+    profile.high.reset();
+    profile.high_unknown = true;
+  }
+}
+
 /// Whether an error of two of the surrogate's sds would take the barrier away: between its highest point and either of
 /// the two parts.
 bool in_doubt(const CaseModel& model, const Yardstick& yardstick, const Profile& profile, Eigen::Index peak,
@@ -165,6 +196,7 @@ void finish_profile(const CaseModel& model, const Profiles& all, Profile& profil
 
   open_beyond(all, profile, thresholds);
   open_beyond_runs(model, parts, profile);
+  open_to_ignorance(model, all.best.x, {runs.front().first, runs.back().second}, profile);
 
   // Barriers between them.
   profile.parts = {parts.front()};

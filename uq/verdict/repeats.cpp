@@ -168,8 +168,9 @@ WordFacts PathWords::facts(const FoundFacts& found, const PathWords& before, con
   WordFacts facts = found.facts;
   const Parts now = parts(deviance, drop), then = before.parts(found_deviance, drop);
   facts.parts = now.count;
-  facts.open_low = profile.low_pinned || profile.runs_end_low || deviance[0] <= drop;
-  facts.open_high = profile.high_pinned || profile.runs_end_high || deviance[deviance.size() - 1] <= drop;
+  facts.open_low = profile.low_pinned || profile.runs_end_low || profile.low_unknown || deviance[0] <= drop;
+  facts.open_high =
+      profile.high_pinned || profile.runs_end_high || profile.high_unknown || deviance[deviance.size() - 1] <= drop;
   const auto scaled = [&](double contraction, bool within) {
     const double was = before.variance(found_deviance, then, within);
     return was > 0.0 ? 1.0 - (1.0 - contraction) * variance(deviance, now, within) / was : contraction;

@@ -151,6 +151,9 @@ Verdict word_of(const WordFacts& facts, const VerdictThresholds& thresholds) {
     if (facts.contraction >= thresholds.contraction_identified) return Verdict::identified;
     return narrowed ? Verdict::weakly_identified : Verdict::not_identified;
   }
+  // Narrow parts that begin or end where the range does are as separate as others.
+  if (facts.parts > 1 && !facts.open_beyond && facts.contraction_within >= thresholds.contraction_identified)
+    return Verdict::several_values;
   const bool upper_limit = facts.open_low && !facts.open_high && facts.physical_low;
   return upper_limit && narrowed ? Verdict::weakly_identified : Verdict::not_identified;
 }

@@ -32,6 +32,7 @@ struct WordFacts {
   int parts = 1;  ///< of the profile interval
   bool open_low = false, open_high = false;
   bool physical_low = false;  ///< open below only at a bound that nature sets (0), not the user, nor another's range
+  bool open_beyond = false;   ///< open for more than its own range's end: another's, the end of the runs, the surrogate
   double contraction = 0.0;
   double contraction_within = 0.0;  ///< of the parts, each about its own mean
   bool closed() const { return !open_low && !open_high; }
@@ -58,6 +59,9 @@ struct ParameterEvidence {
   bool unusable = false;  ///< the runs say too little anywhere: then a misfit is the stronger finding
   std::string conditional_on = {};  ///< another parameter whose range's end decides the value; may be empty
   bool undecided = false;           ///< the surrogate is not sharp enough to tell
+  bool traded = false;              ///< known only in a combination with others
+  bool unknown_beyond = false;      ///< open since the surrogate knows too little beyond an end
+  bool faint = false;               ///< a part of its range is excluded, though the surrogate shows no effect of it
   double surrogate_share = 0.0;     ///< of the variance, where two values are compared
   CommonShare common = {};          ///< held by errors that repeated readings share
   bool hidden = false;              ///< without influence only since the data's errors are large

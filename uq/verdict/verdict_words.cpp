@@ -48,8 +48,8 @@ struct Remedy {
 
 /// Parameters sorted by what is said of them.
 struct Sorted {
-  Names known, several, weak, unknown;                                       ///< by word
-  Names silent, structural, practical, surrogate, one_sided, bound, common;  ///< by reason
+  Names known, several, weak, unknown;                                               ///< by word
+  Names silent, structural, practical, surrogate, traded, one_sided, bound, common;  ///< by reason
   Names beyond_runs, wanted_runs;  ///< values that go on where no run is, and the runs that would tell
   Names conditional, ends_of;      ///< values that depend on where another's range ends, and whose ranges these are
   double of_structure = 0.0, of_measurement = 0.0, of_surrogate = 0.0, of_range = 0.0, of_common = 0.0;
@@ -75,6 +75,7 @@ Sorted sort_parameters(const std::vector<ParameterReport>& parameters) {
      : *reason == Reason::common_error     ? sorted.common
      : *reason == Reason::practical        ? sorted.practical
      : *reason == Reason::surrogate        ? sorted.surrogate
+     : *reason == Reason::traded           ? sorted.traded
      : *reason == Reason::one_sided        ? sorted.one_sided
      : *reason == Reason::range_of_another ? sorted.conditional
      : *reason == Reason::unsupported      ? sorted.beyond_runs
@@ -161,7 +162,8 @@ std::string find_consequence(const CaseFacts& facts, const Sorted& sorted) {
   Names poor, wide;
   for (const ParameterReport& parameter : facts.parameters) {
     const bool hidden = parameter.reason == Reason::practical || parameter.reason == Reason::surrogate ||
-                        parameter.reason == Reason::structural || parameter.reason == Reason::common_error;
+                        parameter.reason == Reason::structural || parameter.reason == Reason::common_error ||
+                        parameter.reason == Reason::traded;
     if (hidden && facts.traded.empty())
       (parameter.verdict == Verdict::not_identified && parameter.contraction < 0.5 ? poor : wide)
           .push_back(parameter.name);
@@ -267,18 +269,15 @@ std::vector<std::string> find_remedies(const CaseFacts& facts, const Sorted& sor
   }
   const double variance = sorted.of_measurement + sorted.of_surrogate;
   const double surrogate = variance > 0.0 ? sorted.of_surrogate / variance : 0.0;
-  const bool hidden = !sorted.practical.empty() || !sorted.surrogate.empty() || !sorted.bound.empty();
+  const bool hidden =
+      !sorted.practical.empty() || !sorted.surrogate.empty() || !sorted.traded.empty() || !sorted.bound.empty();
   if (hidden && (surrogate >= notable || !sorted.surrogate.empty())) {
     const bool first = surrogate >= mostly || !sorted.surrogate.empty();
     remedies.push_back({first ? std::max(sorted.of_surrogate, sorted.of_measurement + 1e-9) : 1e-9,
-                        surrogate < notable
-                            ? fmt::format("Make more training runs{}: only a sharper surrogate shows "
-                                          "whether a better measurement would help.",
-                                          facts.own_engine ? " (demcal train STUDY --runs N)" : " with your code")
-                        : first ? surrogate_remedy(sorted.largest_surrogate, facts.own_engine)
-                                : fmt::format("More training runs would help, too: up to {:.0f} % of the posterior "
-                                              "variance is the surrogate's.",
-                                              100.0 * sorted.largest_surrogate)});
+                        first ? surrogate_remedy(sorted.largest_surrogate, facts.own_engine)
+                              : fmt::format("More training runs would help, too: up to {:.0f} % of the posterior "
+                                            "variance is the surrogate's.",
+                                            100.0 * sorted.largest_surrogate)});
   }
   if (!sorted.practical.empty()) {
     const std::string together = partners(facts, sorted.practical);
@@ -293,12 +292,17 @@ std::vector<std::string> find_remedies(const CaseFacts& facts, const Sorted& sor
   if (!sorted.common.empty() || part)
     remedies.push_back({part ? sorted.of_measurement * sorted.largest_common.share : sorted.of_common,
                         common_remedy(sorted.largest_common, sorted.common)});
-  if (sorted.practical.empty() && surrogate < mostly)
-    if (const std::string together = partners(facts, sorted.surrogate); !together.empty())
-      remedies.push_back({sorted.of_measurement,
-                          fmt::format("Or measure a quantity that responds differently to {}, or fix one of them by an "
-                                      "independent experiment: that parts them whatever the surrogate hides.",
-                                      together)});
+  if (!sorted.traded.empty()) {
+    const std::string together = partners(facts, sorted.traded);
+    remedies.push_back({sorted.of_measurement,
+                        fmt::format("Measure {}, or fix {} by an independent experiment: that parts them, whatever a "
+                                    "smaller error of the same "
+                                    "measurement would do.",
+                                    together.empty() ? "another kind of quantity, one that " + listed(sorted.traded) +
+                                                           " alone " + one_or(sorted.traded, "changes", "change")
+                                                     : "a quantity that responds differently to " + together,
+                                    together.empty() ? one_or(sorted.traded, "it", "one of them") : "one of them")});
+  }
   if (!sorted.one_sided.empty())
     remedies.push_back(
         {sorted.of_range, fmt::format("Widen the range of {}, with training runs there, or measure where the response "
@@ -340,6 +344,15 @@ std::vector<std::string> find_remedies(const CaseFacts& facts, const Sorted& sor
   return sentences;
 }
 
+/// Whether the posterior ends well inside the range on the side that the data leave open: a stated prior ends it there, and
+/// not the range.
+bool ended_by_prior(const ParameterEvidence& parameter) {
+  constexpr double far = 2.5;  // posterior sds
+  const double room =
+      parameter.facts.open_high ? parameter.range_high - parameter.mean : parameter.mean - parameter.range_low;
+  return room > far * parameter.sd;
+}
+
 }  // namespace
 
 std::string remedy_of(const std::vector<CommonError>& errors) {
@@ -356,10 +369,16 @@ std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict ve
   if (parameter.common.share > mostly && parameter.surrogate_share <= mostly) return Reason::common_error;
   if (parameter.structural) return Reason::structural;
   if (!parameter.conditional_on.empty()) return Reason::range_of_another;
-  if (facts.open_low && !facts.open_high && facts.physical_low) return Reason::bound;
+  if (parameter.unknown_beyond || parameter.faint) return Reason::surrogate;
   const bool pinned = !parameter.low_pinned_by.empty() || !parameter.high_pinned_by.empty();
-  if (facts.open_low != facts.open_high && !pinned) return Reason::one_sided;
-  if (parameter.undecided || parameter.surrogate_share > mostly) return Reason::surrogate;
+  // The end of one's range where a combination alone is known is no limit that better data of the same kind would move.
+  if (parameter.traded && verdict == Verdict::not_identified && facts.open_low != facts.open_high && !pinned &&
+      parameter.surrogate_share <= mostly)
+    return Reason::traded;
+  if (facts.open_low && !facts.open_high && facts.physical_low) return Reason::bound;
+  if (facts.open_low != facts.open_high && !pinned && !ended_by_prior(parameter)) return Reason::one_sided;
+  if (parameter.surrogate_share > mostly) return Reason::surrogate;
+  if (parameter.undecided) return Reason::traded;
   return Reason::practical;
 }
 
@@ -376,9 +395,9 @@ std::string because(Reason reason, const ParameterEvidence& parameter) {
       return fmt::format("; {}, which repeated readings share, {} it", listed(names), one_or(names, "hides", "hide"));
     }
     case Reason::surrogate:
-      return parameter.surrogate_share > mostly
-                 ? "; the surrogate's error hides it"
-                 : "; the surrogate's error leaves open whether a better measurement would help";
+      return "; the surrogate's error hides it";
+    case Reason::traded:
+      return "; other parameters do much the same to all that was measured";
     case Reason::range_of_another:
       return fmt::format("; its value depends on where the range of {} ends, which the data would go beyond",
                          parameter.conditional_on);
@@ -403,6 +422,8 @@ WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason
   if (reason == Reason::structural) return {.measurement = 0.0, .surrogate = 0.0, .structure = 1.0, .range = 0.0};
   if (reason == Reason::one_sided || reason == Reason::range_of_another || reason == Reason::unsupported)
     return {.measurement = 0.0, .surrogate = 0.0, .structure = 0.0, .range = 1.0};
+  if (reason == Reason::surrogate && (parameter.unknown_beyond || parameter.faint))
+    return {.measurement = 0.0, .surrogate = 1.0, .structure = 0.0, .range = 0.0};
   if (reason == Reason::no_influence)
     return parameter.silent_sds > hides
                ? WidthShares{.measurement = 0.0, .surrogate = 1.0, .structure = 0.0, .range = 0.0}

@@ -5,6 +5,7 @@
 //   structural    other parameters do the same to all that was measured        another kind of quantity, or fix one
 //   practical     the measurement's error is as large as what would tell       a smaller error, more settings
 //   common error  an error that repeats share: offset, gain, setting, ...      find that error by itself
+//   traded        other parameters do much the same to all that was measured   another kind of quantity, or fix one
 //   surrogate     the surrogate's error is                                     training runs
 //   one-sided     the data no longer change towards the range's end            wider range, other settings
 //   bound         it cannot be told from its physical bound                    a smaller error lowers the limit

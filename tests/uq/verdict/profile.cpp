@@ -233,3 +233,36 @@ TEST_CASE("an interval that ends where no run was made is open there, and says w
   CHECK_FALSE(below.low);
   CHECK(shown(model, below, below.runs_end_low.value()) == Approx(1.0));
 }
+
+TEST_CASE("what only the surrogate's ignorance speaks against is not excluded", "[uq]") {
+  // One reading of x +- 1 at 2, in a range of -10 to 10: 0 to 4 at a drop of 4. A surrogate of sd s adds log(1 + s^2) to
+  // the deviance: beyond 4 for s above 7.4, though such a prediction excludes nothing.
+  const auto with_sd = [](const std::function<double(double)>& sd) {
+    uq::CaseModel model = sum_of_squares({{"x", -10.0, 10.0}}, {[](const Eigen::VectorXd& p) { return p[0]; }},
+                                         Eigen::VectorXd::Constant(1, 2.0));
+    const auto exact = model.groups[0].emulator.predict;
+    model.groups[0].emulator.predict = [exact, sd](const Eigen::MatrixXd& points) {
+      surrogate::Prediction found = exact(points);
+      for (Eigen::Index i = 0; i < points.rows(); ++i) found.covariance(i, i) += std::pow(sd(found.mean[i]), 2);
+      return found;
+    };
+    model.distinct.reset();
+    return std::pair{model, profiles(model).profiles.at(0)};
+  };
+  SECTION("from 3 on to the end of the range") {
+    const auto [model, profile] = with_sd([](double x) { return x > 3.0 ? 30.0 * (x - 3.0) : 0.0; });
+    CHECK_FALSE(profile.high);
+    CHECK(profile.high_unknown);
+    CHECK(shown(model, profile, profile.low.value()) == Approx(0.0).margin(2e-3));
+    CHECK_FALSE(profile.low_unknown);
+  }
+  SECTION("in a gap, beyond which the data exclude") {
+    const auto [model, profile] = with_sd([](double x) { return x > 3.0 && x < 6.0 ? 30.0 : 0.0; });
+    CHECK(profile.high);
+    CHECK_FALSE(profile.high_unknown);
+  }
+  SECTION("the same everywhere: an error like another") {
+    const auto [model, profile] = with_sd([](double) { return 1.0; });
+    check_interval(model, profile, 2.0 - 2.0 * std::sqrt(2.0), 2.0 + 2.0 * std::sqrt(2.0));
+  }
+}

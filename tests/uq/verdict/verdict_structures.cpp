@@ -17,9 +17,10 @@ const Expected wide{.words = {Verdict::not_identified, Verdict::weakly_identifie
 const Expected seen{.words = {Verdict::identified, Verdict::weakly_identified, Verdict::not_identified},
                     .reasons = {Reason::bound, Reason::one_sided, Reason::surrogate, Reason::practical}};
 const Expected silent{.words = {Verdict::not_identified}, .reasons = {Reason::no_influence}};
-/// Not structural: another data set may end such an interval on one side by chance.
-const Expected hidden{.words = {Verdict::not_identified},
-                      .reasons = {Reason::practical, Reason::surrogate, Reason::one_sided, Reason::bound}};
+/// Not structural: another data set may end such an interval on one side by chance, where a combination is known, too.
+const Expected hidden{
+    .words = {Verdict::not_identified},
+    .reasons = {Reason::practical, Reason::surrogate, Reason::one_sided, Reason::bound, Reason::traded}};
 const Expected limited{.words = {Verdict::not_identified}, .reasons = {Reason::one_sided}};
 const Expected upper{.words = {Verdict::weakly_identified}, .reasons = {Reason::bound}};
 const Expected misfit{.words = {Verdict::does_not_fit}, .reasons = {}};

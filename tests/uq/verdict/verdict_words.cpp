@@ -14,10 +14,12 @@ bool has(const std::string& text, const std::string& piece) { return text.find(p
 ParameterReport judged(const std::string& name, const WordFacts& facts, const ParameterEvidence& more) {
   ParameterEvidence evidence = more;
   evidence.name = name;
-  evidence.mean = 0.5;
-  evidence.sd = 0.1;
-  evidence.q95 = 0.7;
-  evidence.range_high = 1.0;
+  if (!(evidence.sd > 0.0)) {
+    evidence.mean = 0.5;
+    evidence.sd = 0.3;
+    evidence.range_high = 1.0;
+  }
+  evidence.q95 = evidence.mean + 2.0 * evidence.sd;
   evidence.facts = facts;
   for (int i = 0; i < facts.parts; ++i)
     evidence.parts.push_back({.low = 0.1 + 0.4 * i, .high = 0.3 + 0.4 * i, .weight = 0.5, .mean = 0.2, .sd = 0.05});
@@ -180,18 +182,64 @@ TEST_CASE("a width that an offset holds asks for the offset, not for smaller err
   }
 }
 
-TEST_CASE("of traded parameters another quantity is advised, too, where the surrogate leaves open why", "[uq]") {
+TEST_CASE("of traded parameters another quantity is advised first, where the surrogate leaves open why", "[uq]") {
   ParameterEvidence more;
   more.undecided = true;
   more.surrogate_share = 0.12;
   const WordFacts facts{.contraction = 0.7, .contraction_within = 0.7};
   const std::vector<ParameterReport> both = {judged("a", facts, more), judged("b", facts, more)};
-  CHECK(both[0].reason == uq::Reason::surrogate);
+  CHECK(both[0].reason == uq::Reason::traded);
   TradedPair pair;
   pair.parameters = {"a", "b"};
   const Words words = words_of({.parameters = both, .traded = {pair}, .parted_by = {}});
-  CHECK(words.remedies.front().rfind("Make more training runs", 0) == 0);
-  CHECK(has(shown_remedy(words), "Or measure a quantity that responds differently to a and b, or fix one"));
+  CHECK(words.remedies.front().rfind("Measure a quantity that responds differently to a and b, or fix one", 0) == 0);
+  CHECK(has(shown_remedy(words), "More training runs would help, too: up to 12 %"));
+  // More runs alone narrow nothing where their share of the width is small.
+  more.surrogate_share = 0.05;
+  const std::vector<ParameterReport> sharp = {judged("a", facts, more), judged("b", facts, more)};
+  CHECK_FALSE(has(shown_remedy(words_of({.parameters = sharp, .traded = {pair}, .parted_by = {}})), "raining runs"));
+}
+
+TEST_CASE("the end of a range is no limit of a parameter that is only known in a combination", "[uq]") {
+  ParameterEvidence more;
+  more.traded = true;
+  for (const bool low : {true, false}) {
+    const WordFacts facts{
+        .open_low = low, .open_high = !low, .physical_low = low, .contraction = 0.3, .contraction_within = 0.3};
+    CHECK(judged("a", facts, more).reason == uq::Reason::traded);
+  }
+  // An upper limit that the data narrow well stays one.
+  CHECK(judged("a", {.open_low = true, .physical_low = true, .contraction = 0.7, .contraction_within = 0.7}, more)
+            .reason == uq::Reason::bound);
+}
+
+TEST_CASE("a side that a stated prior ends does not depend on where the range does", "[uq]") {
+  ParameterEvidence more;
+  more.mean = 6.0;
+  more.sd = 0.9;
+  more.range_high = 10.0;
+  const WordFacts facts{.open_high = true, .contraction = 0.3, .contraction_within = 0.3};
+  CHECK(judged("a", facts, more).reason == uq::Reason::practical);
+  more.sd = 2.5;
+  CHECK(judged("a", facts, more).reason == uq::Reason::one_sided);
+}
+
+TEST_CASE("an end that the surrogate's ignorance makes asks for runs", "[uq]") {
+  ParameterEvidence more;
+  more.unknown_beyond = true;
+  const ParameterReport found = judged("a", {.open_high = true, .contraction = 0.3, .contraction_within = 0.3}, more);
+  CHECK(found.reason == uq::Reason::surrogate);
+  CHECK(found.share_surrogate == 1.0);
+}
+
+TEST_CASE("narrow parts at the ends of the range are separate values, unless something else ends them", "[uq]") {
+  WordFacts facts{.parts = 2, .open_low = true, .open_high = true, .contraction = -1.0, .contraction_within = 0.99};
+  CHECK(word_of(facts, {}) == uq::Verdict::several_values);
+  facts.contraction_within = 0.7;
+  CHECK(word_of(facts, {}) == uq::Verdict::not_identified);
+  facts.contraction_within = 0.99;
+  facts.open_beyond = true;
+  CHECK(word_of(facts, {}) == uq::Verdict::not_identified);
 }
 
 TEST_CASE("a parameter without influence is told neither structural nor hidden by noise, and gets one remedy", "[uq]") {
