@@ -117,13 +117,13 @@ void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>
   }
 }
 
-void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const StudyRows& rows) {
+namespace {
+
+/// What results rest on, each with its digest.
+std::vector<std::pair<std::string, std::string>> inputs_of(const Workspace& workspace, const StudyRows& rows) {
   const data::Study& study = workspace.study;
-  std::vector<std::pair<std::string, std::string>> program = data::provenance();
-  report.provenance.insert(report.provenance.begin(), program.begin(), program.end());
-  const auto add = [&](const std::string& name, const std::string& value) {
-    report.provenance.emplace_back(name, value);
-  };
+  std::vector<std::pair<std::string, std::string>> found;
+  const auto add = [&](const std::string& name, const std::string& value) { found.emplace_back(name, value); };
   const std::string changes = fmt::format("{}", fmt::join(workspace.changes, "\n"));
   add("study", fmt::format("{}{} (xxh3 {})", fs::path(study.file).filename().string(),
                            changes.empty() ? "" : " with what the command line set",
@@ -136,8 +136,28 @@ void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, c
   for (const data::ObservationSet& set : study.observations)
     add("observations " + set.name,
         fmt::format("{} (xxh3 {})", fs::path(set.file).filename().string(), data::hash_file(set.file)));
+  return found;
+}
+
+}  // namespace
+
+std::vector<std::string> changed_since(const uq::CalibrationReport& report, const Workspace& workspace,
+                                       const StudyRows& rows) {
+  std::vector<std::string> changed;
+  for (const auto& input : inputs_of(workspace, rows))
+    if (std::find(report.provenance.begin(), report.provenance.end(), input) == report.provenance.end())
+      changed.push_back(input.first);
+  return changed;
+}
+
+void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const StudyRows& rows) {
+  const data::Study& study = workspace.study;
+  std::vector<std::pair<std::string, std::string>> program = data::provenance();
+  report.provenance.insert(report.provenance.begin(), program.begin(), program.end());
+  for (auto& input : inputs_of(workspace, rows)) report.provenance.push_back(std::move(input));
   for (const auto& [material, settings] : workspace.cases)
-    add("simulation settings" + (material.empty() ? "" : " " + material), settings_hash(workspace, material));
+    report.provenance.emplace_back("simulation settings" + (material.empty() ? "" : " " + material),
+                                   settings_hash(workspace, material));
   for (const std::string& note : study.notes) report.notes.push_back(note);
   for (const auto& [material, settings] : workspace.cases) {
     Point top{material, {}};

@@ -39,6 +39,10 @@ void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>
 /// The report's provenance and the choices behind it, as the study, the table and the DEM's settings tell them.
 void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, const StudyRows& rows);
 
+/// Names of the inputs that are no longer those of the report: the study, its table, its observations.
+std::vector<std::string> changed_since(const uq::CalibrationReport& report, const Workspace& workspace,
+                                       const StudyRows& rows);
+
 /// report.json, and report.html with its figures, in OUT.
 void write_report(const Workspace& workspace, const uq::CalibrationReport& report);
 /// The report on the terminal.

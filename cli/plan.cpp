@@ -13,6 +13,7 @@
 #include "uq/findings/report_file.hpp"
 #include "uq/plan/plan.hpp"
 #include "uq/plan/unmeasured.hpp"
+#include "uq/posterior/support.hpp"
 #include "uq/report/html.hpp"
 #include "uq/report/plan.hpp"
 
@@ -83,21 +84,48 @@ void add_runs(const Workspace& workspace, const StudyRows& rows, const Assessmen
   plan.runs.seconds = median_run_time(rows.all) * static_cast<double>(runs.runs.size());
 }
 
-/// Puts the plans into the report of the last calibration, where there is one of this study.
-void add_to_report(const Workspace& workspace, const std::vector<uq::CaseReport>& planned) {
+/// A case's plan, and the unknowns of the posterior that it was made on; none of a plan on the prior.
+struct Planned {
+  uq::CaseReport plan;
+  std::vector<uq::NuisanceReport> known;
+};
+
+/// Whether the report's posterior is the plan's: the same mean and sd of each parameter, but for the draws' own error.
+bool is_of_posterior(const Planned& planned, const uq::CaseReport& report) {
+  constexpr double share = 0.15;  // of an sd
+  return std::all_of(planned.known.begin(), planned.known.end(), [&](const uq::NuisanceReport& known) {
+    const auto found = std::find_if(report.parameters.begin(), report.parameters.end(),
+                                    [&](const uq::ParameterReport& one) { return one.name == known.name; });
+    return found == report.parameters.end() || (std::abs(found->mean - known.mean) <= share * found->sd &&
+                                                std::abs(found->sd - known.sd) <= share * found->sd);
+  });
+}
+
+/// Puts the plans into the report of the last calibration, where there is one of this study. Says of which cases the report
+/// has another posterior: their plans are left out.
+std::vector<std::string> add_to_report(const Workspace& workspace, const std::vector<Planned>& all) {
+  std::vector<std::string> other;
   const std::string path = (fs::path(workspace.out) / "report.json").string();
-  if (!fs::exists(path)) return;
+  if (!fs::exists(path)) return other;
   uq::CalibrationReport report = uq::load_report(path);
   bool any = false;
-  for (const uq::CaseReport& plan : planned)
-    for (uq::CaseReport& one : report.cases)
-      if (one.name == plan.name) {
-        one.plan = plan.plan;
-        any = true;
+  for (const Planned& planned : all)
+    for (uq::CaseReport& one : report.cases) {
+      if (one.name != planned.plan.name) continue;
+      if (!is_of_posterior(planned, one)) {
+        other.push_back(
+            fmt::format("case {}: report.json holds the posterior of other data, runs or priors: this plan is "
+                        "not put into it (run demcal calibrate again)",
+                        one.name));
+        continue;
       }
-  if (!any) return;
+      one.plan = planned.plan.plan;
+      any = true;
+    }
+  if (!any) return other;
   uq::save_report(report, path);
   uq::write_report_html(report, workspace.out);
+  return other;
 }
 
 data::ExitStatus plan(const PlanOptions& options) {
@@ -113,8 +141,8 @@ data::ExitStatus plan(const PlanOptions& options) {
   data::Study& study = workspace.study;
   const uq::CalibrateOptions calibrate{.surrogates = surrogate_options(common, workspace, rows), .seed = study.seed};
   Assessment assessment;
-  std::vector<uq::CaseReport> planned;
-  std::vector<std::string> refused;
+  std::vector<Planned> planned;
+  std::vector<std::string> doubts;  // of what is planned on, and cases that cannot be
   {
     JobProgress progress(common, "planning");
     assessment.surrogates = uq::fit_surrogates(study, rows.table, calibrate.surrogates);
@@ -139,23 +167,38 @@ data::ExitStatus plan(const PlanOptions& options) {
       try {
         one.plan = uq::plan::make_plan(study, emulators, cases[n], sampled, workspace.plan, how);
         if (!options.prior) add_runs(workspace, rows, assessment, *one.plan);
-        planned.push_back(std::move(one));
+        planned.push_back({std::move(one), {}});
+        if (options.prior) continue;
+        for (int k = 0; k < sampled.model->dimension(); ++k) planned.back().known.push_back(uq::summary_of(sampled, k));
+        if (!sampled.draws.converged)
+          doubts.push_back(fmt::format("case {}: the chains have not converged: {}", planned.back().plan.name,
+                                       sampled.draws.reason));
+        for (const std::string& why : uq::unsupported_parameters(*sampled.model, sampled.support))
+          if (!why.empty()) {
+            doubts.push_back(
+                fmt::format("case {}: {}. The plan rests on what the surrogate makes of that: make runs there "
+                            "first (demcal train STUDY --until posterior, or next-runs.csv of calibrate)",
+                            planned.back().plan.name, why));
+            break;
+          }
       } catch (const data::InputError& error) {
         if (error.status != data::ExitStatus::bad_data || cases.size() == 1) throw;
-        refused.push_back(data::describe(error.problems));
+        doubts.push_back(data::describe(error.problems));
       }
     }
   }
   if (planned.empty())
     throw data::InputError(data::ExitStatus::bad_data,
-                           {study.file, "no case can be planned on: " + refused.front(), "see demcal calibrate"});
+                           {study.file, "no case can be planned on: " + doubts.front(), "see demcal calibrate"});
+  std::vector<uq::CaseReport> plans;
+  for (const Planned& one : planned) plans.push_back(one.plan);
   const nlohmann::ordered_json json = {
-      {"format", 1}, {"demcal", data::program_version()}, {"study", study.name}, {"plans", uq::plans_json(planned)}};
+      {"format", 1}, {"demcal", data::program_version()}, {"study", study.name}, {"plans", uq::plans_json(plans)}};
   const std::string path = (fs::path(workspace.out) / "plan.json").string();
   data::write_atomically(path, uq::text_of(json));
-  add_to_report(workspace, planned);
-  const std::vector<std::string> warnings = say_warnings(common, rows, assessment.surrogates, refused);
-  for (const uq::CaseReport& one : planned) answer(common, uq::plan_text(one.name, *one.plan));
+  for (std::string& other : add_to_report(workspace, planned)) doubts.push_back(std::move(other));
+  const std::vector<std::string> warnings = say_warnings(common, rows, assessment.surrogates, doubts);
+  for (const uq::CaseReport& one : plans) answer(common, uq::plan_text(one.name, *one.plan));
   answer(common, "Plan: " + path);
   print_json(common, nlohmann::json::parse(json.dump()));
   return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;

@@ -347,10 +347,10 @@ std::vector<std::string> find_remedies(const CaseFacts& facts, const Sorted& sor
 /// Whether the posterior ends well inside the range on the side that the data leave open: a stated prior ends it there, and
 /// not the range.
 bool ended_by_prior(const ParameterEvidence& parameter) {
-  constexpr double far = 2.5;  // posterior sds
+  constexpr double sds_away = 2.5;
   const double room =
       parameter.facts.open_high ? parameter.range_high - parameter.mean : parameter.mean - parameter.range_low;
-  return room > far * parameter.sd;
+  return room > sds_away * parameter.sd;
 }
 
 }  // namespace
