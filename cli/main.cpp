@@ -13,6 +13,7 @@
 #include "cli/command.hpp"
 #include "cli/misspelt.hpp"
 #include "cli/out_of_memory.hpp"
+#include "data/interrupt.hpp"
 #include "data/provenance.hpp"
 #include "data/terminal.hpp"
 
@@ -91,6 +92,7 @@ int refused(const std::filesystem::filesystem_error& error) {
 
 int main(int argc, char** argv) {
   data::guard_streams();
+  data::exit_on_interrupt();
   cli::guard_memory();
   keep_freed_memory();
   try {

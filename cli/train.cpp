@@ -60,8 +60,9 @@ data::ExitStatus tell_made(const Common& common, const Workspace& workspace, con
   print_json(common, json);
   if (const auto status = tell_left(common, made, slurm != nullptr && slurm->detach)) return *status;
   if (interrupted) {
-    say(common, fmt::format("interrupted after {} of {} runs; the same command does the rest", made.finished,
-                            made.ended.size()));
+    const std::size_t left = made.ended.size() - made.finished;
+    say(common, fmt::format("interrupted after {} of {} runs; with --runs {} it does the rest", made.finished,
+                            made.ended.size(), left));
     return data::ExitStatus::interrupted;
   }
   answer(common,

@@ -33,7 +33,29 @@ void on_signal(int signal) {
   errno = saved;
 }
 
+void on_signal_without_guard(int) {
+  constexpr char line[] = "\ninterrupted; what was saved is whole, and the same command starts again\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line, sizeof line - 1);
+  _exit(static_cast<int>(ExitStatus::interrupted));
+}
+
+/// SIGHUP stays ignored where it is, as under nohup. `old`: what was there before, or nullptr.
+void listen_with(void (*handler)(int), std::array<struct sigaction, 3>* old) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    struct sigaction before {};
+    sigaction(signals[k], nullptr, &before);
+    if (signals[k] != SIGHUP || before.sa_handler != SIG_IGN) sigaction(signals[k], &action, nullptr);
+    if (old != nullptr) (*old)[k] = before;
+  }
+}
+
 }  // namespace
+
+void exit_on_interrupt() { listen_with(on_signal_without_guard, nullptr); }
 
 struct InterruptGuard::Listener {
   int ends[2] = {-1, -1};
@@ -52,14 +74,7 @@ InterruptGuard::InterruptGuard() : listener_(new Listener) {
     }
     if (byte == 's') source_.request_stop();
   });
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;
-  for (std::size_t k = 0; k < signals.size(); ++k) {
-    sigaction(signals[k], nullptr, &listener_->old[k]);
-    if (signals[k] != SIGHUP || listener_->old[k].sa_handler != SIG_IGN) sigaction(signals[k], &action, nullptr);
-  }
+  listen_with(on_signal, &listener_->old);
 }
 
 InterruptGuard::~InterruptGuard() {

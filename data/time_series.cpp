@@ -5,8 +5,9 @@
 //   MSER(d) = sum_{j > d} (Z_j - mean)^2 / (b - d)^2
 // is smallest. Deviation: the minimum of a stationary series is often at some d > 0 by chance, so the d batches are
 // dropped only when their own mean differs from the mean of the rest by more than `start_up_significance` standard
-// errors, or, for a start-up whose mean happens to agree, when their variance is that of another process (over four
-// times the rest's); otherwise everything is kept.
+// errors, and they die away towards the rest or lie outside of its fluctuations: a slow fluctuation, of which the rest
+// has seen too little to know its errors, does neither. Or, for a start-up whose mean happens to agree, when their
+// variance is that of another process (over four times the rest's). Otherwise everything is kept.
 //
 // Spikes. One sample S standard deviations away would have the batches before it dropped, as long as they are fewer
 // than S^2 / 3 samples, and hide a true start-up behind the variance that it adds. So the start is chosen in the series
@@ -38,8 +39,10 @@ namespace {
 constexpr std::size_t batch = 5;
 constexpr std::size_t window_max = 1000;  // samples
 constexpr double start_up_significance = 3.0;
-constexpr double spike_distance = 8.0;  // robust standard deviations
-constexpr double to_sd = 1.4826;        // of a median absolute deviation, of a normal distribution
+constexpr double outside_fluctuations = 3.0;  // standard deviations of a sample
+constexpr double dying_away = 2.0;            // the deviation of the first third over that of the last one
+constexpr double spike_distance = 8.0;        // robust standard deviations
+constexpr double to_sd = 1.4826;              // of a median absolute deviation, of a normal distribution
 
 double mean_of(std::span<const double> x) {
   double sum = 0.0;
@@ -161,13 +164,23 @@ std::size_t mser(const std::vector<double>& z, std::size_t most) {
   return best_start;
 }
 
+/// Whether the deviation of the head from `level` is larger at its beginning than at its end, on the same side.
+bool dies_away(std::span<const double> head, double level) {
+  const std::size_t third = head.size() / 3;
+  if (third == 0) return true;
+  const double first = mean_of(head.first(third)) - level, last = mean_of(head.last(third)) - level;
+  return std::abs(first) > dying_away * std::abs(last);
+}
+
 /// Whether the first `d` samples belong to another process than the rest.
 bool is_start_up(std::span<const double> series, std::size_t d, const SeriesMean& rest) {
   const std::span<const double> head = series.first(d);
   const double head_mean = mean_of(head);
   const double independent = std::max(1.0, static_cast<double>(d) / rest.integrated_time);
   const double error = std::hypot(rest.standard_error, rest.sd / std::sqrt(independent));
-  if (std::abs(head_mean - rest.mean) > start_up_significance * error) return true;
+  const double away = std::abs(head_mean - rest.mean);
+  if (away > start_up_significance * error && (away > outside_fluctuations * rest.sd || dies_away(head, rest.mean)))
+    return true;
   double squares = 0.0;
   for (const double value : head) squares += (value - rest.mean) * (value - rest.mean);
   return independent >= 10.0 && squares / static_cast<double>(d) > 4.0 * rest.sd * rest.sd;

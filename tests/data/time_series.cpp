@@ -85,6 +85,30 @@ TEST_CASE("a short start-up does not cost a large part of the series") {
   CHECK(found.dropped <= 200);
 }
 
+TEST_CASE("a slow fluctuation at the beginning is seldom taken for a start-up") {
+  // Fast, slower and slow parts of equal power, as of a bed that packs and loosens: 600 samples of which the slowest part
+  // remembers 100. Its mean over the rest alone is farther off than that over all.
+  int truncated = 0;
+  double of_found = 0.0, of_all = 0.0;
+  const int series = 400;
+  for (int i = 0; i < series; ++i) {
+    std::vector<double> x(600, 0.0);
+    for (const double phi : {0.37, 0.905, 0.99}) {
+      const std::vector<double> part =
+          autoregressive(phi, x.size(), 9000 + static_cast<std::uint32_t>(3 * i) + (phi > 0.5) + (phi > 0.95));
+      for (std::size_t t = 0; t < x.size(); ++t) x[t] += part[t];
+    }
+    const data::SeriesMean found = data::mean_with_error(x);
+    const double all = data::mean_with_error(x, {.start_up_fraction_max = 0.0}).mean;
+    truncated += found.dropped > 0 ? 1 : 0;
+    of_found += found.mean * found.mean;
+    of_all += all * all;
+  }
+  INFO("truncated " << truncated << ", rms " << std::sqrt(of_found / of_all) << " of that of all");
+  CHECK(truncated < 0.04 * series);
+  CHECK(of_found < 1.05 * 1.05 * of_all);
+}
+
 TEST_CASE("a spike does not decide where a series begins, nor hides where it does") {
   for (const double phi : {0.0, 0.9})
     for (const double transient : {0.0, -8.0})
