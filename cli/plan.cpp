@@ -80,7 +80,11 @@ void add_runs(const Workspace& workspace, const StudyRows& rows, const Assessmen
   plan.runs.variance_before = runs.variance_before;
   plan.runs.variance_after = runs.variance_after_expected;
   if (runs.variance_before < seen) return;
-  for (const PlannedRun& run : runs.runs) plan.runs.points.push_back(text_of(workspace, run.point));
+  for (const PlannedRun& run : runs.runs) {
+    const std::string text = text_of(workspace, run.point);
+    const bool again = std::find(plan.runs.points.begin(), plan.runs.points.end(), text) != plan.runs.points.end();
+    plan.runs.points.push_back(text + (again ? ", once more with another seed" : ""));
+  }
   plan.runs.seconds = median_run_time(rows.all) * static_cast<double>(runs.runs.size());
 }
 

@@ -41,6 +41,13 @@ bool Csv::same_values(std::size_t one, std::size_t other) const {
 
 std::size_t Csv::column(std::string_view name) const {
   if (const auto found = find(name, Capitals::any)) return *found;
+  std::vector<std::string> same;  // that differ in their units alone
+  std::copy_if(headings.begin(), headings.end(), std::back_inserter(same),
+               [&](const std::string& heading) { return read_heading(heading).name == name; });
+  if (same.size() > 1)
+    refuse_data(fmt::format("{}:{}", file, header_line),
+                fmt::format("{} columns are called '{}': {}", same.size(), name, fmt::join(same, ", ")),
+                "give the whole heading of the one that is meant");
   std::string remedy = fmt::format("the columns are {}", fmt::join(headings, ", "));
   // torque_sd is not torque_se: an sd of the samples is no error of their mean.
   const bool of_error = name.ends_with("_se");

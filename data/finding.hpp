@@ -41,6 +41,7 @@ enum class FindingKind {
   error_left_out,             ///< that a file states and the study does not
   saturated,                  ///< several rows with one extreme value
   not_measured,               ///< an output that some rows of a file lack, or all
+  run_table,                  ///< in the place of a measurement
 };
 template <>
 inline constexpr std::array texts_of<FindingKind> = {"copied rows",
@@ -64,7 +65,8 @@ inline constexpr std::array texts_of<FindingKind> = {"copied rows",
                                                      "errors apart",
                                                      "error left out",
                                                      "saturated",
-                                                     "not measured"};
+                                                     "not measured",
+                                                     "run table"};
 
 struct Finding {
   FindingKind kind = FindingKind::unit;

@@ -128,6 +128,8 @@ ObservationSet read_observations(const std::string& path, const Study& study,
     control_columns.push_back(set_once ? std::nullopt : std::optional(csv.column(control.name)));
     control_units.push_back(control_columns.back() ? csv.unit(*control_columns.back(), control.unit) : control.unit);
   }
+  for (const Parameter& parameter : study.parameters)
+    if (csv.find(parameter.name, Csv::Capitals::any)) set.parameter_columns.push_back(parameter.name);
   const std::vector<OutputColumns> outputs = output_columns(csv, study, missing, set);
   for (const OutputColumns& one : outputs) set.outputs.push_back(one.output);
   if (csv.rows.empty()) {

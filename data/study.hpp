@@ -155,7 +155,8 @@ struct ObservationSet {
   std::vector<std::size_t> outputs;  ///< indices into Study::outputs, of the columns that the file has
   std::vector<Observation> points;   ///< without copies
   std::vector<ObservationCopy> copies = {};
-  std::vector<std::size_t> empty_outputs = {};  ///< indices into Study::outputs, of columns without any value
+  std::vector<std::size_t> empty_outputs = {};      ///< indices into Study::outputs, of columns without any value
+  std::vector<std::string> parameter_columns = {};  ///< of the study's parameters, those that the file has columns of
   std::string meter = {};  ///< sets that name the same one have its common errors together; empty: each its own
   std::vector<CommonError> common_errors;
   std::vector<ErrorCorrelation> correlations = {};

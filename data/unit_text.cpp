@@ -169,7 +169,8 @@ Heading read_heading(std::string_view given) {
     if (open == std::string::npos || open == 0 || text.back() != marks[1]) continue;
     const std::string unit = part(open + 1, text.size() - open - 2);
     std::string name = part(0, open);
-    if (marks[0] == '(' && name.size() > 2 && name.ends_with(" /")) name = trimmed(name.substr(0, name.size() - 2));
+    if (marks[0] == '(' && name.size() > 1 && name.ends_with('/'))  // "omega/(rad/s)", as ISO 80000-1 has it
+      name = trimmed(name.substr(0, name.size() - 1));
     if (!unit.empty() && (marks[0] == '[' || (is_unit(unit) && unit != "1"))) return {name, unit};
   }
   for (const char* mark : {" / ", ",", "/"}) {

@@ -89,6 +89,9 @@ TEST_CASE("a heading is a name and a unit in brackets, in parentheses, after a s
   CHECK(split("n in rpm") == "n in rpm|");
   CHECK(split("Torque {Nm}") == "Torque|Nm");
   CHECK(split("n / (1/min)") == "n|1/min");
+  CHECK(split("omega/(rad/s)") == "omega|rad/s");
+  CHECK(split("M/(mN m)") == "M|mN m");
+  CHECK(split("f/(x)") == "f/(x)|");
   CHECK(split("Time (hh:mm:ss)") == "Time|hh:mm:ss");
   CHECK(split("torque [banana]") == "torque|banana");  // refused where the unit is needed
   CHECK(split("torque (mean)") == "torque (mean)|");

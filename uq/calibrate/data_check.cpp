@@ -72,6 +72,46 @@ std::optional<UnitFactor> unit_of_some(const InputColumn& column, const std::vec
   return {};
 }
 
+/// Rows of a column that fill its range in another unit, where the others lie in it as they stand: values too small by that
+/// factor, far below all others, and more than an even design has there.
+std::optional<Finding> some_in_other_unit(const InputColumn& column) {
+  constexpr std::size_t fewest = 3;
+  constexpr double apart = 3.0;  // the smallest of the others, over the largest of these
+  if (!(column.low >= 0.0)) return {};
+  for (const UnitFactor& known : unit_factors(column.unit)) {
+    if (known.factor < 50.0) continue;  // else an even design has values there
+    std::vector<double> small;
+    std::vector<std::string> places;
+    double next = HUGE_VAL;
+    for (std::size_t i = 0; i < column.values.size(); ++i) {
+      const double value = column.values[i];
+      if (value > 0.0 && value * known.factor <= 1.01 * column.high) {
+        small.push_back(value);
+        places.push_back(column.places[i]);
+      } else if (value > 0.0) {
+        next = std::min(next, value);
+      }
+    }
+    const double expected = static_cast<double>(column.values.size()) / known.factor;
+    if (small.size() < fewest || small.size() == column.values.size() ||
+        static_cast<double>(small.size()) < fewest + 5.0 * expected)
+      continue;
+    InputColumn some = column;
+    some.values = small;
+    const auto [least, most] = std::minmax_element(small.begin(), small.end());
+    if (span(some, known.factor) < 0.5 || next < apart * *most) continue;
+    Finding finding = data::about_rows(data::FindingKind::unit, Severity::warning, places);
+    finding.what = fmt::format(
+        "{} of {} rows have {} from {:.4g} to {:.4g}{}, and no other is below {:.4g}: times {:.4g} they would fill its "
+        "range. Is another unit meant there, {}?",
+        small.size(), column.values.size(), column.name, column.shown(*least), column.shown(*most), column.unit_text(),
+        column.shown(next), known.factor, known.between);
+    finding.remedy = "write all rows in the study's unit, or leave these out ([training] leave_out)";
+    return finding;
+  }
+  return {};
+}
+
 /// Two columns of which each fits the other's range and not both their own.
 std::optional<Finding> exchanged(const InputColumn& a, const InputColumn& b, double share) {
   const double own = std::min(share_inside(a, a.low, a.high), share_inside(b, b.low, b.high));
@@ -214,6 +254,7 @@ std::vector<Finding> check_ranges(const data::Study& study, data::RunTable& tabl
   for (std::size_t a = 0; a < columns.size(); ++a) {
     const InputColumn& column = columns[a];
     if (told[a]) continue;
+    if (auto found = some_in_other_unit(column)) findings.push_back(std::move(*found));
     const data::Axis axis = column.is_parameter ? study.parameters[*study.parameter_index(column.name)].axis()
                                                 : study.controls[*study.control_index(column.name)].axis();
     std::vector<data::RunRow*> outside;

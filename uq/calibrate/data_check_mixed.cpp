@@ -91,6 +91,23 @@ std::optional<Finding> other_readings(const data::Study& study, const data::RunT
         }
   }
   if (places.empty() || inside < places.size()) return {};
+  if (places.size() == 1) {
+    const auto one = std::find_if(set.points.begin(), set.points.end(), [&](const data::Observation& point) {
+      return place_of(set, point) == places.front();
+    });
+    const double value = one->values[column];
+    for (const auto& [times, word] : {std::pair{10.0, "times ten"}, {0.1, "a tenth"}})
+      if (value * times >= least && value * times <= most)
+        return Finding{
+            .kind = data::FindingKind::unit,
+            .place = places.front(),
+            .severity = data::Severity::warning,
+            .what = fmt::format("{} lies far outside all runs, where the other readings lie among them; {} it "
+                                "would, too. Is its decimal point right?",
+                                study.outputs[k].name, word),
+            .remedy = "correct the reading, or take its line out",
+            .places = places};
+  }
   return Finding{
       .kind = data::FindingKind::unit,
       .place = data::list_places(places),

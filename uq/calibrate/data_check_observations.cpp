@@ -81,6 +81,19 @@ void check_unmeasured(const data::Study& study, const data::ObservationSet& set,
   }
 }
 
+/// A file of observations that states what nobody measures is a run table.
+void check_run_table(const data::Study& study, const data::ObservationSet& set, std::vector<Finding>& findings) {
+  if (set.parameter_columns.empty() || set.parameter_columns.size() < study.parameters.size()) return;
+  findings.push_back(
+      {.kind = data::FindingKind::run_table,
+       .place = file_of(set),
+       .severity = set.file == study.training.table ? Severity::refusal : Severity::warning,
+       .what = fmt::format("'{}' has columns of the parameters ({}), as a run table has, and is read as a measurement",
+                           set.name, fmt::join(set.parameter_columns, ", ")),
+       .remedy = "name the file of what was measured; where it is that, remove these columns",
+       .places = {}});
+}
+
 /// Whether the meter's reading may be another multiple of the runs' output than one.
 bool is_scaled(const data::Study& study, const data::ObservationSet& set, std::size_t output) {
   if (set.of_machine && study.scale) return true;
@@ -263,6 +276,7 @@ void check_errors(const data::Study& study, const data::ObservationSet& whole, c
     const double above = gsl_cdf_chisq_Q(chi2(*bent, error), dof - 1.0);
     const double least = (error / value).minCoeff();
     const bool too_large = below < t.unlikely_scatter && least > 0.05;
+    const auto misfit = [](double chi2_of_dof) { return std::abs(std::log(std::max(chi2_of_dof, 1e-300))); };
     const bool percent_fits =
         gsl_cdf_chisq_Q(chi2(*found, percent), dof) > 1e-3 && chi2(*found, percent) > chi2(*found, error);
     const double left = gsl_cdf_chisq_Q(chi2(*bent, share), dof - 1.0);
@@ -284,6 +298,12 @@ void check_errors(const data::Study& study, const data::ObservationSet& whole, c
           "they would fit. Are they relative?",
           scatter, error.mean(), behind_number(output.unit.symbol));
       finding.remedy = fmt::format("multiply the column by {}", output.name);
+    } else if (misfit(chi2(*found, error / 1000.0) / dof) < misfit(chi2(*found, percent) / dof)) {
+      finding.what = fmt::format(
+          "the readings scatter {:.3g} times less than their standard errors ({:.3g}{}, {:.0f} % of the value) say; a "
+          "thousandth of them would fit. Are they in another unit than {}, by one prefix (m, k)?",
+          1.0 / scatter, error.mean(), behind_number(output.unit.symbol), 100.0 * (error / value).mean(), output.name);
+      finding.remedy = fmt::format("write the unit of {}_se in its heading", output.name);
     } else {
       finding.what = fmt::format(
           "the readings scatter {:.3g} times less than their standard errors ({:.3g}{}, {:.0f} % of the value) say; "
@@ -362,6 +382,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
                                         const DataCheckThresholds& thresholds) {
   std::vector<Finding> findings;
   for (const data::ObservationSet& set : study.observations) {
+    check_run_table(study, set, findings);
     check_copies(set, findings);
     check_unmeasured(study, set, findings);
     if (set.points.empty()) continue;

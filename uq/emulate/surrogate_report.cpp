@@ -17,6 +17,9 @@
 namespace uq {
 namespace {
 
+/// Of the stated errors: runs at one point that scatter more are doubted.
+constexpr double far_apart = 4.0;
+
 std::vector<double> in_unit(const Eigen::VectorXd& values, const data::Unit& unit) {
   std::vector<double> shown;
   for (const double value : values) shown.push_back(unit.from_si(value));
@@ -184,6 +187,12 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
     report.fold_probability.push_back(fold.probability);
     report.pivoted_errors.insert(report.pivoted_errors.end(), fold.pivoted_errors.begin(), fold.pivoted_errors.end());
   }
+  if (found.noise.replicated && found.noise.understated() && found.noise.scatter_ratio > far_apart)
+    report.errors_in_doubt = fmt::format(
+        "runs at the same points differ by {:.1f} times what their standard errors say. That is taken for scatter of "
+        "the "
+        "runs. Are these the rows of two campaigns, of other settings or units?",
+        found.noise.scatter_ratio);
   const surrogate::HyperParameters hyper = fitted.process->hyper_parameters();
   // On the log scale the nugget is relative; shown at the mean output.
   const bool logarithmic = fit_options.scale == surrogate::OutputScale::log;

@@ -43,7 +43,7 @@ struct SurrogateReport {
   std::vector<double> fold_distance, fold_runs, fold_probability;
   std::vector<double> pivoted_errors;  ///< pivoted Cholesky errors, fold after fold, each in pivoting order
   std::vector<std::string> notes;      ///< hyper-parameter on its bound, jitter, multi-start outcomes
-  std::string errors_in_doubt;         ///< that the runs' standard errors look like percentages; empty: they do not
+  std::string errors_in_doubt;         ///< that the runs' standard errors cannot be meant so; empty: they can
   bool converged = true;               ///< the maximisation of the likelihood
   int low_runs = 0;                    ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
   /// This level's output per the cheaper one's.

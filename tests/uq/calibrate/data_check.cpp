@@ -165,6 +165,17 @@ TEST_CASE("one file under two names in one case is refused, and so is a second f
   CHECK_THAT(found.what, Contains("'again' would count twice: 'bench' holds the same measurements"));
 }
 
+TEST_CASE("the study's own run table in the place of the measurement is refused as such", "[uq]") {
+  Files files;
+  files.cases.replace(files.cases.find("bench.csv"), 9, "runs.csv");
+  const Looked looked = look(files);
+  const auto found = std::find_if(looked.findings.begin(), looked.findings.end(),
+                                  [](const data::Finding& one) { return one.kind == data::FindingKind::run_table; });
+  REQUIRE(found != looked.findings.end());
+  CHECK(found->severity == Severity::refusal);
+  CHECK_THAT(found->what, Contains("has columns of the parameters (friction, cohesion)"));
+}
+
 TEST_CASE("copied readings are counted once and named", "[uq]") {
   Files files;
   const std::vector<Row> once = files.bench;
@@ -220,6 +231,13 @@ TEST_CASE("a column in another unit is suspected from its range, and refused whe
     REQUIRE_FALSE(looked.findings.empty());
     CHECK(looked.findings[0].severity == Severity::refusal);
     CHECK_THAT(looked.findings[0].what, Contains("divided by 1000"));
+  }
+  SECTION("a third of the rows a thousand times smaller, all inside") {
+    for (std::size_t i = 0; i < 20; ++i) files.runs[i].cohesion *= 1e-3;
+    const Looked looked = look(files);
+    REQUIRE_FALSE(looked.findings.empty());
+    CHECK(looked.findings[0].kind == data::FindingKind::unit);
+    CHECK_THAT(looked.findings[0].what, Contains("20 of 60 rows have cohesion from") && Contains("one prefix"));
   }
   SECTION("runs' speed in rad/s") {
     files.each_run([](Row& row) { row.speed *= 2.0 * 3.14159265 / 60.0; });
