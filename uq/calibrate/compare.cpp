@@ -46,10 +46,6 @@ std::string in_words(const ModelComparison& found, const std::string& names) {
   if (std::abs(found.log_bayes_factor) < 1.0 + 2.0 * found.sampling_error)
     return fmt::format("The data do not decide between {} and {} free ({}; {}).", found.held, names, number, caveat);
   const bool free = found.log_bayes_factor > 0.0;
-  if (found.surrogate_error > std::abs(found.log_bayes_factor))
-    return fmt::format(
-        "As the surrogate stands, the data favour {} over {}, but a sharper one may turn that round ({}; {}).",
-        free ? names + " free" : found.held, free ? found.held : names + " free", number, caveat);
   return fmt::format("The data favour {} over {}: {} evidence ({}; {}).", free ? names + " free" : found.held,
                      free ? found.held : names + " free", strength(found.log_bayes_factor), number, caveat);
 }

@@ -201,8 +201,8 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
     one.unusable = !doubt_of(model).empty();
     one.surrogate_share = surrogate.shares[k];
     one.common = common[k];
-    one.faint = !all.influence[k].some && limited(one.facts);
-    one.facts.influences = all.influence[k].some || one.faint;
+    one.facts.influences = all.influence[k].some || limited(one.facts);
+    one.faint = !all.influence[k].some && one.facts.contraction < thresholds.contraction_weak;
     one.hidden = all.influence[k].hidden;
     one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);
     words.push_back(word_of(one.facts, thresholds));

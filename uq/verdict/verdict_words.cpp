@@ -369,14 +369,15 @@ std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict ve
   if (parameter.common.share > mostly && parameter.surrogate_share <= mostly) return Reason::common_error;
   if (parameter.structural) return Reason::structural;
   if (!parameter.conditional_on.empty()) return Reason::range_of_another;
-  if (parameter.unknown_beyond || parameter.faint) return Reason::surrogate;
   const bool pinned = !parameter.low_pinned_by.empty() || !parameter.high_pinned_by.empty();
   // The end of one's range where a combination alone is known is no limit that better data of the same kind would move.
-  if (parameter.traded && verdict == Verdict::not_identified && facts.open_low != facts.open_high && !pinned &&
+  const bool half_open = facts.open_low != facts.open_high && !pinned;
+  if (parameter.traded && verdict == Verdict::not_identified && (half_open || parameter.unknown_beyond) &&
       parameter.surrogate_share <= mostly)
     return Reason::traded;
+  if (parameter.unknown_beyond || parameter.faint) return Reason::surrogate;
   if (facts.open_low && !facts.open_high && facts.physical_low) return Reason::bound;
-  if (facts.open_low != facts.open_high && !pinned && !ended_by_prior(parameter)) return Reason::one_sided;
+  if (half_open && !ended_by_prior(parameter)) return Reason::one_sided;
   if (parameter.surrogate_share > mostly) return Reason::surrogate;
   if (parameter.undecided) return Reason::traded;
   return Reason::practical;
