@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/cli/program.hpp"
 
@@ -140,4 +141,40 @@ TEST_CASE("another rig is a candidate as another material with runs of its own, 
       if (drum) CHECK_THAT(floor, Contains("probability") && Contains("end of its range"));
       if (!drum) CHECK_THAT(floor, Contains("do not part"));
     }
+}
+
+TEST_CASE("results of other data than are there now are told so, and no plan joins them", "[slow]") {
+  const Folder folder;
+  const std::string place = folder.study("other-code").string();
+  REQUIRE(folder.demcal({"calibrate", place, "--out", "o", "--no-scan"}).status == 0);
+  CHECK(folder.demcal({"report", place, "--out", "o"}).status == 0);
+  const std::string before = folder.read("o/report.json");
+  folder.replace("study/bench.csv", "11.2418", "12.2418");
+  CHECK_THAT(folder.says({"report", place, "--out", "o"}, 2), Contains("Changed since: observations bench"));
+  CHECK_THAT(folder.read("o/report.html"), Contains("Changed since: observations bench"));
+  const auto planned = folder.demcal({"plan", place, "--out", "o"});
+  CHECK(planned.status == 2);
+  CHECK_THAT(planned.err, Contains("this plan is not put into it"));
+  CHECK(folder.read("o/report.json") == before);
+}
+
+TEST_CASE("a plan on a posterior that no run supports says so", "[slow]") {
+  const Folder folder;
+  const std::string place = folder.study("other-code").string();
+  // Of the runs, those of a friction below 0.45; the posterior goes on to 0.6.
+  std::istringstream rows(folder.read("study/runs.csv"));
+  std::string kept;
+  for (std::string line; std::getline(rows, line);)
+    if (line.empty() || !std::isdigit(line.front()) || std::stod(line) < 0.45) kept += line + "\n";
+  folder.write("study/runs.csv", kept);
+  const auto planned = folder.demcal({"plan", place, "--out", "o"});
+  CHECK(planned.status == 2);
+  CHECK_THAT(planned.err, Contains("where no run speaks") && Contains("make runs there first"));
+}
+
+TEST_CASE("a calibration that is interrupted ends with its status and a line that says so") {
+  const Folder folder;
+  const auto outcome = folder.demcal({"calibrate", study, "--out", "o"}, "o");
+  CHECK(outcome.status == 75);
+  CHECK_THAT(outcome.err, Contains("interrupted; what was saved is whole"));
 }
