@@ -8,6 +8,8 @@ off. A point that sweeps.csv has is not run, but with --again; --gather only wri
   choices      what the paper does not state, each alone changed, at the slowest and the fastest speed: minimum
                separation, the load that limits friction, attraction of the walls, stiffness
   machine      the machine of two augers of the same cross-section beside the slice, at two speeds of five points of the first sweeps
+  ridge        less friction and more cohesion: where the slice's torque is that of a friction of 0.4 with 2e-18 J, and the
+               machine there
   grain size   the same bed of spheres of other diameters, slowest and fastest speed: without cohesion, and with a force of
                attraction that goes with the 2nd, 3rd or 4th power of the diameter from that of 9e-18 J at 0.8 mm
 A point that ends with an error (spheres pressed into each other, say) has a row with its message and no numbers.
@@ -61,6 +63,9 @@ def points():
         for rig, settings in (("of two augers", MACHINE), ("the slice", STIFFER)):
             for friction, hamaker in ((0.4, "0"), (0.4, "9e-18"), (0.4, "2e-18"), (0.6, "0"), (0.2, "0")):
                 yield "machine", rig, "spread", friction, hamaker, rpm, settings
+    for hamaker in ("4e-18", "6e-18", "4.7e-18"):  # the last one by interpolation between the other two
+        yield "ridge", "the slice", "spread", 0.2, hamaker, 300, STIFFER
+    yield "ridge", "of two augers", "spread", 0.2, "4.7e-18", 300, MACHINE
     for material, diameter in DIAMETERS.items():
         for rpm in ENDS:
             yield "grain size", "no attraction", material, 0.4, "0", rpm, {}
