@@ -123,6 +123,10 @@ Action add_new(CLI::App& program) {
       throw data::InputError(data::ExitStatus::usage, {"FOLDER", "is empty", "give the new folder a name"});
     const fs::path path = fs::absolute(*folder).lexically_normal();
     const fs::path study = path / "study.toml";
+    std::error_code unseen;
+    if (fs::exists(path, unseen) && !fs::is_directory(path, unseen))
+      throw data::InputError(data::ExitStatus::cannot_write,
+                             {path.string(), "is there already, and no folder", "give the new folder another name"});
     for (const fs::path& file : {study, path / "bench.csv"}) {
       std::error_code failure;
       const fs::file_type there = fs::symlink_status(file, failure).type();

@@ -63,7 +63,9 @@ Observed find_observed(const ObserveOptions& options, const data::TorqueLog& log
     data::refuse_data(
         log.file,
         fmt::format("the speed changes slowly all the time ({:.4g} s of it): there is no constant speed", found.ramps),
-        "hold each speed for a while, or cut out with --window what is constant");
+        fmt::format("hold each speed for a while, or cut out with --window what is constant; holds of speeds less than "
+                    "{:g} % apart are told from each other by a smaller --tolerance",
+                    100.0 * options.plateaus.tolerance));
   const std::size_t before = plateaus.size();
   std::erase_if(plateaus, [&](const data::Plateau& plateau) {
     const double held = log.time[plateau.first + plateau.count - 1] - log.time[plateau.first];
@@ -111,6 +113,11 @@ data::ExitStatus observe(ObserveOptions options) {
   for (const std::string& note : log.notes) say(options.common, "note: " + note);
   std::vector<std::string> warnings = log.warnings;
   for (std::string& words : data::remove_no_values(log)) warnings.push_back(std::move(words));
+  for (const auto& [name, window] : {std::pair{"--window", &options.window}, {"--idle-window", &options.idle_window}})
+    if (!(window->from() < window->to()))
+      throw data::InputError(data::ExitStatus::usage,
+                             {name, fmt::format("begins at {:g} s and ends at {:g} s", window->from(), window->to()),
+                              "give the earlier time first"});
   options.plateaus.from = options.window.from();
   options.plateaus.to = options.window.to();
   auto [plateaus, ramps, refused, of_plateaus] = find_observed(options, log);
