@@ -164,7 +164,7 @@ std::size_t mser(const std::vector<double>& z, std::size_t most) {
   return best_start;
 }
 
-/// Whether the deviation of the head from `level` is larger at its beginning than at its end, on the same side.
+/// Whether the deviation of the head from `level` is much larger at its beginning than at its end.
 bool dies_away(std::span<const double> head, double level) {
   const std::size_t third = head.size() / 3;
   if (third == 0) return true;
