@@ -33,7 +33,7 @@ CONTACT = "dem/contact/contact_law.hpp"
 PARTS = "dem/contact/parts/"
 LINEAR, HERTZ, JKR = (f"dem/contact/forces/{name}.cpp" for name in ("linear", "hertz", "jkr"))
 POSTERIOR, GRADIENT, REPEATS = (f"uq/posterior/{name}.cpp" for name in ("posterior", "posterior_gradient", "distinct"))
-PROFILE, DROP = "uq/verdict/profile.cpp", "uq/verdict/interval_drop.cpp"
+PROFILE, DROP, INTERVAL = (f"uq/verdict/{name}.cpp" for name in ("profile", "interval_drop", "profile_interval"))
 INFORMATION = "uq/plan/information.cpp"
 
 MUTATIONS = [
@@ -94,6 +94,8 @@ MUTATIONS = [
     Mutation("the interval's ends do not know that the errors' size is unknown", DROP,
              "std::max(drop, 2.0 * (level.maxCoeff() - there))", "drop", (DROP,), "test_uq_verdict",
              "with an unknown sd of the readings*"),
+    Mutation("the surrogate's ignorance excludes", INTERVAL, "profile.deviance[i] - std::max(grown, 0.0) > profile.drop",
+             "profile.deviance[i] > profile.drop", (INTERVAL,), "test_uq_verdict", "what only the surrogate's ignorance*"),
     Mutation("a bound at 0 is a bound like any other", PROFILE, "parameter.low == 0.0 &&", "parameter.low == 1.0 &&",
              (PROFILE,), "test_uq_verdict", "a parameter against its physical bound*"),
     Mutation("information has the wrong sign", INFORMATION, "return -extrapolated(density, b);",
