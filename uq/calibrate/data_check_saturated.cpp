@@ -86,7 +86,7 @@ std::vector<Finding> check_saturated(const data::Study& study, const data::RunTa
       for (const data::Observation& point : set.points) {
         if (!point.has(c)) continue;
         column.values.push_back(output.unit.from_si(point.values[c]));
-        column.places.push_back(fmt::format("{}:{}", set.file, point.line));
+        column.places.push_back(place_of(set, point));
         column.settings.push_back(point.controls);
       }
       check_column(column, least_readings, findings);

@@ -51,7 +51,7 @@ class BesideRuns {
       const double value = point.controls[index];
       if (within_reach(control, value, {low, high})) continue;
       problem(
-          fmt::format("{}:{}", set_.file, point.line),
+          fmt::format("{}:{}", data::shown_path(set_.file), point.line),
           fmt::format("{} is {:g}{}, but the runs of this material reach from {:g} to {:g}{}", control.name,
                       control.unit.from_si(value), data::behind_number(control.unit.symbol), control.unit.from_si(low),
                       control.unit.from_si(high), data::behind_number(control.unit.symbol)),

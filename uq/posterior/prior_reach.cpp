@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "data/atomic_file.hpp"
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "uq/findings/study_units.hpp"
@@ -92,7 +93,7 @@ data::Problem excluded(const data::Study& study, const CaseModel& model, const R
   const data::Unit& unit = study.outputs[origin.output].unit;
   std::string names;
   for (const Unknown& unknown : model.unknowns) names += (names.empty() ? "" : ", ") + unknown.label;
-  return {fmt::format("{}:{}", set.file, set.points[origin.point].line),
+  return {fmt::format("{}:{}", data::shown_path(set.file), set.points[origin.point].line),
           fmt::format("case '{}': the priors of {} only allow {:.4g} to {:.4g}{}, but {:.4g}{} was measured; the "
                       "parameters' ranges would allow it",
                       model.name, names, unit.from_si(allowed.first), unit.from_si(allowed.second),
