@@ -224,6 +224,19 @@ std::optional<std::size_t> Study::observation_index(std::string_view set_name) c
   return {};
 }
 
+std::optional<std::size_t> Study::case_index(std::string_view case_name) const {
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (cases[i].name == case_name) return i;
+  }
+  return {};
+}
+
+std::optional<std::size_t> ObservationSet::column_of(std::size_t output) const {
+  const auto found = std::find(outputs.begin(), outputs.end(), output);
+  if (found == outputs.end()) return {};
+  return static_cast<std::size_t>(found - outputs.begin());
+}
+
 const Material& Study::material(std::string_view material_name) const {
   for (const Material& candidate : materials) {
     if (candidate.name == material_name) return candidate;

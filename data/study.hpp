@@ -166,6 +166,9 @@ struct ObservationSet {
   bool assumed = false;             ///< stands for a measurement before any is made (uq/plan/unmeasured.hpp)
   std::vector<std::string> header;  ///< the comment lines at the head of the file, without '#'
   std::string place;
+
+  /// Where an output (an index into Study::outputs) stands among the set's; nothing where it has none.
+  std::optional<std::size_t> column_of(std::size_t output) const;
 };
 
 /// What beside the parameters is unknown of a measurement, and how it acts on the prediction m of what is read:
@@ -237,6 +240,7 @@ struct Study {
   std::optional<std::size_t> parameter_index(std::string_view parameter_name) const;
   std::optional<std::size_t> control_index(std::string_view control_name) const;
   std::optional<std::size_t> observation_index(std::string_view set_name) const;
+  std::optional<std::size_t> case_index(std::string_view case_name) const;
   const Material& material(std::string_view material_name) const;
 };
 

@@ -24,13 +24,13 @@ std::string line_of(const data::Study& study, const RowOrigin& origin) {
 std::string reading_in_words(const data::Study& study, const RowOrigin& origin) {
   const data::ObservationSet& set = study.observations[origin.set];
   const data::Observation& point = set.points[origin.point];
-  const auto column = std::find(set.outputs.begin(), set.outputs.end(), origin.output) - set.outputs.begin();
   const data::Output& output = study.outputs[origin.output];
   std::string at;
   for (std::size_t c = 0; c < study.controls.size(); ++c)
     at += fmt::format("{} {} {:.4g}{}", at.empty() ? " at" : ",", study.controls[c].name,
                       study.controls[c].unit.from_si(point.controls[c]), behind_number(study.controls[c].unit.symbol));
-  return fmt::format("{} {:.4g}{}{} ({})", output.name, output.unit.from_si(point.values[column]),
+  return fmt::format("{} {:.4g}{}{} ({})", output.name,
+                     output.unit.from_si(point.values[set.column_of(origin.output).value()]),
                      behind_number(output.unit.symbol), at, line_of(study, origin));
 }
 

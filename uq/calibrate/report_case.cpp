@@ -217,10 +217,10 @@ void add_identification(CaseReport& report, const data::Study& study, const Case
 /// What the posterior predicts: at the readings, over the controls, and of a discrepancy.
 void add_bands(CaseReport& report, const data::Study& study, const CaseModel& model, const Eigen::MatrixXd& draws,
                std::uint64_t study_seed) {
-  const auto item = std::find_if(study.cases.begin(), study.cases.end(),
-                                 [&](const data::CalibrationCase& one) { return one.name == model.name; });
+  // A model made by hand may be of no case of the study.
+  const std::size_t index = study.case_index(model.name).value_or(study.cases.size());
   const std::uint64_t seed =
-      data::child_seed(study_seed, data::Purpose::report_seed, static_cast<std::uint32_t>(item - study.cases.begin()));
+      data::child_seed(study_seed, data::Purpose::report_seed, static_cast<std::uint32_t>(index));
   report.predictive = predictive_points(study, model, draws, seed);
   report.curves = predictive_curves(study, model, draws, seed);
   report.discrepancies = discrepancy_bands(study, model, draws, seed);

@@ -90,11 +90,8 @@ SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& e
     const auto known = std::find_if(sampled.cut_sources.begin(), sampled.cut_sources.end(),
                                     [&](const auto& source) { return source->model->name == unknown.cut_from; });
     if (known == sampled.cut_sources.end()) {
-      const auto from = std::find_if(study.cases.begin(), study.cases.end(), [&](const data::CalibrationCase& other) {
-        return other.name == unknown.cut_from;
-      });
-      sampled.cut_sources.push_back(std::make_shared<const SampledCase>(
-          sample_case(study, emulators, static_cast<std::size_t>(from - study.cases.begin()), options)));
+      const std::size_t from = study.case_index(unknown.cut_from).value();
+      sampled.cut_sources.push_back(std::make_shared<const SampledCase>(sample_case(study, emulators, from, options)));
     }
     const SampledCase& source = source_of(sampled, unknown);
     if (source.draws.chains.empty()) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "data/number_text.hpp"
+#include "data/observations.hpp"
 #include "data/time_series.hpp"
 #include "surrogate/gaps.hpp"
 #include "uq/emulate/outlying_runs.hpp"
@@ -278,11 +279,10 @@ std::vector<std::string> extrapolation_notes(const data::Study& study, const Tra
     const data::Control& control = study.controls[input.index];
     int outside = 0, points = 0;
     for (const data::ObservationSet& set : study.observations) {
-      if (set.material != rows.material ||
-          std::find(set.outputs.begin(), set.outputs.end(), rows.output) == set.outputs.end())
-        continue;
-      for (const data::Observation& point : set.points) {
-        const double u = control.axis().to_unit(point.controls[input.index]);
+      const std::optional<std::size_t> where = set.column_of(rows.output);
+      if (set.material != rows.material || !where) continue;
+      for (const std::size_t i : data::points_with(set, *where)) {
+        const double u = control.axis().to_unit(set.points[i].controls[input.index]);
         ++points;
         outside += u < low - 1e-9 || u > high + 1e-9;
       }

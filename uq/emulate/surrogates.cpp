@@ -15,8 +15,7 @@ namespace {
 bool is_observed(const data::Study& study, const TrainingRows& rows) {
   const auto measures = [&](const std::string& name) {
     const data::ObservationSet& set = study.observations[study.observation_index(name).value()];
-    return set.material == rows.material &&
-           std::find(set.outputs.begin(), set.outputs.end(), rows.output) != set.outputs.end();
+    return set.material == rows.material && set.column_of(rows.output).has_value();
   };
   const auto some = [&](const auto& users) {
     return std::any_of(users.begin(), users.end(),

@@ -25,12 +25,11 @@ std::optional<double> stated_error(const Study& study, const std::vector<std::si
   for (const std::size_t index : sets) {
     const data::ObservationSet& set = study.observations[index];
     if (set.assumed) continue;
-    const auto column = std::find(set.outputs.begin(), set.outputs.end(), output);
-    if (column == set.outputs.end()) continue;
-    const auto c = static_cast<std::size_t>(column - set.outputs.begin());
+    const std::optional<std::size_t> c = set.column_of(output);
+    if (!c) continue;
     for (const data::Observation& point : set.points)
-      if (point.has(c) && point.values[c] != 0.0)
-        shares.push_back(std::abs(point.standard_errors[c] / point.values[c]));
+      if (point.has(*c) && point.values[*c] != 0.0)
+        shares.push_back(std::abs(point.standard_errors[*c] / point.values[*c]));
   }
   if (shares.empty()) return {};
   return data::median_of(std::move(shares));
@@ -39,10 +38,8 @@ std::optional<double> stated_error(const Study& study, const std::vector<std::si
 /// Settings at which a set has a reading of an output.
 std::set<std::vector<double>> settings_of(const data::ObservationSet& set, std::size_t output) {
   std::set<std::vector<double>> found;
-  const auto column = std::find(set.outputs.begin(), set.outputs.end(), output);
-  if (column == set.outputs.end()) return found;
-  for (const std::size_t i : data::points_with(set, static_cast<std::size_t>(column - set.outputs.begin())))
-    found.insert(set.points[i].controls);
+  if (const std::optional<std::size_t> column = set.column_of(output))
+    for (const std::size_t i : data::points_with(set, *column)) found.insert(set.points[i].controls);
   return found;
 }
 

@@ -89,7 +89,7 @@ const data::ObservationSet* usual_reading(const Study& study, std::size_t case_i
   int best = 0;
   for (std::size_t i = 0; i < study.observations.size(); ++i) {
     const data::ObservationSet& set = study.observations[i];
-    if (std::find(set.outputs.begin(), set.outputs.end(), output) == set.outputs.end()) continue;
+    if (!set.column_of(output)) continue;
     const bool of_case = std::find(own.begin(), own.end(), i) != own.end();
     const int rank = 1 + (of_case ? 2 : 0) + (set.material == material ? 1 : 0);
     if (rank <= best) continue;

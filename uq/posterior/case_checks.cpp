@@ -138,9 +138,8 @@ bool is_same(const std::vector<double>& a, const std::vector<double>& b) {
 
 bool hold_the_same(const data::ObservationSet& a, const data::ObservationSet& b) {
   if (a.assumed || b.assumed) return false;
-  if (std::none_of(a.outputs.begin(), a.outputs.end(), [&](std::size_t output) {
-        return std::find(b.outputs.begin(), b.outputs.end(), output) != b.outputs.end();
-      }))
+  if (std::none_of(a.outputs.begin(), a.outputs.end(),
+                   [&](std::size_t output) { return b.column_of(output).has_value(); }))
     return false;
   const bool one_file = !a.file.empty() && a.file == b.file;
   std::size_t common = 0;

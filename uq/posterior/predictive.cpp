@@ -181,8 +181,7 @@ PredictivePoint observed_point(const data::Study& study, const RowOrigin& from) 
   const data::ObservationSet& set = study.observations[from.set];
   const data::Observation& observation = set.points[from.point];
   const data::Output& output = study.outputs[from.output];
-  const auto column =
-      static_cast<std::size_t>(std::find(set.outputs.begin(), set.outputs.end(), from.output) - set.outputs.begin());
+  const std::size_t column = set.column_of(from.output).value();
   return {.controls = named_controls(study, observation.controls),
           .output = output.name,
           .unit = output.unit.symbol,
