@@ -78,11 +78,12 @@ std::optional<Finding> other_readings(const data::Study& study, const data::RunT
   std::vector<std::string> places;
   std::optional<UnitFactor> factor;
   std::size_t inside = 0;
+  const std::vector<UnitFactor> known_ones = unit_factors(study.outputs[k].unit);
   for (const data::Observation& point : set.points) {
     const double value = point.values[column];
     if (value >= least && value <= most) ++inside;
     if (!(value < least / gap_least || value > most * gap_least)) continue;
-    for (const UnitFactor& known : unit_factors(study.outputs[k].unit))
+    for (const UnitFactor& known : known_ones)
       for (const double times : {known.factor, 1.0 / known.factor})
         if (value * times >= least && value * times <= most && (!factor || factor->factor == known.factor)) {
           const std::string place = place_of(set, point);

@@ -109,12 +109,10 @@ std::vector<std::pair<std::string, std::string>> describe(const VerdictThreshold
        fmt::format("deviance up to {:.4g} (95 %); more where the size of the errors is unknown",
                    thresholds.profile_drop)},
       {"no influence",
-       fmt::format("its whole range changes the predictions by less than {:g} of the surrogate's sds, or the deviance "
-                   "by less than {:g}, and would with errors {:g} times smaller; contraction below {:g}, or an "
-                   "interval open on "
-                   "both sides",
-                   thresholds.told_apart_sd, thresholds.silent_deviance, thresholds.errors_lowered,
-                   thresholds.contraction_weak)},
+       fmt::format(
+           "its whole range changes the predictions by less than {:g} of the surrogate's sds, or the deviance "
+           "by less than {:g}, and would with errors {:g} times smaller; and its interval is open on both sides",
+           thresholds.told_apart_sd, thresholds.silent_deviance, thresholds.errors_lowered)},
       {"interval open for another parameter's range",
        fmt::format("deviance at its end at least {:g} times as large with that parameter in the middle of its own "
                    "interval",

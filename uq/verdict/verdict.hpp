@@ -5,7 +5,8 @@
 //   does not fit        the case's posterior predictive p or best-fit p is below its threshold: nothing is identified
 //   not identified      the parameter has no influence (influence.hpp)
 //   several values      the profile interval has several parts, closed on both sides, and within the parts the
-//                       contraction is at least `contraction_weak`
+//                       contraction is at least `contraction_weak`; or parts that begin or end where the range does, with
+//                       `contraction_identified`
 //   identified          the profile interval is closed on both sides, and contraction is at least
 //                       `contraction_identified`
 //   weakly identified   closed, and contraction is at least `contraction_weak`; or an upper limit: closed above, and

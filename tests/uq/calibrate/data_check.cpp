@@ -33,6 +33,8 @@ struct Files {
   std::vector<Row> runs;
   std::string bench_comment = {};
   std::vector<Row> bench;  ///< friction and cohesion are not written
+  std::pair<std::string, std::string> bench_columns =
+      {};  ///< further ones in front: their names, and what each row has
   std::string cases =
       "[[observe]]\nname = \"bench\"\nfile = \"bench.csv\"\n[[calibrate]]\nname = \"powder\"\nobserve = [\"bench\"]\n"
       "free = [\"friction\", \"cohesion\"]\n";
@@ -68,10 +70,12 @@ struct Looked {
 
 Looked look(const Files& files) {
   const TemporaryFolder folder;
-  std::string runs = files.header + "\n", bench = files.bench_comment + "speed,torque,torque_se\n";
+  std::string runs = files.header + "\n",
+              bench = files.bench_comment + files.bench_columns.first + "speed,torque,torque_se\n";
   for (const Row& r : files.runs)
     runs += fmt::format("{:.8g},{:.8g},{:.8g},{:.8g},{:.8g}\n", r.friction, r.cohesion, r.speed, r.torque, r.error);
-  for (const Row& r : files.bench) bench += fmt::format("{:.8g},{:.8g},{:.8g}\n", r.speed, r.torque, r.error);
+  for (const Row& r : files.bench)
+    bench += files.bench_columns.second + fmt::format("{:.8g},{:.8g},{:.8g}\n", r.speed, r.torque, r.error);
   folder.write("runs.csv", runs);
   folder.write("bench.csv", bench);
   const auto path = folder.write(
@@ -174,6 +178,13 @@ TEST_CASE("the study's own run table in the place of the measurement is refused 
   REQUIRE(found != looked.findings.end());
   CHECK(found->severity == Severity::refusal);
   CHECK_THAT(found->what, Contains("has columns of the parameters (friction, cohesion)"));
+}
+
+TEST_CASE("readings beside columns of all parameters are suspected to be runs", "[uq]") {
+  Files files;
+  files.bench_columns = {"friction,cohesion,", "0.4,4,"};
+  const data::Finding found = only(files, "run table");
+  CHECK(found.severity == Severity::warning);
 }
 
 TEST_CASE("copied readings are counted once and named", "[uq]") {
