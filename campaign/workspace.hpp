@@ -31,6 +31,13 @@ struct StudyOptions {
 /// What becomes of runs that are not of the steady flow: [training] unsteady.
 enum class Unsteady { leave_out, use };
 
+}  // namespace campaign
+
+template <>
+inline constexpr std::array data::texts_of<campaign::Unsteady> = {"leave_out", "use"};
+
+namespace campaign {
+
 /// A study that was read without problems.
 struct Workspace {
   data::Study study;
@@ -49,6 +56,11 @@ Workspace open_workspace(const StudyOptions& options);
 
 /// Throws InputError (78) when the study has no [rig] to simulate.
 void require_rig(const Workspace& workspace);
+
+/// Whether demcal makes the study's runs, and not another code: [training] engine.
+bool own_engine(const Workspace& workspace);
+/// Throws data::InputError (78): another code makes the runs, with what to do then.
+void require_own_runs(const Workspace& workspace);
 
 /// Makes the results folder. Throws InputError (73), also when it is the study's own folder or cannot be written to.
 void make_out(const Workspace& workspace, const std::string& subfolder = "");

@@ -4,9 +4,14 @@
 //   linear  x = low + u (high - low)      log  x = low (high / low)^u
 #include <cmath>
 
+#include "data/texts.hpp"
+
 namespace data {
 
 enum class Scale { linear, log };
+
+template <>
+inline constexpr std::array texts_of<Scale> = {"linear", "log"};
 
 struct Axis {
   double low = 0.0;   ///< SI, above 0 on a log scale

@@ -60,8 +60,7 @@ void read_training(const Section& root, Study& study) {
   if (const std::string table = section.text("table", ""); !table.empty()) training.table = beside(study, table);
   if (const std::string low = section.text("low", ""); !low.empty()) training.low = beside(study, low);
   training.leave_out = section.labels("leave_out");
-  const std::string engine = section.choice("engine", {"demcal", "none"}, root.has("rig") ? "demcal" : "none");
-  training.engine = engine == "demcal" ? Engine::demcal : Engine::none;
+  training.engine = section.choice("engine", root.has("rig") ? Engine::demcal : Engine::none);
   if (training.engine == Engine::none && training.table.empty()) {
     section.problem("table", "is missing, and there is no [rig] to simulate with",
                     "name the CSV file of your runs, or add a [rig]");

@@ -18,6 +18,10 @@ namespace data {
 
 enum class PriorKind { uniform, log_uniform, normal, truncated_normal, log_normal, beta, posterior };
 
+template <>
+inline constexpr std::array texts_of<PriorKind> = {"uniform",    "log_uniform", "normal",   "truncated_normal",
+                                                   "log_normal", "beta",        "posterior"};
+
 /// The prior density of one parameter. It is zero outside [low, high], which lies within the parameter's range, as a
 /// surrogate knows nothing beyond.
 ///   kind              fields read                                        support
@@ -63,13 +67,21 @@ struct Spread {
   bool operator==(const Spread&) const = default;
 };
 
-/// How well a control is known. Points of a set at one value of it (a fill, repeats at a speed) share its error; at another value it
-/// is set anew, unless it is `shared`.
+/// How the error of a control enters a case.
+enum class SettingErrorAs {
+  covariance,  ///< first order, in the covariance; set anew at each value of the control
+  shared,      ///< so, but one error of all points, whatever their values: a tachometer's
+  unknown      ///< sampled as an unknown
+};
+
+template <>
+inline constexpr std::array texts_of<SettingErrorAs> = {"covariance", "shared", "unknown"};
+
+/// How well a control is known. Points of a set at one value of it (a fill, repeats at a speed) share its error.
 struct SettingError {
   std::size_t control = 0;  ///< index into Study::controls
   Spread spread;
-  bool unknown = false;  ///< sampled as an unknown, instead of first order in the covariance
-  bool shared = false;   ///< one error of all points, whatever their values: a tachometer's
+  SettingErrorAs as = SettingErrorAs::covariance;
   std::string place;
 };
 
@@ -106,6 +118,9 @@ enum class Engine {
   demcal,
   none,  ///< another code: the study brings its table
 };
+
+template <>
+inline constexpr std::array texts_of<Engine> = {"demcal", "none"};
 
 struct Training {
   int runs = 64;                 ///< per material
@@ -191,6 +206,9 @@ struct Nuisance {
 };
 
 enum class Sampler { mixture, nuts };
+
+template <>
+inline constexpr std::array texts_of<Sampler> = {"mixture", "nuts"};
 
 /// A calibration case: which parameters are free given which observations.
 struct CalibrationCase {

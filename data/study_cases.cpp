@@ -186,7 +186,7 @@ void check_unused_data(const Section& section, const UnusedData& wanted, const S
     const auto index = study.observation_index(name);
     if (!index) continue;
     for (const SettingError& error : study.observations[*index].setting_errors)
-      if (error.unknown)
+      if (error.as == SettingErrorAs::unknown)
         section.problem("observe",
                         fmt::format("'{}' has a setting error that is an unknown of its own ({})", name,
                                     study.controls[error.control].name),
@@ -233,7 +233,7 @@ void read_cases(const Section& root, Study& study) {
     item.nuisances = read_nuisances(section, study);
     check_comparison(section, item, study);
     check_nuisances(section, item, study);
-    if (section.choice("sampler", {"mixture", "nuts"}, "mixture") == "nuts") item.sampler = Sampler::nuts;
+    item.sampler = section.choice("sampler", item.sampler);
     for (const CalibrationCase& other : study.cases) {
       if (other.name == item.name)
         section.problem("name", fmt::format("'{}' is taken", item.name), "give each case its own name");

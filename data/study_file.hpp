@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "data/error.hpp"
+#include "data/texts.hpp"
 #include "data/unit.hpp"
 
 namespace data {
@@ -68,6 +69,12 @@ class Section {
   /// One of `options`; anything else is an error that lists them.
   std::string choice(std::string_view key, const std::vector<std::string>& options,
                      const std::optional<std::string>& fallback = {}) const;
+  /// One of an enum's values, by its texts.
+  template <HasTexts Enum>
+  Enum choice(std::string_view key, Enum fallback) const {
+    const std::vector<std::string> options(texts_of<Enum>.begin(), texts_of<Enum>.end());
+    return from_text<Enum>(choice(key, options, to_text(fallback))).value_or(fallback);
+  }
   bool flag(std::string_view key, bool fallback) const;
   std::vector<std::string> texts(std::string_view key, bool required = false) const;
   /// A list of texts or whole numbers, as texts: [31, "runs.csv:44"].

@@ -179,9 +179,7 @@ std::optional<SettingError> read_uncertainty(const Section& section, std::string
         return {};
       }
       error.spread = read_spread(table, "sd", control.unit, BareNumber::value, section_unit);
-      const std::string as = table.choice("as", {"covariance", "shared", "unknown"}, "covariance");
-      error.unknown = as == "unknown";
-      error.shared = as == "shared";
+      error.as = table.choice("as", error.as);
       return error;
     }
     default:
@@ -240,7 +238,7 @@ void read_measurement(const Section& root, const Section& section, const Study& 
     const bool varies = std::any_of(set.points.begin(), set.points.end(), [&](const Observation& point) {
       return point.controls[c] != set.points.front().controls[c];
     });
-    if (error->unknown && varies)
+    if (error->as == SettingErrorAs::unknown && varies)
       section.problem(
           "uncertainty",
           fmt::format("{} differs from point to point of '{}', so it is not one unknown", control.name, set.name),

@@ -81,7 +81,7 @@ void read_mean_and_sd(const Section& section, Prior& prior, const Parameter& par
 const Unit* bare_unit(const Unit& unit) { return is_bare(unit.symbol) ? nullptr : &unit; }
 
 Scale read_scale(const Section& section, double low, const Unit& unit) {
-  if (section.choice("scale", {"linear", "log"}, "linear") == "linear") return Scale::linear;
+  if (section.choice("scale", Scale::linear) == Scale::linear) return Scale::linear;
   if (section.has("low") && !(low > 0.0))
     section.problem("low", fmt::format("{} has no logarithm", shown(low, unit)),
                     "choose low above 0, or scale = \"linear\"");
@@ -103,36 +103,41 @@ Prior read_prior(const Section& section, const Parameter& parameter, PriorOf own
     prior.cut = section.flag("cut", false);
     return prior;
   }
-  const std::string kind =
-      section.choice("kind", {"uniform", "log_uniform", "normal", "truncated_normal", "log_normal", "beta"});
-  if (kind == "uniform") {
-    read_limits(section, prior, parameter);
-  } else if (kind == "log_uniform") {
-    prior.kind = PriorKind::log_uniform;
-    read_limits(section, prior, parameter);
-    if (!(prior.low > 0.0))
-      section.problem("kind",
-                      fmt::format("is log_uniform, but the prior begins at {}", shown(prior.low, parameter.unit)),
-                      "give the prior a low above 0");
-  } else if (kind == "normal") {
-    prior.kind = PriorKind::normal;
-    read_mean_and_sd(section, prior, parameter);
-  } else if (kind == "truncated_normal") {
-    prior.kind = PriorKind::truncated_normal;
-    read_limits(section, prior, parameter);
-    read_mean_and_sd(section, prior, parameter);
-  } else if (kind == "log_normal") {
-    prior.kind = PriorKind::log_normal;
-    prior.mean = read_value(section, section.has("mean") ? "mean" : "median", parameter.unit, positive);
-    prior.sd = section.number("sd", positive);
-    if (parameter.high <= 0.0) {
-      section.problem("kind", "is log_normal, but the parameter's range holds nothing above 0", "choose another prior");
-    }
-  } else {
-    prior.kind = PriorKind::beta;
-    read_limits(section, prior, parameter);
-    prior.alpha = section.number("alpha", positive);
-    prior.beta = section.number("beta", positive);
+  // The last, another case's posterior, is chosen by a key of its own.
+  const std::vector<std::string> kinds(texts_of<PriorKind>.begin(), texts_of<PriorKind>.end() - 1);
+  prior.kind = from_text<PriorKind>(section.choice("kind", kinds)).value_or(PriorKind::uniform);
+  switch (prior.kind) {
+    case PriorKind::uniform:
+      read_limits(section, prior, parameter);
+      break;
+    case PriorKind::log_uniform:
+      read_limits(section, prior, parameter);
+      if (!(prior.low > 0.0))
+        section.problem("kind",
+                        fmt::format("is log_uniform, but the prior begins at {}", shown(prior.low, parameter.unit)),
+                        "give the prior a low above 0");
+      break;
+    case PriorKind::normal:
+      read_mean_and_sd(section, prior, parameter);
+      break;
+    case PriorKind::truncated_normal:
+      read_limits(section, prior, parameter);
+      read_mean_and_sd(section, prior, parameter);
+      break;
+    case PriorKind::log_normal:
+      prior.mean = read_value(section, section.has("mean") ? "mean" : "median", parameter.unit, positive);
+      prior.sd = section.number("sd", positive);
+      if (parameter.high <= 0.0)
+        section.problem("kind", "is log_normal, but the parameter's range holds nothing above 0",
+                        "choose another prior");
+      break;
+    case PriorKind::beta:
+      read_limits(section, prior, parameter);
+      prior.alpha = section.number("alpha", positive);
+      prior.beta = section.number("beta", positive);
+      break;
+    case PriorKind::posterior:
+      break;
   }
   return prior;
 }

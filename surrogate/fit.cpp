@@ -214,33 +214,4 @@ GaussianProcess fit(const TrainingSet& training, const FitOptions& options) {
   return {options.kernel, options.mean, options.nugget, std::move(data), std::move(parts), std::move(diagnostics)};
 }
 
-GaussianProcess fit_best(const TrainingSet& training, const FitOptions& options, const std::vector<ModelForm>& forms) {
-  const bool positive = training.y.size() > 0 && training.y.minCoeff() > 0.0;
-  std::optional<GaussianProcess> best;
-  double highest = 0.0;
-  for (const ModelForm& form : forms) {
-    if (form.scale == OutputScale::log && !positive) continue;
-    FitOptions one = options;
-    one.kernel = form.kernel;
-    one.mean = form.mean;
-    one.scale = form.scale;
-    GaussianProcess process = fit(training, one);
-    const std::vector<StartOutcome>& starts = process.diagnostics().starts;
-    const double flat = flat_coefficients(form.mean, static_cast<int>(process.data().active.size()));
-    const double density = std::max_element(starts.begin(), starts.end(), better)->objective +
-                           process.data().log_jacobian + flat * std::log(process.data().unit);
-    if (best && !(density > highest)) continue;
-    highest = density;
-    best = std::move(process);
-  }
-  return best ? *best : fit(training, options);
-}
-
-FitOptions with_form(FitOptions options, const GaussianProcess& process) {
-  options.kernel = process.kernel();
-  options.mean = process.mean();
-  options.scale = process.data().scale;
-  return options;
-}
-
 }  // namespace surrogate

@@ -71,11 +71,12 @@ struct FitOptions {
 /// Throws data::InputError (65) for data that cannot train a process; a fit that does not converge is in diagnostics().
 GaussianProcess fit(const TrainingSet& training, const FitOptions& options = {});
 
-/// Fits every form and keeps the one under which the runs are most probable (log posterior density at its maximum;
-/// all forms have the same hyper-parameters and priors). A form whose scale the runs do not allow is passed over.
-GaussianProcess fit_best(const TrainingSet& training, const FitOptions& options, const std::vector<ModelForm>& forms);
-
-/// The options under which a process was fitted, given those that fit_best was called with.
-FitOptions with_form(FitOptions options, const GaussianProcess& process);
-
 }  // namespace surrogate
+
+template <>
+inline constexpr std::array data::texts_of<surrogate::Estimate> = {"maximum likelihood", "maximum a posteriori"};
+template <>
+inline constexpr std::array data::texts_of<surrogate::HyperUncertainty> = {"plugged in", "integrated",
+                                                                           "integrated if few"};
+template <>
+inline constexpr std::array data::texts_of<surrogate::BetweenRuns> = {"trusted", "doubted"};

@@ -10,21 +10,12 @@
 #include <Eigen/Core>
 #include <numbers>
 
+#include "data/texts.hpp"
+
 namespace surrogate {
 
 enum class Kernel { matern32, matern52, squared_exponential };
-
-inline const char* to_text(Kernel kernel) {
-  switch (kernel) {
-    case Kernel::matern32:
-      return "Matern 3/2";
-    case Kernel::matern52:
-      return "Matern 5/2";
-    case Kernel::squared_exponential:
-      return "squared exponential";
-  }
-  return "";
-}
+using data::to_text;
 
 /// Where a block of correlations is worked out: buffers of the same length, `square` holding r^2 on entry. An empty
 /// `slope` means that f is not wanted.
@@ -58,3 +49,6 @@ inline void correlate(Kernel kernel, CorrelationBlock block) {
 }
 
 }  // namespace surrogate
+
+template <>
+inline constexpr std::array data::texts_of<surrogate::Kernel> = {"matern 3/2", "matern 5/2", "squared exponential"};

@@ -1,36 +1,26 @@
 #pragma once
 // Mean functions of a Gaussian process, m(x) = h(x)' beta, of the active inputs centred in the unit cube, t = x - 1/2:
-//   zero: none (the process has zero mean in the units of y, or of log y);  constant: 1;  linear: 1, t_k;  quadratic:
-//   1, t_k, t_j t_k (j <= k);  trend: as quadratic.
+//   zero       none: the process has zero mean in the units of y, or of log y
+//   constant   1
+//   linear     1, t_k
+//   quadratic  1, t_k, t_j t_k (j <= k)
+//   trend      as quadratic, with a prior
 // The coefficients are integrated out (generalised least squares, restricted likelihood). Their prior is flat, but for
 // the trend: its constant is flat, the others are N(0, trend_sd^2) in units of the output's standard deviation. With a
 // proper prior few runs, or few levels of an input, may have as many coefficients as they like, and what the runs leave
 // open of them widens the prediction.
 #include <Eigen/Core>
 
+#include "data/texts.hpp"
+
 namespace surrogate {
 
 enum class MeanBasis { zero, constant, linear, quadratic, trend };
+using data::to_text;
 
 /// Prior sd of a trend's coefficients: an input may well move the output by twice its standard deviation from one end
 /// of its range to the other, and bend by a quarter of that.
 constexpr double trend_sd = 2.0;
-
-inline const char* to_text(MeanBasis basis) {
-  switch (basis) {
-    case MeanBasis::zero:
-      return "zero";
-    case MeanBasis::constant:
-      return "constant";
-    case MeanBasis::linear:
-      return "linear";
-    case MeanBasis::quadratic:
-      return "quadratic";
-    case MeanBasis::trend:
-      return "trend";
-  }
-  return "";
-}
 
 /// Number of coefficients for d inputs.
 inline int basis_size(MeanBasis basis, int d) {
@@ -90,3 +80,6 @@ inline Eigen::MatrixXd basis_derivative(MeanBasis basis, const Eigen::MatrixXd& 
 }
 
 }  // namespace surrogate
+
+template <>
+inline constexpr std::array data::texts_of<surrogate::MeanBasis> = {"zero", "constant", "linear", "quadratic", "trend"};

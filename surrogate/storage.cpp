@@ -127,11 +127,10 @@ void save(const data::Hdf5Group& group, const HighLevel& high) {
   save(group, high.diagnostics);
 }
 
-template <class Enum>
-Enum read_enum(const data::Hdf5Group& group, const std::string& attribute, std::initializer_list<Enum> values) {
+template <data::HasTexts Enum>
+Enum read_choice(const data::Hdf5Group& group, const std::string& attribute) {
   const std::string text = group.text(attribute);
-  for (const Enum value : values)
-    if (text == to_text(value)) return value;
+  if (const auto value = data::from_text<Enum>(text)) return *value;
   throw data::InputError(
       data::ExitStatus::bad_data,
       {group.place(), attribute + " is \"" + text + "\", which is unknown", "delete the file, it is made again"});
@@ -165,12 +164,11 @@ FitDiagnostics load_diagnostics(const data::Hdf5Group& group) {
 }
 
 GaussianProcess load(const data::Hdf5Group& group) {
-  const auto kernel = read_enum(group, "kernel", {Kernel::matern32, Kernel::matern52, Kernel::squared_exponential});
-  const auto mean = read_enum(
-      group, "mean", {MeanBasis::zero, MeanBasis::constant, MeanBasis::linear, MeanBasis::quadratic, MeanBasis::trend});
+  const auto kernel = read_choice<Kernel>(group, "kernel");
+  const auto mean = read_choice<MeanBasis>(group, "mean");
   const bool nugget = group.integer("nugget") != 0;
   Standardised data;
-  data.scale = read_enum(group, "scale", {OutputScale::linear, OutputScale::log});
+  data.scale = read_choice<OutputScale>(group, "scale");
   data.shift = group.number("shift");
   data.unit = group.number("unit");
   data.log_jacobian = group.number("log_jacobian");
@@ -222,7 +220,7 @@ GaussianProcess load(const data::Hdf5Group& group) {
 
 HighLevel load_high(const data::Hdf5Group& group) {
   HighLevel high;
-  high.discrepancy_mean = read_enum(group, "discrepancy_mean", {MeanBasis::zero, MeanBasis::constant});
+  high.discrepancy_mean = read_choice<MeanBasis>(group, "discrepancy_mean");
   high.runs = {read_matrix(group, "x"), read_vector(group, "y"), read_vector(group, "noise_variance")};
   require(high.runs.x.rows() == high.runs.y.size() && high.runs.noise_variance.size() == high.runs.y.size(), group,
           "its arrays do not fit together");

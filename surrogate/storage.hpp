@@ -1,14 +1,15 @@
 #pragma once
 // Fitted processes in HDF5 (surrogate.h5), one group per process:
-//   /                      format, kind, study_hash, table_hash; names: one per group process0, process1, ...
-//   /processN                  kernel, mean, scale, nugget, shift, unit, log_jacobian, converged, jitter,
-//   agreeing_starts /processN/points, z, noise, point_of_run, active, low, high     the standardised training set
-//   (training.hpp) /processN/length_scales, signal_variance, nugget_variance, weight   one row per hyper-parameter
-//   setting /processN/starts           one row per start: objective, gradient norm, evaluations, converged
+//   /                          format, kind, study_hash, table_hash, and the names of process0, process1, ...
+//   /processN                  kernel, mean, scale, nugget, shift, unit, log_jacobian, converged, jitter, agreeing_starts
+//   /processN/points, z, noise, point_of_run, active, low, high
+//                              the standardised training set (training.hpp)
+//   /processN/length_scales, signal_variance, nugget_variance, weight
+//                              one row for each setting of the hyper-parameters
+//   /processN/starts           one row for each start: objective, gradient norm, evaluations, converged
 //   /processN/bound_*          hyper-parameters that are on a bound
 //   /processN/second_level     where there is a second level (two_level.hpp): x, y, noise_variance, discrepancy_mean,
 //                              settings (weight, rho, length factor, discrepancy sd, nugget sd), and the fit's outcome
-//                              as above
 //   /processN/remarks          a text of the caller's, kept as it is
 // Covariances are factorised again when read: a file is small, and the same bits come back.
 // A file whose study or table hash is not the one asked for is stale: it is refused and named, never used silently.

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <span>
 
 #include "data/error.hpp"
 #include "data/random.hpp"
+#include "data/shuffle.hpp"
 
 namespace surrogate {
 namespace {
@@ -44,8 +46,6 @@ void check(const TrainingSet& training, OutputScale scale) {
 }
 
 }  // namespace
-
-const char* to_text(OutputScale scale) { return scale == OutputScale::log ? "log" : "linear"; }
 
 Standardised standardise(const TrainingSet& training, OutputScale scale, Centre centre) {
   check(training, scale);
@@ -114,8 +114,7 @@ std::vector<int> thin(const TrainingSet& training, int most, std::uint64_t seed)
   std::vector<const std::vector<int>*> order;
   for (const auto& [point, runs] : points) order.push_back(&runs);
   data::RandomStream random(seed, data::Purpose::thinned_runs, 0);
-  for (std::size_t i = order.size(); i > 1; --i)
-    std::swap(order[i - 1], order[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
+  data::shuffle(std::span(order), random);
   std::vector<int> kept;
   for (const std::vector<int>* runs : order) {
     if (!kept.empty() && kept.size() + runs->size() > static_cast<std::size_t>(most)) break;

@@ -17,11 +17,12 @@
 #include <string>
 #include <vector>
 
+#include "data/texts.hpp"
+
 namespace surrogate {
 
 enum class OutputScale { linear, log };
-
-const char* to_text(OutputScale scale);
+using data::to_text;
 
 /// Where z is zero.
 enum class Centre { data_mean, zero };
@@ -79,3 +80,6 @@ struct Pooled {
 Pooled pool(const Standardised& data, double nugget_variance);
 
 }  // namespace surrogate
+
+template <>
+inline constexpr std::array data::texts_of<surrogate::OutputScale> = {"linear", "log"};

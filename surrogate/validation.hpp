@@ -42,7 +42,6 @@ struct ValidationOptions {
 };
 
 enum class SurrogateVerdict { good, caution, unusable };
-const char* to_text(SurrogateVerdict verdict);
 
 /// Fraction of runs inside the central intervals of the levels.
 struct Coverage {

@@ -96,18 +96,6 @@ int runs_wanted(const Validation& v, const TrainingSet& training, const HeldOutM
 
 }  // namespace
 
-const char* to_text(SurrogateVerdict verdict) {
-  switch (verdict) {
-    case SurrogateVerdict::good:
-      return "good";
-    case SurrogateVerdict::caution:
-      return "caution";
-    case SurrogateVerdict::unusable:
-      return "unusable";
-  }
-  return "";
-}
-
 std::vector<std::string> fit_notes(const FitDiagnostics& d) {
   std::vector<std::string> notes;
   if (!d.converged) notes.push_back("the maximisation of the likelihood did not converge");

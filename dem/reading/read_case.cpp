@@ -9,7 +9,6 @@
 #include "dem/case/grains.hpp"
 #include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
-#include "dem/rig/choose.hpp"
 #include "dem/rig/rig.hpp"
 #include "dem/rig/rig_kind.hpp"
 
@@ -102,16 +101,16 @@ void read_pair(const Section& s, Case& c) {
 
 /// The choices of laws come first: which coefficients are read depends on them.
 void read_laws(const Section& s, Contact& k) {
-  choose(s, "normal", k.normal);
-  if (s.has("tangential")) choose(s, "tangential", k.tangential.emplace(TangentialLaw::linear));
-  choose(s, "resistance", k.resistance);
-  choose(s, "cohesion", k.cohesion);
-  choose(s, "tension", k.tension);
-  choose(s, "cap", k.cap);
-  choose(s, "hamaker_of", k.hamaker_of);
+  k.normal = s.choice("normal", k.normal);
+  if (s.has("tangential")) k.tangential = s.choice("tangential", TangentialLaw::linear);
+  k.resistance = s.choice("resistance", k.resistance);
+  k.cohesion = s.choice("cohesion", k.cohesion);
+  k.tension = s.choice("tension", k.tension);
+  k.cap = s.choice("cap", k.cap);
+  k.hamaker_of = s.choice("hamaker_of", k.hamaker_of);
   if (s.has("hamaker_power")) k.hamaker_power = s.number("hamaker_power", {.low = 0.0, .high = 4.0});
-  choose(s, "length_scale", k.length_scale);
-  choose(s, "wall_attraction", k.wall_attraction);
+  k.length_scale = s.choice("length_scale", k.length_scale);
+  k.wall_attraction = s.choice("wall_attraction", k.wall_attraction);
   if (s.has("restitution_at"))
     k.restitution_at = s.quantity("restitution_at", "m/s", {.low = 0.0, .high = 1000.0, .open_low = true});
 }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "dem/rig/choose.hpp"
 #include "dem/rig/grow.hpp"
 #include "dem/rig/level.hpp"
 #include "dem/rig/rig_kind.hpp"
@@ -205,7 +204,8 @@ const RigKind drum_rig{
     .quantities = drum_quantities,
     .read =
         [](const data::Section& s, const std::string&, Case& c) {
-          choose(s, "end_plates", c.rig.drum.emplace().end_plates);
+          Drum& drum = c.rig.drum.emplace();
+          drum.end_plates = s.choice("end_plates", drum.end_plates);
           c.rig.level = 0.5;
         },
     .build = build,

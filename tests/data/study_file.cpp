@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "data/axis.hpp"
 #include "data/edit_distance.hpp"
 #include "tests/temporary.hpp"
 
@@ -35,8 +36,7 @@ TEST_CASE("a value out of its range is named with file, line, key, value and bou
                      root.child("study");
                    }) ==
         "78: study.toml:3: parameters.friction.low: -1 is below the smallest value 0 allowed (choose a value from 0 up "
-        "to "
-        "10)");
+        "to 10)");
   CHECK(problem_of("[parameters.friction]\nlow = 11\n", read) ==
         "78: study.toml:2: parameters.friction.low: 11 is above the largest value 10 allowed (choose a value from 0 up "
         "to 10)");
@@ -139,6 +139,21 @@ TEST_CASE("a value of the wrong type is an error that says what is wanted") {
         "study.toml:6: s: 1 is not a table (write [s] above its keys, or s = { ... })\n"
         "study.toml:7: a: a list is not a table (write [a] above its keys, or a = { ... })\n"
         "study.toml:8: b: a table is not a list of tables (write [[b]], with two brackets, above each)");
+}
+
+TEST_CASE("a choice of an enum's values is read by its texts, and another text leaves the fallback") {
+  const auto read = [](data::Scale& found, data::Scale fallback) {
+    return [&found, fallback](const data::Section& root) { found = root.choice("scale", fallback); };
+  };
+  data::Scale found = data::Scale::linear;
+  CHECK(problem_of("scale = \"log\"", read(found, data::Scale::linear)).empty());
+  CHECK(found == data::Scale::log);
+  CHECK(problem_of("", read(found, data::Scale::linear)).empty());
+  CHECK(found == data::Scale::linear);
+  CHECK(
+      problem_of("scale = \"lag\"", read(found, data::Scale::log)) ==
+      "78: study.toml:1: scale: 'lag' is not one of the choices (choose one of 'linear', 'log'; did you mean 'log'?)");
+  CHECK(found == data::Scale::log);
 }
 
 TEST_CASE("a syntax error names file, line and column, and a missing file is missing input") {

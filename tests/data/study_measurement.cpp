@@ -190,7 +190,7 @@ TEST_CASE("a control that the file has no column of is set for the whole set") {
           "settings = { speed = \"60 rpm\" }\nuncertainty = { speed = { sd = \"2 rpm\", as = \"unknown\" } }\n" +
           powder,
       "torque,torque_se\n8,1\n9,1\n");
-  CHECK(unknown.observations[0].setting_errors.at(0).unknown);
+  CHECK(unknown.observations[0].setting_errors.at(0).as == data::SettingErrorAs::unknown);
 }
 
 TEST_CASE("what cannot be meant of a measurement is refused with its place") {

@@ -5,45 +5,17 @@
 #include <algorithm>
 
 namespace uq {
-namespace {
-
-/// One of the named values, the first by default.
-template <class Value>
-Value choose(const data::Section& section, const char* key, const std::vector<std::pair<std::string, Value>>& options) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : options) names.push_back(name);
-  const std::string chosen = section.choice(key, names, names.front());
-  return std::find_if(options.begin(), options.end(), [&](const auto& option) { return option.first == chosen; })
-      ->second;
-}
-
-}  // namespace
 
 SurrogateOptions read_surrogate_options(const data::StudyFile& file, const data::Study& study) {
-  using namespace surrogate;
   const data::Section section = file.root().child("surrogate");
   SurrogateOptions options;
-  FitOptions& fit = options.fit;
+  surrogate::FitOptions& fit = options.fit;
   fit.seed = study.seed;
-  fit.kernel = choose<Kernel>(section, "kernel",
-                              {{"matern 5/2", Kernel::matern52},
-                               {"matern 3/2", Kernel::matern32},
-                               {"squared exponential", Kernel::squared_exponential}});
-  fit.mean = choose<MeanBasis>(section, "mean",
-                               {{"constant", MeanBasis::constant},
-                                {"zero", MeanBasis::zero},
-                                {"linear", MeanBasis::linear},
-                                {"quadratic", MeanBasis::quadratic},
-                                {"trend", MeanBasis::trend}});
-  fit.estimate = choose<Estimate>(
-      section, "estimate",
-      {{"maximum a posteriori", Estimate::maximum_a_posteriori}, {"maximum likelihood", Estimate::maximum_likelihood}});
-  fit.hyper_uncertainty = choose<HyperUncertainty>(section, "hyper_parameters",
-                                                   {{"integrated if few", HyperUncertainty::integrated_if_few},
-                                                    {"plugged in", HyperUncertainty::plug_in},
-                                                    {"integrated", HyperUncertainty::integrated}});
-  fit.between_runs = choose<BetweenRuns>(section, "between_runs",
-                                         {{"doubted", BetweenRuns::doubted}, {"trusted", BetweenRuns::trusted}});
+  fit.kernel = section.choice("kernel", fit.kernel);
+  fit.mean = section.choice("mean", fit.mean);
+  fit.estimate = section.choice("estimate", fit.estimate);
+  fit.hyper_uncertainty = section.choice("hyper_parameters", fit.hyper_uncertainty);
+  fit.between_runs = section.choice("between_runs", fit.between_runs);
   fit.nugget = section.flag("nugget", fit.nugget);
   fit.starts = static_cast<int>(section.integer("starts", {.low = 1, .high = 1000}, fit.starts));
   options.runs_most = static_cast<int>(section.integer("runs_most", {.low = 20, .high = 100000}, options.runs_most));

@@ -23,7 +23,7 @@ using Eigen::Index;
 
 bool has_unknown_setting(const data::ObservationSet& set) {
   return std::any_of(set.setting_errors.begin(), set.setting_errors.end(),
-                     [](const data::SettingError& error) { return error.unknown; });
+                     [](const data::SettingError& error) { return error.as == data::SettingErrorAs::unknown; });
 }
 
 /// The case's own sets, those of several outputs as one of each output: the model is the same, and a reading of one
@@ -112,7 +112,8 @@ std::vector<data::SettingError> setting_errors_of(const Study& study, std::size_
   for (const std::size_t own : own_sets(study, case_index))
     if (const data::ObservationSet& known = study.observations[own]; known.material == material && !known.assumed)
       errors = known.setting_errors;
-  for (data::SettingError& error : errors) error.unknown = false;
+  for (data::SettingError& error : errors)
+    if (error.as == data::SettingErrorAs::unknown) error.as = data::SettingErrorAs::covariance;
   return errors;
 }
 

@@ -55,7 +55,9 @@ void assume_reading(data::Study& study, const std::vector<Emulator>& emulators, 
     if (study.controls[c].uncertainty) {
       set.setting_errors.push_back(*study.controls[c].uncertainty);
       set.setting_errors.back().control = c;
-      set.setting_errors.back().unknown = false;  // of a reading that is not made
+      // A reading that is not made has no unknown of its own.
+      if (data::SettingErrorAs& as = set.setting_errors.back().as; as == data::SettingErrorAs::unknown)
+        as = data::SettingErrorAs::covariance;
     }
   set.points.push_back(
       {.controls = controls, .values = {mean_at(study, *emulator, controls)}, .standard_errors = {1.0}});

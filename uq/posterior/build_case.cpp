@@ -201,7 +201,7 @@ class Builder {
               study_.controls[input.index].axis().to_unit(set.points[points[i]].controls[input.index]);
         group->unknown.col(k).tail(rows).setConstant(-1);
         for (const auto& error : set.setting_errors)
-          if (rows > 0 && error.unknown && error.control == input.index)
+          if (rows > 0 && error.as == data::SettingErrorAs::unknown && error.control == input.index)
             group->unknown.col(k).tail(rows).setConstant(unknown_of(home_of(setting_unknown(study_, set, error))));
         continue;
       }

@@ -27,7 +27,7 @@ SettingShift shift_of(const data::Control& control, const SetRows& of, const dat
     const double value = of.set.points[of.points[i]].controls[error.control];
     const data::Axis axis = control.axis();
     shift.error[i] = std::hypot(error.spread.absolute, error.spread.relative * value) / axis.slope(axis.to_unit(value));
-    if (!error.shared) shift.level[i] = value;
+    if (error.as != data::SettingErrorAs::shared) shift.level[i] = value;
   }
   return shift;
 }
@@ -107,7 +107,7 @@ std::vector<data::Problem> add_measurement(RowGroup& group, const data::Study& s
                                       "known",
                                       set.material, control.name),
                           fmt::format("vary it in training, or state its effect as common_error of '{}'", set.name)});
-    else if (!error.unknown)
+    else if (error.as != data::SettingErrorAs::unknown)
       read.settings.push_back(shift_of(control, rows, error, *column));
   }
   if (!is_plain(read)) group.measurement.sets.push_back(read);

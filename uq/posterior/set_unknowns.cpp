@@ -72,7 +72,8 @@ std::vector<data::Nuisance> set_unknowns(const data::Study& study, const data::O
   if (set.of_machine && study.scale && study.scale->unknown) found.push_back(*study.scale->unknown);
   add_meter(study, set, found);
   for (const data::SettingError& error : set.setting_errors)
-    if (error.unknown && !set.points.empty()) found.push_back(setting_unknown(study, set, error));
+    if (error.as == data::SettingErrorAs::unknown && !set.points.empty())
+      found.push_back(setting_unknown(study, set, error));
   return found;
 }
 

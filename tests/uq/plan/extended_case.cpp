@@ -16,7 +16,8 @@ TEST_CASE("a reading of an output that has no set yet is made at settings of the
   study.controls[0].uncertainty = speed;
   study.observations[0].setting_errors = {speed};
   for (const bool sampled : {false, true}) {
-    study.observations[0].setting_errors[0].unknown = sampled;
+    study.observations[0].setting_errors[0].as =
+        sampled ? data::SettingErrorAs::unknown : data::SettingErrorAs::covariance;
     const PlanReport plan = plan_of(study, formula::emulators(), {.candidates = {reading_of(1, 0.1)}}, {.about = "a"});
     const auto& about = plan.candidates.front().parameters[0];
     CHECK(about.information == Approx(taught_by_angle(0.01 + 0.16)).margin(about.information_error + 0.005));

@@ -32,7 +32,9 @@ data::Study study_with(bool shared) {
                           .values = {0.5 + 2.0 * (speeds[i] + off), 0.5 + 3.0 * (speeds[i] + off)},
                           .standard_errors = {own, own}});
   }
-  set.setting_errors = {{.control = 0, .spread = {.absolute = error}, .shared = shared}};
+  set.setting_errors = {{.control = 0,
+                         .spread = {.absolute = error},
+                         .as = shared ? data::SettingErrorAs::shared : data::SettingErrorAs::covariance}};
   return study;
 }
 
@@ -138,7 +140,8 @@ TEST_CASE("outputs of two files were not read at the same settings", "[uq]") {
 
 TEST_CASE("what a control's range cuts off of an unknown setting is known", "[uq]") {
   data::Study study = formula::study({1.0}, {3.0}, own);
-  study.observations[0].setting_errors = {{.control = 0, .spread = {.absolute = error}, .unknown = true}};
+  study.observations[0].setting_errors = {
+      {.control = 0, .spread = {.absolute = error}, .as = data::SettingErrorAs::unknown}};
   for (const auto& [speed, kept] : {std::pair{0.5, 1.0}, {0.9, 0.8413447}, {1.0, 0.5}}) {
     study.observations[0].points[0].controls = {speed};
     const CaseModel model = build_case(study, formula::emulators(0.0, lines), 0);
