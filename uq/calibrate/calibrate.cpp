@@ -11,6 +11,7 @@
 #include "data/random.hpp"
 #include "uq/calibrate/data_check.hpp"
 #include "uq/findings/study_units.hpp"
+#include "uq/findings/thresholds.hpp"
 #include "uq/findings/wording.hpp"
 #include "uq/posterior/predictive.hpp"
 #include "uq/posterior/support.hpp"
@@ -100,8 +101,8 @@ std::optional<WithoutRuns> without_runs(const data::Study& study, const std::vec
     Eigen::VectorXd values = draws.col(column);
     for (double& value : values) value = in_study_unit(unknown.prior.parameter(), value);
     const double sd = std::sqrt((values.array() - values.mean()).square().mean());
-    matters =
-        matters || std::abs(values.mean() - other.mean) > 0.5 * other.sd || sd > 1.5 * other.sd || sd < other.sd / 1.5;
+    matters = matters || std::abs(values.mean() - other.mean) > decided_shift * other.sd ||
+              sd > decided_factor * other.sd || sd < other.sd / decided_factor;
   }
   if (matters)
     options.identify.unsupported.assign(

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "uq/findings/study_units.hpp"
+#include "uq/findings/thresholds.hpp"
 #include "uq/posterior/prior_conflict.hpp"
 
 namespace uq {
@@ -17,11 +18,12 @@ void add_sampler_warnings(CaseReport& report) {
         "case {}: {} divergent trajectories: the draws may miss a sharp corner of the posterior (sampler = \"mixture\" "
         "does not follow gradients)",
         report.name, report.divergences));
-  if (report.energy_fraction < 0.3)
-    report.warnings.push_back(fmt::format("case {}: E-BFMI {:.2f} is below 0.3: the chains explore the energies slowly",
-                                          report.name, report.energy_fraction));
+  if (report.energy_fraction < energy_fraction_poor)
+    report.warnings.push_back(
+        fmt::format("case {}: E-BFMI {:.2f} is below {:g}: the chains explore the energies slowly", report.name,
+                    report.energy_fraction, energy_fraction_poor));
   const bool has_evidence = !std::isnan(report.log_evidence);
-  if (has_evidence && !(report.log_evidence_error < 0.2))
+  if (has_evidence && !(report.log_evidence_error < evidence_error_poor))
     report.warnings.push_back(
         fmt::format("case {}: the log evidence is only known to {:.2g}", report.name, report.log_evidence_error));
 }
@@ -37,8 +39,7 @@ void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const E
     report.warnings.push_back(
         fmt::format("case {}: the data contradict the prior of {} by {:.2g} standard deviations: {:.3g} +- {:.2g}{} "
                     "was stated, and {:.3g} +- {:.2g}{} is a compromise of both (check the prior, and what it was "
-                    "measured on; then "
-                    "the data's errors)",
+                    "measured on; then the data's errors)",
                     report.name, found.name, std::abs(conflict.z), found.prior_mean, found.prior_sd, unit, found.mean,
                     found.sd, unit));
   }
@@ -62,14 +63,14 @@ void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
                     report.name, 100.0 * largest));
   }
   for (const auto& unknown : sampled.model->unknowns)
-    if (unknown.nuisance == data::NuisanceKind::setting && unknown.prior.kept_mass() < 0.99)
+    if (unknown.nuisance == data::NuisanceKind::setting && unknown.prior.kept_mass() < prior_kept)
       report.warnings.push_back(
           fmt::format("case {}: {:.0f} % of what {} may be lies beyond the control's range and is cut off, which "
                       "biases the parameters "
                       "(widen the control's range with runs there, or set as = \"covariance\" in its uncertainty)",
                       report.name, 100.0 * (1.0 - unknown.prior.kept_mass()), unknown.label));
   for (const auto& unknown : sampled.model->unknowns)
-    if (!unknown.nuisance && unknown.prior.kept_mass() < 0.99)
+    if (!unknown.nuisance && unknown.prior.kept_mass() < prior_kept)
       report.warnings.push_back(fmt::format("case {}: the range of {} cuts off {:.0f} % of its prior", report.name,
                                             unknown.label, 100.0 * (1.0 - unknown.prior.kept_mass())));
 }

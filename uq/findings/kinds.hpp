@@ -7,7 +7,7 @@ namespace uq {
 /// What the data say of a parameter (uq/verdict/verdict.hpp).
 enum class Verdict { identified, weakly_identified, several_values, not_identified, does_not_fit };
 
-/// Why a parameter is not known (uq/verdict/verdict_words.hpp).
+/// Why a parameter is not known (uq/verdict/reason.hpp).
 enum class Reason {
   structural,
   practical,

@@ -74,10 +74,10 @@ void visit_fields(Visit&& visit, T& p) {
   });
   visit.keyed("word_probabilities", p.word_probabilities, &WordProbability::verdict, &WordProbability::probability);
   visit.table("width_shares", [&](auto& share) {
-    share("measurement", p.share_measurement);
-    share("surrogate", p.share_surrogate);
-    share("structure", p.share_structure);
-    share("range", p.share_range);
+    share("measurement", p.shares.measurement);
+    share("surrogate", p.shares.surrogate);
+    share("structure", p.shares.structure);
+    share("range", p.shares.range);
   });
   visit.table("common_errors", [&](auto& common) {
     common("share", p.common.share);

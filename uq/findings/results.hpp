@@ -159,6 +159,11 @@ struct CommonShare {
   std::vector<CommonError> errors;  ///< those that hold a notable part of it
 };
 
+/// What brings about a parameter's width; shares of it that sum to one.
+struct WidthShares {
+  double measurement = 1.0, surrogate = 0.0, structure = 0.0, range = 0.0;
+};
+
 struct ParameterReport {
   std::string name, unit;
   double prior_low = 0.0, prior_high = 0.0, prior_mean = 0.0, prior_sd = 0.0;
@@ -177,11 +182,10 @@ struct ParameterReport {
   std::vector<ValueRange> intervals;          ///< the parts of the profile interval, rising; holes in doubt are filled
   std::vector<ProfileHole> holes;             ///< between them, and those in doubt
   std::string low_pinned_by, high_pinned_by;  ///< parameter whose range ends an open side; may be empty
-  std::optional<double> runs_end_low, runs_end_high;      ///< where the runs end on an open side, short of the range
-  std::vector<WordProbability> word_probabilities;        ///< falling; none where they were not asked for
-  double share_measurement = 0.0, share_surrogate = 0.0;  ///< of the interval's width, what brings it about
-  double share_structure = 0.0, share_range = 0.0;
-  CommonShare common;  ///< part of the width that is in the measurement's, too
+  std::optional<double> runs_end_low, runs_end_high;  ///< where the runs end on an open side, short of the range
+  std::vector<WordProbability> word_probabilities;    ///< falling; none where they were not asked for
+  WidthShares shares;
+  CommonShare common;  ///< part of the width that is in the measurement's share, too
 };
 
 /// The draws of one unknown. Of a report: one of the measurement, sampled with the parameters and integrated out.

@@ -1,5 +1,5 @@
 #pragma once
-// Every number at which a word of the report changes, in one place. Nothing here knows a parameter's name.
+// The numbers at which a verdict, its reason, its remedy or a warning of the report changes. Nothing here knows a parameter's name.
 namespace uq {
 
 /// Chi-squared with one degree of freedom: the deviance at the ends of a 95 % profile interval.
@@ -38,5 +38,24 @@ struct VerdictThresholds {
   double outlying_chance = 0.01;   ///< of a reading as far from all others, errors of unknown size; below, it is named
   double borderline_probability = 0.2;  ///< of another word over repeats of the data, at least
 };
+
+/// Shares of a posterior variance, and what the report says from there on.
+inline constexpr double mostly_share = 0.5;   ///< what has it decides the width: it is what to improve first
+inline constexpr double named_share = 0.25;   ///< it is named beside the measurement's own error
+inline constexpr double notable_share = 0.1;  ///< it is worth a remedy
+inline constexpr double whole_share = 0.995;  ///< its number says nothing more
+/// Of the data's errors: where the surrogate could miss an effect as large, it may hide one that the data could see.
+inline constexpr double hiding_sds = 2.0;
+/// Posterior sds between the mean and the end of the range: from here on the prior ends the posterior, not the range.
+inline constexpr double ended_by_prior_sds = 2.5;
+
+/// Of the parameters' effects on the data: from here on it is said that they are nearly the same.
+inline constexpr double collinearity_said = 10.0;
+/// A run that all others contradict decides a value where, without it, the mean moves by so many of its sds, or the sd changes by
+/// such a factor.
+inline constexpr double decided_shift = 0.5, decided_factor = 1.5;
+inline constexpr double energy_fraction_poor = 0.3;  ///< E-BFMI of the chains; below, they explore the energies slowly
+inline constexpr double evidence_error_poor = 0.2;   ///< of the log evidence; from here on it is said
+inline constexpr double prior_kept = 0.99;  ///< of a prior's mass within the range; below, it is said what is cut off
 
 }  // namespace uq

@@ -15,7 +15,7 @@
 #include "uq/posterior/common_share.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/surrogate_share.hpp"
-#include "uq/verdict/verdict_words.hpp"
+#include "uq/verdict/remedies.hpp"
 
 namespace uq::plan {
 namespace {

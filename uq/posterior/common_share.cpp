@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uq/findings/thresholds.hpp"
 #include "uq/infer/factor.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/predictive.hpp"
@@ -11,7 +12,6 @@ namespace uq {
 namespace {
 
 constexpr Eigen::Index draws_most = 32;
-constexpr double notable = 0.1;  // of the variance: below, an error is not named
 
 /// An error that repeated readings share: an unknown of the case, or a term of the data's covariance (-1).
 struct Source {
@@ -125,9 +125,9 @@ std::vector<CommonShare> common_shares(const CaseModel& full, const Eigen::Matri
   for (Eigen::Index p = 0; p < with.size(); ++p) {
     CommonShare& share = found[p];
     share.share = std::clamp(1.0 - without_all[p] / with[p], 0.0, 1.0);
-    if (share.share < notable) continue;
+    if (share.share < notable_share) continue;
     for (Eigen::Index k = 0; k < count; ++k)
-      if (1.0 - without_one(p, k) / with[p] >= notable) share.errors.push_back(sources[k].error);
+      if (1.0 - without_one(p, k) / with[p] >= notable_share) share.errors.push_back(sources[k].error);
     if (share.errors.empty())  // each alone would be made up for by another
       for (const Source& source : sources) share.errors.push_back(source.error);
   }

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "data/random.hpp"
+#include "data/shuffle.hpp"
 #include "uq/findings/study_units.hpp"
 
 namespace uq {
@@ -180,9 +182,7 @@ double filled_share(const Eigen::MatrixXd& values) {
   };
   Eigen::MatrixXd shuffled = ranks;
   data::RandomStream random(1, data::Purpose::shuffled_points);
-  for (Index k = 1; k < m; ++k)
-    for (Index i = n - 1; i > 0; --i)
-      std::swap(shuffled(i, k), shuffled(static_cast<Index>(random.uniform(0.0, static_cast<double>(i + 1))), k));
+  for (Index k = 1; k < m; ++k) data::shuffle(std::span(shuffled.col(k).data(), static_cast<std::size_t>(n)), random);
   return std::exp(static_cast<double>(m) * (log_distance(ranks) - log_distance(shuffled)));
 }
 

@@ -107,17 +107,6 @@ WordFacts facts_of(const ParameterReport& report, const Profile& profile, const 
 /// by how much over the whole range.
 bool limited(const WordFacts& facts) { return !(facts.open_low && facts.open_high); }
 
-/// Of the posterior.
-Eigen::VectorXd mode_of(const CaseModel& model, const Eigen::MatrixXd& guiding, const Eigen::VectorXd& level,
-                        const Eigen::VectorXd& best) {
-  Eigen::Index top = 0;
-  level.maxCoeff(&top);
-  Eigen::MatrixXd starts(2, model.dimension());
-  starts << guiding.row(top), best.transpose();
-  const Target target = posterior_target(std::make_shared<const CaseModel>(model));
-  return maximise(target.log_density_gradient, {target.lower, target.upper}, starts).x;
-}
-
 /// Why each open or wide interval is as it is; what is traded with a structural one is so, too.
 void add_structure(const CaseModel& model, const Profiles& all, std::vector<ParameterEvidence>& evidence,
                    const std::vector<TradedPair>& traded, const VerdictThresholds& thresholds) {
@@ -143,33 +132,82 @@ void add_structure(const CaseModel& model, const Profiles& all, std::vector<Para
   }
 }
 
+/// The label of an unknown that a profile names, or nothing.
+std::string label_of(const CaseModel& model, const std::optional<int>& unknown) {
+  return unknown ? model.unknowns[static_cast<std::size_t>(*unknown)].label : std::string();
+}
+
+/// The mode of the posterior; `likelihood`: log, of the guiding draws.
+Eigen::VectorXd mode_of(const CaseModel& model, const Eigen::MatrixXd& guiding, const Eigen::VectorXd& likelihood,
+                        const Eigen::VectorXd& best) {
+  Eigen::VectorXd level = likelihood;
+  for (Eigen::Index i = 0; i < guiding.rows(); ++i) level[i] += log_prior(model, guiding.row(i).transpose());
+  Eigen::Index top = 0;
+  level.maxCoeff(&top);
+  Eigen::MatrixXd starts(2, model.dimension());
+  starts << guiding.row(top), best.transpose();
+  const Target target = posterior_target(std::make_shared<const CaseModel>(model));
+  return maximise(target.log_density_gradient, {target.lower, target.upper}, starts).x;
+}
+
+/// What is known of a parameter before its structure is asked for.
+ParameterEvidence evidence_of(const ParameterReport& report, const Profile& profile, const Unknown& unknown,
+                              const Influence& influence, const VerdictThresholds& thresholds) {
+  ParameterEvidence one{.name = report.name,
+                        .unit = report.unit,
+                        .mean = report.mean,
+                        .sd = report.sd,
+                        .q95 = report.q95,
+                        .facts = facts_of(report, profile, unknown),
+                        .parts = report.intervals,
+                        .range_low = report.prior_low,
+                        .range_high = report.prior_high,
+                        .low_pinned_by = report.low_pinned_by,
+                        .high_pinned_by = report.high_pinned_by,
+                        .runs_end_low = report.runs_end_low,
+                        .runs_end_high = report.runs_end_high,
+                        .unknown_beyond = profile.low_unknown || profile.high_unknown};
+  one.facts.influences = influence.some || limited(one.facts);
+  one.faint = !influence.some && one.facts.contraction < thresholds.contraction_weak;
+  one.hidden = influence.hidden;
+  one.silent_sds = influence.shown ? 0.0 : std::sqrt(influence.doubt);
+  return one;
+}
+
+void take_verdict(ParameterReport& report, const ParameterVerdict& verdict) {
+  report.verdict = verdict.verdict;
+  report.reason = verdict.reason;
+  report.borderline = verdict.borderline;
+  report.sentence = verdict.sentence;
+  report.shares = verdict.shares;
+}
+
 }  // namespace
 
 Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, const IdentifyOptions& options) {
   const CaseModel& model = distinct_rows(full);
   const VerdictThresholds& thresholds = options.thresholds;
-  Identification found;
   const Eigen::MatrixXd guiding = thinned(draws, 1500);
   const Eigen::VectorXd likelihood = log_likelihoods(model, guiding);
   const Profiles all = profile_likelihood(
       model, {.draws = guiding, .log_likelihood = likelihood},
       {.even_points = options.even_points, .near_points = options.near_points, .thresholds = thresholds});
+
+  // The case as a whole.
+  Identification found;
   found.profiles = all.profiles;
   found.influence = all.influence;
   found.best_fit = all.best;
   found.fisher = fisher_spectrum(model, all.best.x);
   found.check = check_fit(model, draws, all.best.x);
   found.surrogate_to_measurement = surrogate_to_measurement(model, all.best.x);
-  const SurrogateShare surrogate = surrogate_share(model, guiding, likelihood);
-  const std::vector<CommonShare> common = common_shares(model, guiding);
   const FitEvidence fit{.predictive_p = found.check.predictive_p, .best_fit_p = found.check.best_fit_p};
   found.fits = fit.fits(thresholds);
 
-  // The mode of the posterior.
-  Eigen::VectorXd level = likelihood;
-  for (Eigen::Index i = 0; i < guiding.rows(); ++i) level[i] += log_prior(model, guiding.row(i).transpose());
-  const Eigen::VectorXd mode = mode_of(model, guiding, level, all.best.x);
-
+  // Each parameter by itself.
+  const Eigen::VectorXd mode = mode_of(model, guiding, likelihood, all.best.x);
+  const SurrogateShare surrogate = surrogate_share(model, guiding, likelihood);
+  const std::vector<CommonShare> common = common_shares(model, guiding);
   std::vector<ParameterEvidence> evidence;
   std::vector<FoundFacts> facts;
   std::vector<Verdict> words;
@@ -178,39 +216,23 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
     const Unknown& unknown = model.unknowns[k];
     ParameterReport report = describe_draws(unknown, draws.col(static_cast<Eigen::Index>(k)), profile);
     report.map = shown(unknown, mode[k]);
-    if (profile.low_pinned) report.low_pinned_by = model.unknowns[static_cast<std::size_t>(*profile.low_pinned)].label;
-    if (profile.high_pinned)
-      report.high_pinned_by = model.unknowns[static_cast<std::size_t>(*profile.high_pinned)].label;
-    ParameterEvidence one{.name = report.name,
-                          .unit = report.unit,
-                          .mean = report.mean,
-                          .sd = report.sd,
-                          .q95 = report.q95,
-                          .facts = facts_of(report, profile, unknown),
-                          .parts = report.intervals,
-                          .range_low = report.prior_low,
-                          .range_high = report.prior_high,
-                          .low_pinned_by = report.low_pinned_by,
-                          .high_pinned_by = report.high_pinned_by,
-                          .runs_end_low = report.runs_end_low,
-                          .runs_end_high = report.runs_end_high,
-                          .unknown_beyond = profile.low_unknown || profile.high_unknown};
-    if (profile.conditional_on)
-      one.conditional_on = model.unknowns[static_cast<std::size_t>(*profile.conditional_on)].label;
+    report.low_pinned_by = label_of(model, profile.low_pinned);
+    report.high_pinned_by = label_of(model, profile.high_pinned);
+    report.common = common[k];
+    ParameterEvidence one = evidence_of(report, profile, unknown, all.influence[k], thresholds);
+    one.conditional_on = label_of(model, profile.conditional_on);
     if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
     one.unusable = !doubt_of(model).empty();
     one.surrogate_share = surrogate.shares[k];
     one.common = common[k];
-    one.facts.influences = all.influence[k].some || limited(one.facts);
-    one.faint = !all.influence[k].some && one.facts.contraction < thresholds.contraction_weak;
-    one.hidden = all.influence[k].hidden;
-    one.silent_sds = all.influence[k].shown ? 0.0 : std::sqrt(all.influence[k].doubt);
     words.push_back(word_of(one.facts, thresholds));
     facts.push_back({one.facts, &found.profiles[k]});
     found.facts.push_back(one.facts);
     evidence.push_back(std::move(one));
     found.parameters.push_back(std::move(report));
   }
+
+  // What several do together, and how sure the words are.
   std::vector<std::vector<WordProbability>> repeats(evidence.size());
   if (found.fits) {
     found.traded = find_traded_pairs(model, draws, all, words, thresholds);
@@ -219,19 +241,10 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
     found.modes = find_modes(all, draws, thresholds);
     found.unvisited = unvisited(model, all, draws);
   }
+
   for (std::size_t k = 0; k < evidence.size(); ++k) {
-    const ParameterVerdict verdict = judge(evidence[k], fit, repeats[k], thresholds);
-    ParameterReport& report = found.parameters[k];
-    report.verdict = verdict.verdict;
-    report.reason = verdict.reason;
-    report.borderline = verdict.borderline;
-    report.sentence = verdict.sentence;
-    report.word_probabilities = repeats[k];
-    report.share_measurement = verdict.shares.measurement;
-    report.share_surrogate = verdict.shares.surrogate;
-    report.share_structure = verdict.shares.structure;
-    report.share_range = verdict.shares.range;
-    report.common = evidence[k].common;
+    take_verdict(found.parameters[k], judge(evidence[k], fit, repeats[k], thresholds));
+    found.parameters[k].word_probabilities = repeats[k];
   }
   return found;
 }

@@ -141,11 +141,12 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
   Profile profile{.unknown = k,
                   .drop = known.drops[k],
                   .u = Eigen::Map<const Eigen::VectorXd>(values.data(), count),
-                  .deviance = Eigen::VectorXd(count),
+                  .log_likelihood = Eigen::VectorXd(count),
+                  .deviance = {},
                   .path = Eigen::MatrixXd(count, best.x.size()),
                   .low = {},
                   .high = {}};
-  Eigen::VectorXd level(count);
+  Eigen::VectorXd& level = profile.log_likelihood;
   const auto centre = std::lower_bound(values.begin(), values.end(), best.x[k] - 1e-9) - values.begin();
   const double width = 0.02 * (box.upper[k] - box.lower[k]);
   auto solve = [&](Eigen::Index i, const Eigen::VectorXd& neighbour) {
@@ -181,7 +182,6 @@ Profile sweep(const CaseModel& model, const Box& box, int k, const Guides& guide
   };
   for (Eigen::Index i = count - 2; i >= middle; --i) improve(i, i + 1);
   for (Eigen::Index i = 1; i <= middle; ++i) improve(i, i - 1);
-  profile.deviance = level;  // turned into deviances once the largest likelihood of all is known
   return profile;
 }
 
@@ -209,8 +209,8 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
     if (!model.unknowns[k].own) continue;
     Profile profile = sweep(model, box, k, guides, found, options);
     Eigen::Index highest = 0;
-    if (profile.deviance.maxCoeff(&highest) > found.best.value) {
-      found.best.value = profile.deviance[highest];
+    if (profile.log_likelihood.maxCoeff(&highest) > found.best.value) {
+      found.best.value = profile.log_likelihood[highest];
       found.best.x = profile.path.row(highest).transpose();
     }
     found.profiles.push_back(std::move(profile));

@@ -3,20 +3,22 @@
 //   deviance(u_k) = 2 (max over all u of log L - max over the other unknowns of log L),
 // log L that of the data and of what calibrated the nuisances, their priors (posterior.hpp, log_certificates),
 // by constrained optimisation (Raue et al., Bioinformatics 25:1923 (2009)). The 95 % interval is where it stays
-// below deviance_95 (thresholds.hpp), or below more where the size of the errors is unknown (interval_drop.hpp); it may
-// have several parts. An end is closed when the deviance crosses before the
-// support ends, open when the support's bound is met first: a bound is not a finding. Nor is an end that is there only
-// because another unknown has come to the end of its range, so that the ridge cannot go on (pinned): with that unknown
-// held where the data would have it, the deviance at the end would be at least twice as large. That side is open, too.
-// So is the side to which the unknown would move if another could go beyond the end of its range (range_end.hpp).
-// So is an end that lies where no run was made (runs_reach): there the deviance is the surrogate's prior, which nothing has
-// tested. So is an end beyond which, up to the end of the range, values are unlikely only since the surrogate knows less
-// of them (a gap among the runs, a corner): with S(u) the data's covariance and N(u) the same without the surrogate's part, the
-// deviance less the growth of log |S| / |N| from the best fit on stays below the drop there. Ignorance excludes nothing.
+// below deviance_95 (thresholds.hpp), or below more where the size of the errors is unknown (interval_drop.hpp). It may
+// have several parts.
+//
+// A side of the interval is closed where the deviance crosses that drop. It is open where
+//   - the support ends first: a bound is not a finding;
+//   - another unknown has come to the end of its range, so that the ridge cannot go on (pinned): with that unknown held
+//     where the data would have it, the deviance at the end would be at least twice as large;
+//   - the unknown would move there if another could go beyond the end of its range (range_end.hpp);
+//   - no run was made (runs_reach): the deviance there is the surrogate's prior, which nothing has tested;
+//   - only ignorance speaks: up to the end of the range values are unlikely only since the surrogate knows less of them (a
+//     gap among the runs, a corner). With S(u) the data's covariance and N(u) the same without the surrogate's part, the
+//     deviance less the growth of log |S| / |N| from the best fit on stays below the drop there.
 // An unknown without influence (influence.hpp) pins nothing, and nor does a bound at 0 that nature sets.
-// Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take it away, the
-// hole is in doubt, and the interval goes through it.
-// The maximisers form a path along the ridge, if there is one.
+//
+// Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take the barrier away,
+// the hole is in doubt, and the interval goes through it. The maximisers form a path along the ridge, if there is one.
 #include <Eigen/Dense>
 #include <optional>
 #include <vector>
@@ -52,7 +54,8 @@ struct Profile {
   int unknown = 0;
   double drop = deviance_95;                          ///< deviance at the interval's ends
   Eigen::VectorXd u;                                  ///< held values, rising
-  Eigen::VectorXd deviance;                           ///< at each
+  Eigen::VectorXd log_likelihood;                     ///< largest at each
+  Eigen::VectorXd deviance;                           ///< from it, once the largest of all profiles is known
   Eigen::MatrixXd path;                               ///< points x unknowns: the maximiser at each
   std::optional<double> low, high;                    ///< ends of the interval, in u; none: open
   std::optional<int> low_pinned, high_pinned;         ///< unknown at the end of whose range an open side ends
@@ -92,7 +95,7 @@ Differentiable profiled(const CaseModel& model);
 Maximum maximise_profiled(const CaseModel& model, const Box& box, const Eigen::MatrixXd& starts,
                           const std::vector<Held>& held = {});
 
-/// From log likelihoods along a path (in `deviance`) to deviances and to the interval's parts and ends.
+/// From log likelihoods along a path to deviances and to the interval's parts and ends.
 void finish_profile(const CaseModel& model, const Profiles& all, Profile& profile, const VerdictThresholds& thresholds);
 
 /// The low end of an unknown's support is a bound that nature sets, not the user: a linear range that begins at 0.

@@ -156,7 +156,7 @@ void finish_profile(const CaseModel& model, const Profiles& all, Profile& profil
                     const VerdictThresholds& thresholds) {
   const Box box{model.lower(), model.upper()};
   const double drop = profile.drop;
-  profile.deviance = (2.0 * (all.best.value - profile.deviance.array())).max(0.0);
+  profile.deviance = (2.0 * (all.best.value - profile.log_likelihood.array())).max(0.0);
   const Eigen::Index count = profile.u.size();
 
   // Runs of points inside, their ends where the deviance crosses the drop.

@@ -23,7 +23,7 @@ constexpr Eigen::Index largest_curved = 3;  // in more dimensions too few draws 
 constexpr Eigen::Index draws_looked_at = 1500;
 /// A cloud this much tighter than its best form hangs on a curve.
 constexpr double tighter = 0.5;
-/// Of the room that two normal variables fill, over the spread of their sum, where they are strongly correlated.
+/// For two strongly correlated normal variables: the share of the room that they fill, over the spread of their sum.
 const double straight_fill = std::sqrt(2.0);
 
 /// Value of own parameter k at u, in the study's unit.

@@ -7,7 +7,7 @@
 
 #include "uq/findings/study_units.hpp"
 #include "uq/findings/wording.hpp"
-#include "uq/verdict/verdict_words.hpp"
+#include "uq/verdict/reason.hpp"
 
 namespace uq {
 namespace {
@@ -60,8 +60,7 @@ std::string open_sentence(const ParameterEvidence& parameter, Reason reason) {
     const auto end = [&](double value) { return in_unit(number(value), parameter.unit); };
     return fmt::format(
         "{} is not identified: values that fit go on where no run was made. The runs reach {}{}{}, its range lies "
-        "between "
-        "{}, and what the surrogate says beyond the runs is untested.",
+        "between {}, and what the surrogate says beyond the runs is untested.",
         parameter.name, low ? "from " + end(*low) : "", low && high ? " " : "", high ? "up to " + end(*high) : "",
         range);
   }

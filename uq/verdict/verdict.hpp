@@ -12,7 +12,7 @@
 //   weakly identified   closed, and contraction is at least `contraction_weak`; or an upper limit: closed above, and
 //                       open below only because the parameter cannot go below its physical bound 0
 //   not identified      anything else
-// The reason, and what can be done about it, is in uq/verdict/verdict_words.hpp. Borderline: over repeats of the data
+// The reason, and what can be done about it, is in uq/verdict/reason.hpp and remedies.hpp. Borderline: over repeats of the data
 // (uq/verdict/repeats.hpp) another word has a probability of at least `borderline_probability`.
 #include <optional>
 #include <string>
@@ -39,11 +39,6 @@ struct WordFacts {
   bool closed() const { return !open_low && !open_high; }
 };
 Verdict word_of(const WordFacts& facts, const VerdictThresholds& thresholds);
-
-/// What brings about a parameter's width; shares of it that sum to one.
-struct WidthShares {
-  double measurement = 1.0, surrogate = 0.0, structure = 0.0, range = 0.0;
-};
 
 /// What is known of one parameter; values in the study's unit.
 struct ParameterEvidence {

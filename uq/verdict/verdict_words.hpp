@@ -17,44 +17,21 @@
 //
 // A case's remedy starts with that of the largest share of the widths. No remedy says what another denies: where one
 // parameter needs another quantity, its partner is not told to be measured better.
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "uq/findings/results.hpp"
-#include "uq/verdict/verdict.hpp"
+#include "uq/verdict/case_facts.hpp"
 
 namespace uq {
-
-/// Why a word other than "identified" or "several values"; nothing for these two.
-std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict verdict);
-
-/// The clause that ends a parameter's sentence: "; the measurement's noise hides it".
-std::string because(Reason reason, const ParameterEvidence& parameter);
-
-/// What the shares of a width are, given the reason.
-WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason> reason);
-
-/// How errors that repeated readings share are found by themselves: "calibrate the meter (the gain g)"; empty for none.
-std::string remedy_of(const std::vector<CommonError>& errors);
 
 /// The case's verdicts in one finding, what follows from it, and what to do.
 struct Words {
   std::string finding, consequence;
   std::vector<std::string> remedies;  ///< sentences, the first to be done first; none where all is known
 };
+Words words_of(const CaseFacts& facts);
 
 /// The remedies as they are shown; of none, that none is needed.
 std::string shown_remedy(const Words& words);
-
-/// What the words of a case that fits hang on.
-struct CaseFacts {
-  std::vector<ParameterReport> parameters;
-  std::vector<TradedPair> traded;
-  std::string parted_by;  ///< uq/verdict/modes.hpp; may be empty
-  double collinearity = 1.0;
-  bool own_engine = true;  ///< demcal makes the runs, not another code
-};
-Words words_of(const CaseFacts& facts);
 
 }  // namespace uq

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "uq/verdict/verdict.hpp"
+
 using namespace uq;
 
 namespace {
@@ -31,10 +33,7 @@ ParameterReport judged(const std::string& name, const WordFacts& facts, const Pa
   report.verdict = verdict.verdict;
   report.reason = verdict.reason;
   report.sentence = verdict.sentence;
-  report.share_measurement = verdict.shares.measurement;
-  report.share_surrogate = verdict.shares.surrogate;
-  report.share_structure = verdict.shares.structure;
-  report.share_range = verdict.shares.range;
+  report.shares = verdict.shares;
   report.common = evidence.common;
   return report;
 }
@@ -87,10 +86,16 @@ void check_words(const std::vector<ParameterReport>& parameters, const Words& wo
   for (const ParameterReport& p : parameters) {
     practical = practical || p.reason == Reason::practical || p.reason == Reason::bound;
     structural = structural || p.reason == Reason::structural;
-    // A sentence names one reason.
-    CHECK(has(p.sentence, "noise hides it") + has(p.sentence, "surrogate's error") + has(p.sentence, "would not help") +
-              has(p.sentence, "say nothing") + has(p.sentence, "which repeated readings share") <=
-          1);
+    // A sentence names its reason, and no other.
+    for (const auto& [reason, clause] : {std::pair{Reason::practical, "noise hides it"},
+                                         {Reason::surrogate, "surrogate's error hides it"},
+                                         {Reason::structural, "would not help"},
+                                         {Reason::no_influence, "say nothing of it"},
+                                         {Reason::common_error, "which repeated readings share, hide"},
+                                         {Reason::traded, "do much the same to all that was measured"}}) {
+      INFO(p.sentence);
+      CHECK(has(p.sentence, clause) == (p.reason == reason));
+    }
     if (has(p.sentence, "is identified")) CHECK(p.verdict == Verdict::identified);
     if (p.reason == Reason::no_influence) CHECK_FALSE(has(p.sentence, "would not help"));
   }
@@ -133,7 +138,7 @@ TEST_CASE("no combination of two parameters' facts has words that contradict eac
           return other.verdict == parameter.verdict && other.reason == parameter.reason &&
                  (other.common.share == parameter.common.share) &&
                  (other.contraction < 0.5) == (parameter.contraction < 0.5) &&
-                 (other.share_surrogate > 0.5) == (parameter.share_surrogate > 0.5);
+                 (other.shares.surrogate > 0.5) == (parameter.shares.surrogate > 0.5);
         }))
       kinds.push_back(parameter);
   CHECK(kinds.size() > 10);
@@ -229,7 +234,7 @@ TEST_CASE("an end that the surrogate's ignorance makes asks for runs", "[uq]") {
   more.unknown_beyond = true;
   const ParameterReport found = judged("a", {.open_high = true, .contraction = 0.3, .contraction_within = 0.3}, more);
   CHECK(found.reason == uq::Reason::surrogate);
-  CHECK(found.share_surrogate == 1.0);
+  CHECK(found.shares.surrogate == 1.0);
 }
 
 TEST_CASE("narrow parts at the ends of the range are separate values, unless something else ends them", "[uq]") {
