@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "data/random.hpp"
+#include "data/shuffle.hpp"
 
 namespace surrogate {
 
@@ -16,7 +18,7 @@ std::vector<std::vector<int>> deal(const std::vector<int>& point_of_run, int fol
   std::vector<int> order(static_cast<std::size_t>(points));
   std::iota(order.begin(), order.end(), 0);
   data::RandomStream random(seed, data::Purpose::optimiser_starts, 1);
-  for (int i = points - 1; i > 0; --i) std::swap(order[i], order[static_cast<int>(random.uniform() * (i + 1))]);
+  data::shuffle(std::span(order), random);
   std::vector<int> fold_of_point(order.size());
   for (int i = 0; i < points; ++i) fold_of_point[order[i]] = i % folds;
   std::vector<std::vector<int>> runs(static_cast<std::size_t>(folds));

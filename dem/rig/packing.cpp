@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "data/random.hpp"
+#include "data/shuffle.hpp"
 
 namespace dem {
 namespace {
@@ -102,12 +104,6 @@ std::vector<std::size_t> largest_part(const Lattice& l, const std::vector<char>&
   return largest;
 }
 
-template <class Row>
-void shuffle(std::vector<Row>& rows, data::RandomStream& random) {
-  for (std::size_t k = rows.size(); k > 1; --k)
-    std::swap(rows[k - 1], rows[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
-}
-
 }  // namespace
 
 Parcels make_parcels(const Grains& grains, std::size_t count) {
@@ -201,7 +197,7 @@ std::vector<Vec3> jittered(std::vector<Vec3> sites, std::size_t count, double di
     const double x = random.uniform(-1.0, 1.0), y = random.uniform(-1.0, 1.0), z = random.uniform(-1.0, 1.0);
     p += site_jitter * diameter / std::sqrt(3.0) * Vec3{x, y, z};
   }
-  shuffle(sites, random);
+  data::shuffle(std::span(sites), random);
   return sites;
 }
 

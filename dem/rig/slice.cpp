@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "data/random.hpp"
+#include "data/shuffle.hpp"
 #include "dem/case/cross_section.hpp"
 #include "dem/rig/auger.hpp"
 #include "dem/rig/packing.hpp"
@@ -85,8 +87,7 @@ Packing pack(const Case& c, std::uint64_t seed) {
                               "make the trough wider, or the spheres smaller"});
     }
     // The last layer is thinned at random.
-    for (std::size_t k = sites.size(); k > 1; --k)
-      std::swap(sites[k - 1], sites[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
+    data::shuffle(std::span(sites), random);
     for (const Vec3 p : sites) {
       if (taken.size() == parcels.sites()) break;
       taken.push_back(p + jitter / std::sqrt(3.0) *
@@ -94,8 +95,7 @@ Packing pack(const Case& c, std::uint64_t seed) {
       packing.top = std::max(packing.top, p.z + clear);
     }
   }
-  for (std::size_t k = taken.size(); k > 1; --k)
-    std::swap(taken[k - 1], taken[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
+  data::shuffle(std::span(taken), random);
   packing.position = place(parcels, taken, size);
   return packing;
 }
