@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 
+#include "campaign/out_files.hpp"
 #include "campaign/run_point.hpp"
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 std::string key_of(const Workspace& workspace, const Point& point, const std::string& settings) {
   // Another code's rows have no seed and settings of ours: the point alone tells them apart.
-  if (workspace.cases.empty()) return data::row_key({.material = point.material, .inputs = point.inputs});
+  if (!own_engine(workspace)) return data::row_key({.material = point.material, .inputs = point.inputs});
   return data::row_key(
       {.material = point.material, .inputs = point.inputs, .seed = workspace.study.seed, .settings = settings});
 }
@@ -33,10 +34,6 @@ std::string point_key(const Workspace& workspace, const Point& point) {
 bool cannot_do_better(const Workspace& workspace, const data::RunRow& row) {
   const Point point{row.material, row.inputs};
   return is_done(workspace, point, run_path(workspace, point));
-}
-
-std::string design_path(const Workspace& workspace) {
-  return (std::filesystem::path(workspace.out) / "design.csv").string();
 }
 
 constexpr const char* seed_column = "seed";
@@ -73,7 +70,7 @@ std::vector<Point> training_design(const Workspace& workspace, const std::string
 
 Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int runs) {
   std::set<std::string> known;
-  const bool simulated = !workspace.cases.empty();
+  const bool simulated = own_engine(workspace);
   std::map<std::string, int> rows_of;
   for (const data::RunRow& row : table.rows) {
     if (!data::is_unsteady(row) || workspace.unsteady == Unsteady::use || cannot_do_better(workspace, row))
@@ -141,10 +138,6 @@ std::vector<Point> read_points(const Workspace& workspace, const std::string& pa
 
 void write_design(const Workspace& workspace, const std::vector<Point>& points) {
   write_points(workspace, design_path(workspace), points);
-}
-
-std::string next_runs_path(const Workspace& workspace) {
-  return (std::filesystem::path(workspace.out) / "next-runs.csv").string();
 }
 
 Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& table, int runs) {

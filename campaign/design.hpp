@@ -47,7 +47,6 @@ std::vector<Point> points_of(const std::vector<PlannedRun>& runs);
 PointColumn seeds_of(const std::vector<PlannedRun>& runs);
 /// Points with their seeds. Throws data::InputError (65) where one is no whole number.
 std::vector<PlannedRun> read_runs(const Workspace& workspace, const std::string& path);
-std::string next_runs_path(const Workspace& workspace);  ///< OUT/next-runs.csv, points of the posterior
 
 /// The first `runs` of OUT/next-runs.csv that have no row yet. Throws InputError (66) when there is no such file.
 Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& table, int runs);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "campaign/out_files.hpp"
+
 namespace campaign {
 namespace {
 

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "campaign/design.hpp"
+#include "campaign/out_files.hpp"
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
 #include "data/time_series.hpp"
@@ -226,7 +227,7 @@ std::vector<PlannedRun> starting_runs(const Workspace& workspace, const data::Ru
 
 std::uint64_t free_seed(const Workspace& workspace, const data::RunTable& table, const std::vector<PlannedRun>& planned,
                         const Point& point) {
-  const std::string settings = workspace.cases.empty() ? "" : settings_hash(workspace, point.material);
+  const std::string settings = own_engine(workspace) ? settings_hash(workspace, point.material) : "";
   const auto key = [&](const Point& at, std::uint64_t seed) {
     return data::row_key({.material = at.material, .inputs = at.inputs, .seed = seed, .settings = settings});
   };
@@ -250,10 +251,6 @@ std::vector<PlannedRun> without_rows(const Workspace& workspace, const std::vect
                                        .settings = settings_hash(workspace, run.point.material)})))
       missing.push_back(run);
   return missing;
-}
-
-std::string posterior_runs_path(const Workspace& workspace) {
-  return (std::filesystem::path(workspace.out) / "posterior-runs.csv").string();
 }
 
 void write_posterior_runs(const Workspace& workspace, const PosteriorRuns& next) {

@@ -60,7 +60,6 @@ struct PosteriorRuns {
 void write_posterior_runs(const Workspace& workspace, const PosteriorRuns& next);
 /// None where there is no file.
 std::optional<PosteriorRuns> read_posterior_runs(const Workspace& workspace);
-std::string posterior_runs_path(const Workspace& workspace);
 
 /// Runs of the list that the table lacks.
 std::vector<PlannedRun> without_rows(const Workspace& workspace, const std::vector<PlannedRun>& runs,

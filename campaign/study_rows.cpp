@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 
+#include "campaign/out_files.hpp"
 #include "campaign/placeholder.hpp"
 #include "campaign/point.hpp"
 #include "campaign/training_table.hpp"
@@ -81,8 +82,8 @@ StudyRows study_rows(const Workspace& workspace) {
     result.all = data::merge(result.all, usable);
   };
   if (!study.training.table.empty()) add(study.training.table, data::read_table(study.training.table, study));
-  const std::string own = (fs::path(workspace.out) / "training.h5").string();
-  const std::string copy = (fs::path(workspace.out) / "training.csv").string();
+  const std::string own = training_path(workspace);
+  const std::string copy = training_copy_path(workspace);
   const data::Origin of_copy = data::origin_of(copy);
   if (fs::exists(own) || of_copy == data::Origin::ours || of_copy == data::Origin::changed)
     add(own, read_own_table(workspace, result.notes));
@@ -105,7 +106,7 @@ void require_rows(const Workspace& workspace, const StudyRows& rows, const std::
   const std::string why = rows.notes.empty() ? "" : ": " + rows.notes.front();
   throw data::InputError(data::ExitStatus::missing_input,
                          {workspace.study.file, "has no usable training runs" + why,
-                          !workspace.cases.empty() ? "make them: demcal train " + study
+                          own_engine(workspace) ? "make them: demcal train " + study
                           : workspace.study.training.table.empty()
                               ? "name a table of runs under [training] table"
                               : "put runs into " + workspace.study.training.table + " (demcal design says which)"});

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <tuple>
 
+#include "campaign/out_files.hpp"
 #include "data/atomic_file.hpp"
 #include "data/hash.hpp"
 #include "data/origin.hpp"
@@ -16,8 +17,8 @@ namespace campaign {
 namespace fs = std::filesystem;
 
 data::TableRead read_own_table(const Workspace& workspace, std::vector<std::string>& notes) {
-  const std::string table = (fs::path(workspace.out) / "training.h5").string();
-  const std::string copy = (fs::path(workspace.out) / "training.csv").string();
+  const std::string table = training_path(workspace);
+  const std::string copy = training_copy_path(workspace);
   const data::Origin origin = data::origin_of(table);
   const bool damaged = origin == data::Origin::changed || origin == data::Origin::unmarked;
   const std::string runs = data::shown_path((fs::path(workspace.out) / "runs").string());
@@ -59,9 +60,8 @@ void write_tables(const Workspace& workspace, const data::RunTable& rows, const 
   std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   table.rows.clear();
   for (auto& [key, row] : order) table.rows.push_back(std::move(row));
-  const fs::path out = workspace.out;
-  data::write_table_hdf5((out / "training.h5").string(), table, workspace.study);
-  data::write_table_csv((out / "training.csv").string(), table, workspace.study);
+  data::write_table_hdf5(training_path(workspace), table, workspace.study);
+  data::write_table_csv(training_copy_path(workspace), table, workspace.study);
 }
 
 }  // namespace campaign

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "campaign/out_files.hpp"
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
 
@@ -97,7 +98,7 @@ std::string typed(const Workspace& workspace, const std::string& material, const
 }
 
 bool is_run(const Workspace& workspace, const data::RunRow& row, const PlannedRun& run) {
-  if (!workspace.cases.empty() && row.seed != run.seed) return false;
+  if (own_engine(workspace) && row.seed != run.seed) return false;
   return typed(workspace, row.material, row.inputs) == typed(workspace, run.point.material, run.point.inputs);
 }
 
@@ -124,10 +125,6 @@ std::vector<ListedRun> verification_runs(const Workspace& workspace, const Study
     }
   }
   return listed;
-}
-
-std::string verify_runs_path(const Workspace& workspace) {
-  return (std::filesystem::path(workspace.out) / "verify-runs.csv").string();
 }
 
 void write_verify_runs(const Workspace& workspace, const std::vector<ListedRun>& runs) {
@@ -176,7 +173,7 @@ std::vector<uq::VerificationReport> verify_cases(const Workspace& workspace,
                                                  const std::vector<uq::FittedSurrogate>& surrogates,
                                                  const std::vector<ListedRun>& runs, const HeldBack& held) {
   std::vector<uq::VerificationReport> reports;
-  const std::string simulation = workspace.cases.empty() ? "your code" : "the DEM";
+  const std::string simulation = own_engine(workspace) ? "the DEM" : "your code";
   for (const data::CalibrationCase& one : workspace.study.cases) {
     std::vector<uq::VerificationRun> own;
     for (std::size_t i = 0; i < runs.size(); ++i)

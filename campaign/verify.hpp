@@ -25,7 +25,6 @@ struct ListedRun {
 std::vector<ListedRun> verification_runs(const Workspace& workspace, const StudyRows& rows,
                                          const uq::Calibration& calibration, int points);
 
-std::string verify_runs_path(const Workspace& workspace);
 void write_verify_runs(const Workspace& workspace, const std::vector<ListedRun>& runs);
 std::vector<ListedRun> read_verify_runs(const Workspace& workspace);
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "campaign/out_files.hpp"
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
 #include "data/origin.hpp"
@@ -134,9 +135,7 @@ Workspace open_workspace(const StudyOptions& options) {
       }
     }
   }
-  workspace.unsteady = file.root().child("training").choice("unsteady", {"leave_out", "use"}, "leave_out") == "use"
-                           ? Unsteady::use
-                           : Unsteady::leave_out;
+  workspace.unsteady = file.root().child("training").choice("unsteady", Unsteady::leave_out);
   workspace.plan = data::read_plan(file, study);
   file.finish();
   // How tables were read that are not plain CSV; what is wrong with them was said before.
@@ -146,9 +145,9 @@ Workspace open_workspace(const StudyOptions& options) {
       !table.empty() && fs::path(table).extension() == ".csv" && fs::exists(table))
     if (const std::string how = data::read_csv(table).took_line(); !how.empty()) workspace.notes.push_back(how);
   workspace.out = options.out.empty() ? default_out(study) : fs::absolute(options.out).lexically_normal().string();
-  for (const char* list : {"design.csv", "next-runs.csv", "verify-runs.csv", "posterior-runs.csv"})
-    if (const std::string path = (fs::path(workspace.out) / list).string();
-        data::origin_of(path) == data::Origin::changed)
+  for (const std::string& path :
+       {design_path(workspace), next_runs_path(workspace), verify_runs_path(workspace), posterior_runs_path(workspace)})
+    if (data::origin_of(path) == data::Origin::changed)
       workspace.notes.push_back(fmt::format("{}: was changed since demcal wrote it; its points are taken as they stand",
                                             data::shown_path(path)));
   return workspace;
@@ -161,6 +160,18 @@ void require_rig(const Workspace& workspace) {
       {data::shown_path(workspace.study.file), "has no [rig], so demcal cannot simulate it",
        "add a [rig], as demcal new shows one; for runs of another code demcal design lists points, and "
        "demcal train --until posterior the most useful ones"});
+}
+
+bool own_engine(const Workspace& workspace) { return workspace.study.training.engine == data::Engine::demcal; }
+
+void require_own_runs(const Workspace& workspace) {
+  require_rig(workspace);
+  if (own_engine(workspace)) return;
+  throw data::InputError(
+      data::ExitStatus::bad_study,
+      {workspace.study.training.place, "another code makes the runs (engine = \"none\"), so demcal makes none",
+       "run the points that demcal design lists, or those of demcal train --until posterior, with that "
+       "code; or leave engine out"});
 }
 
 void make_out(const Workspace& workspace, const std::string& subfolder) {
@@ -186,12 +197,12 @@ namespace {
 /// Two studies of one name have one results folder by default, and the second must not replace the first's results.
 /// A study that was moved or renamed still owns its own.
 void require_own_results(const Workspace& workspace) {
-  const fs::path results = fs::path(workspace.out) / "report.json";
+  const std::string results = results_path(workspace);
   std::error_code failure;
   if (!fs::exists(results, failure)) return;
   std::string of;
   try {
-    of = uq::load_report(results.string()).study_file;
+    of = uq::load_report(results).study_file;
   } catch (const data::InputError&) {  // damaged or of another version: it says of nobody whose it is
     return;
   }
@@ -209,13 +220,15 @@ std::unique_ptr<data::FolderLock> hold_out(const Workspace& workspace, Writes fi
   const char* const name = files == Writes::training ? "training" : files == Writes::results ? "results" : "run";
   auto lock = std::make_unique<data::FolderLock>(workspace.out, name, "demcal " + command);
   std::vector<std::string> written;
-  if (files == Writes::training) written = {"training.h5", "training.csv", "design.csv"};
+  if (files == Writes::training)
+    written = {training_path(workspace), training_copy_path(workspace), design_path(workspace)};
   if (files == Writes::results) {
     require_own_results(workspace);
-    written = {"surrogate.h5", "report.json", "report.html", "plan.json"};
-    for (const data::CalibrationCase& one : workspace.study.cases) written.push_back("posterior-" + one.name + ".nc");
+    written = {surrogate_path(workspace), results_path(workspace), page_path(workspace), plan_path(workspace)};
+    for (const data::CalibrationCase& one : workspace.study.cases)
+      written.push_back(posterior_path(workspace, one.name));
   }
-  for (const std::string& file : written) data::require_replaceable((fs::path(workspace.out) / file).string());
+  for (const std::string& file : written) data::require_replaceable(file);
   return lock;
 }
 

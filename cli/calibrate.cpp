@@ -8,6 +8,7 @@
 #include <limits>
 #include <thread>
 
+#include "campaign/out_files.hpp"
 #include "campaign/verify.hpp"
 #include "cli/calibration.hpp"
 #include "cli/make_runs.hpp"
@@ -85,12 +86,12 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
   const Common& common = options.common;
   const auto begin = std::chrono::steady_clock::now();
   const Workspace workspace = open_workspace(common);
-  const bool rig = !workspace.cases.empty();
+  const bool own_runs = own_engine(workspace);
   data::require_cases(workspace.study);
   StudyRows rows = rows_to_learn_from(common, workspace);
-  make_out(workspace, rig ? "runs" : "");
+  make_out(workspace, own_runs ? "runs" : "");
   const auto results = hold_out(workspace, Writes::results, "calibrate --verify");
-  const auto training = rig ? hold_out(workspace, Writes::training, "calibrate --verify") : nullptr;
+  const auto training = own_runs ? hold_out(workspace, Writes::training, "calibrate --verify") : nullptr;
   const double limit =
       options.time.empty() ? std::numeric_limits<double>::infinity() : parse_duration(options.time, "--for");
   Rounds rounds(workspace.study.cases.size());
@@ -127,7 +128,7 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
     std::vector<PlannedRun> missing;
     for (std::size_t i = 0; i < listed.size(); ++i)
       if (!made.listed[i]) missing.push_back(listed[i].run);
-    if (!missing.empty() && !rig) {
+    if (!missing.empty() && !own_runs) {
       answer(common, fmt::format("{} to run with your code: {}. Add what they give to {}, and give this command again",
                                  data::counted(missing.size(), "point"), verify_runs_path(workspace),
                                  workspace.study.training.table));

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "campaign/design.hpp"
+#include "campaign/out_files.hpp"
 #include "data/atomic_file.hpp"
 #include "data/hash.hpp"
 #include "data/provenance.hpp"
@@ -22,8 +23,6 @@
 namespace cli {
 namespace fs = std::filesystem;
 namespace {
-
-std::string surrogate_path(const Workspace& workspace) { return (fs::path(workspace.out) / "surrogate.h5").string(); }
 
 /// What the rig's attraction amounts to at the top of the calibrated range: a Hamaker constant alone says nothing.
 std::string attraction_note(const std::string& material, const dem::Case& c) {
@@ -171,14 +170,15 @@ void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, c
 }
 
 void write_report(const Workspace& workspace, const uq::CalibrationReport& report) {
-  uq::save_report(report, (fs::path(workspace.out) / "report.json").string());
+  uq::save_report(report, results_path(workspace));
   uq::write_report_html(report, workspace.out);
 }
 
 data::ExitStatus say_report(const Common& common, const Workspace& workspace, const uq::CalibrationReport& report) {
-  if (!common.json && data::answers_go_elsewhere())  // or whoever redirects the answer would not see them
+  // Whoever redirects the answer, or wants none, would not see them.
+  if (common.quiet || (!common.json && data::answers_go_elsewhere()))
     for (const std::string& warning : uq::first_lines(report)) say(common, "warning: " + warning);
-  answer(common, uq::terminal_summary(report, {.report_file = (fs::path(workspace.out) / "report.html").string()}));
+  answer(common, uq::terminal_summary(report, {.report_file = page_path(workspace)}));
   print_json(common, uq::report_json(report));
   return uq::has_warning(report) ? data::ExitStatus::warning : data::ExitStatus::done;
 }
@@ -194,10 +194,6 @@ std::shared_ptr<std::optional<data::Sampler>> add_sampler_option(CLI::App& comma
           "instead of each case's own: mixture (no gradient) or nuts")
       ->check(one_of({"mixture", "nuts"}));
   return chosen;
-}
-
-std::string posterior_path(const Workspace& workspace, const std::string& case_name) {
-  return (fs::path(workspace.out) / ("posterior-" + case_name + ".nc")).string();
 }
 
 }  // namespace cli

@@ -51,9 +51,6 @@ data::ExitStatus say_report(const Common& common, const Workspace& workspace, co
 /// --sampler mixture|nuts, instead of what each case says.
 std::shared_ptr<std::optional<data::Sampler>> add_sampler_option(CLI::App& command);
 
-/// "posterior-CASE.nc" in OUT.
-std::string posterior_path(const Workspace& workspace, const std::string& case_name);
-
 /// A progress display of `what`, fed by CalibrateOptions::progress.
 class JobProgress {
  public:

@@ -53,7 +53,7 @@ CLI::App* add_study_command(CLI::App& program, const std::string& name, const st
           },
           "seed of all random streams, instead of the study's")
       ->type_name("UINT");
-  command->add_flag("--quiet", common.quiet, "no progress, no summary");
+  command->add_flag("--quiet", common.quiet, "no progress, no notes, no summary; warnings are said");
   command->add_flag("--json", common.json, "the result as JSON on stdout, and nothing else there");
   command->add_option("--set", common.set, "set a key of the study: contact.restitution=0.8")
       ->take_all()
@@ -79,7 +79,7 @@ Workspace open_workspace(const Common& common) {
 }
 
 void say(const Common& common, const std::string& text) {
-  if (!common.quiet) data::tell(text);
+  if (!common.quiet || text.starts_with("warning: ")) data::tell(text);
 }
 
 void answer(const Common& common, const std::string& text) {

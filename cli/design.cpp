@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "campaign/design.hpp"
+#include "campaign/out_files.hpp"
 #include "cli/command.hpp"
 
 namespace cli {
@@ -28,7 +29,7 @@ Action add_design(CLI::App& program) {
     for (const std::string& note : rows.notes) say(common, "note: " + note);
     const Campaign campaign = plan_campaign(workspace, rows.all, options->runs);
     write_design(workspace, campaign.points);
-    const std::string path = (std::filesystem::path(workspace.out) / "design.csv").string();
+    const std::string path = design_path(workspace);
     answer(common, fmt::format("{} to simulate, {} exist: {}", data::counted(campaign.points.size(), "point"),
                                data::counted(rows.all.rows.size(), "row"), path));
     print_json(common, {{"points", campaign.points.size()}, {"rows", rows.all.rows.size()}, {"design", path}});

@@ -100,8 +100,7 @@ uq::Figure log_figure(const data::TorqueLog& log, const std::vector<data::Platea
       stretch("used", plot::sky, "used") + ", \\\n  " +
       fmt::format(
           "'{}.dat' index 'mean' using 1:2:3:4:5:6 with boxxyerror fillstyle transparent solid 0.6 noborder linecolor "
-          "rgb "
-          "'{}' title 'mean, two standard errors'",
+          "rgb '{}' title 'mean, two standard errors'",
           stem, plot::ink) +
       (idle.empty() ? std::string()
                     : fmt::format(", \\\n  '{}.dat' index 'idle' using 3:2:($4-$3):(0) with vectors nohead linewidth 2 "

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "campaign/levels.hpp"
+#include "campaign/out_files.hpp"
 #include "campaign/posterior_runs.hpp"
 #include "cli/calibration.hpp"
 #include "data/atomic_file.hpp"
@@ -109,7 +110,7 @@ bool is_of_posterior(const Planned& planned, const uq::CaseReport& report) {
 /// has another posterior: their plans are left out.
 std::vector<std::string> add_to_report(const Workspace& workspace, const std::vector<Planned>& all) {
   std::vector<std::string> other;
-  const std::string path = (fs::path(workspace.out) / "report.json").string();
+  const std::string path = results_path(workspace);
   if (!fs::exists(path)) return other;
   uq::CalibrationReport report = uq::load_report(path);
   bool any = false;
@@ -132,6 +133,70 @@ std::vector<std::string> add_to_report(const Workspace& workspace, const std::ve
   return other;
 }
 
+/// What there is to say against a posterior that is planned on.
+std::vector<std::string> doubts_about(const std::string& name, const uq::SampledCase& sampled) {
+  std::vector<std::string> doubts;
+  if (!sampled.draws.converged)
+    doubts.push_back(fmt::format("case {}: the chains have not converged: {}", name, sampled.draws.reason));
+  const std::vector<std::string> unsupported = uq::unsupported_parameters(*sampled.model, sampled.support);
+  const auto why = std::find_if(unsupported.begin(), unsupported.end(), [](const auto& text) { return !text.empty(); });
+  if (why != unsupported.end())
+    doubts.push_back(
+        fmt::format("case {}: {}. The plan rests on what the surrogate makes of that: make runs there "
+                    "first (demcal train STUDY --until posterior, or next-runs.csv of calibrate)",
+                    name, *why));
+  return doubts;
+}
+
+struct Plans {
+  std::vector<Planned> planned;
+  std::vector<std::string> doubts;  ///< of what is planned on, and cases that cannot be
+};
+
+/// One plan a case; fits the surrogates of `assessment`. A case that observes nothing is given a reading in the study
+/// (uq/plan/unmeasured.hpp).
+Plans make_plans(const PlanOptions& options, Workspace& workspace, const std::vector<std::size_t>& cases,
+                 const StudyRows& rows, Assessment& assessment) {
+  data::Study& study = workspace.study;
+  const Common& common = options.common;
+  const uq::CalibrateOptions calibrate{.surrogates = surrogate_options(common, workspace, rows), .seed = study.seed};
+  JobProgress progress(common, "planning");
+  assessment.surrogates = uq::fit_surrogates(study, rows.table, calibrate.surrogates);
+  keep_surrogates(workspace, rows, calibrate.surrogates, assessment.surrogates);
+  progress("", 0.2);
+  const std::vector<uq::Emulator> emulators = uq::emulators_of(assessment.surrogates);
+  uq::plan::PlanOptions how{.about = options.about,
+                            .budget = options.budget > 0.0 ? std::optional(options.budget) : std::nullopt,
+                            .batch = options.batch,
+                            .prior = options.prior,
+                            .seed = study.seed};
+  how.candidates.coarse_grained = coarse_levels(workspace);
+  Plans made;
+  const double span = 0.8 / static_cast<double>(cases.size());
+  for (std::size_t n = 0; n < cases.size(); ++n) {
+    const double from = 0.2 + span * static_cast<double>(n);
+    how.progress = [&](double share) { progress("", from + span * (0.3 + 0.7 * share)); };
+    const uq::SampledCase sampled = options.prior ? uq::plan::unmeasured_case(study, emulators, cases[n])
+                                                  : uq::sample_case(study, emulators, cases[n], calibrate);
+    assessment.cases = {sampled};
+    Planned one;
+    one.plan.name = study.cases[cases[n]].name;
+    try {
+      one.plan.plan = uq::plan::make_plan(study, emulators, cases[n], sampled, workspace.plan, how);
+      if (!options.prior) {
+        add_runs(workspace, rows, assessment, *one.plan.plan);
+        for (int k = 0; k < sampled.model->dimension(); ++k) one.known.push_back(uq::summary_of(sampled, k));
+        for (std::string& doubt : doubts_about(one.plan.name, sampled)) made.doubts.push_back(std::move(doubt));
+      }
+      made.planned.push_back(std::move(one));
+    } catch (const data::InputError& error) {
+      if (error.status != data::ExitStatus::bad_data || cases.size() == 1) throw;
+      made.doubts.push_back(data::describe(error.problems));
+    }
+  }
+  return made;
+}
+
 data::ExitStatus plan(const PlanOptions& options) {
   const Common& common = options.common;
   Workspace workspace = open_workspace(common);
@@ -139,66 +204,21 @@ data::ExitStatus plan(const PlanOptions& options) {
     workspace.study = uq::plan::with_cases(workspace.study);
   else
     require_measurements(workspace);
+  const data::Study& study = workspace.study;
   const std::vector<std::size_t> cases = chosen_cases(options, workspace);
   const StudyRows rows = rows_to_learn_from(common, workspace);
   const auto held = hold_out(workspace, Writes::results, "plan");
-  data::Study& study = workspace.study;
-  const uq::CalibrateOptions calibrate{.surrogates = surrogate_options(common, workspace, rows), .seed = study.seed};
   Assessment assessment;
-  std::vector<Planned> planned;
-  std::vector<std::string> doubts;  // of what is planned on, and cases that cannot be
-  {
-    JobProgress progress(common, "planning");
-    assessment.surrogates = uq::fit_surrogates(study, rows.table, calibrate.surrogates);
-    keep_surrogates(workspace, rows, calibrate.surrogates, assessment.surrogates);
-    progress("", 0.2);
-    const std::vector<uq::Emulator> emulators = uq::emulators_of(assessment.surrogates);
-    uq::plan::PlanOptions how{.about = options.about,
-                              .budget = options.budget > 0.0 ? std::optional(options.budget) : std::nullopt,
-                              .batch = options.batch,
-                              .prior = options.prior,
-                              .seed = study.seed};
-    how.candidates.coarse_grained = coarse_levels(workspace);
-    for (std::size_t n = 0; n < cases.size(); ++n) {
-      const double from = 0.2 + 0.8 * static_cast<double>(n) / static_cast<double>(cases.size());
-      const double span = 0.8 / static_cast<double>(cases.size());
-      const uq::SampledCase sampled = options.prior ? uq::plan::unmeasured_case(study, emulators, cases[n])
-                                                    : uq::sample_case(study, emulators, cases[n], calibrate);
-      assessment.cases = {sampled};
-      how.progress = [&](double share) { progress("", from + span * (0.3 + 0.7 * share)); };
-      uq::CaseReport one;
-      one.name = study.cases[cases[n]].name;
-      try {
-        one.plan = uq::plan::make_plan(study, emulators, cases[n], sampled, workspace.plan, how);
-        if (!options.prior) add_runs(workspace, rows, assessment, *one.plan);
-        planned.push_back({std::move(one), {}});
-        if (options.prior) continue;
-        for (int k = 0; k < sampled.model->dimension(); ++k) planned.back().known.push_back(uq::summary_of(sampled, k));
-        if (!sampled.draws.converged)
-          doubts.push_back(fmt::format("case {}: the chains have not converged: {}", planned.back().plan.name,
-                                       sampled.draws.reason));
-        for (const std::string& why : uq::unsupported_parameters(*sampled.model, sampled.support))
-          if (!why.empty()) {
-            doubts.push_back(
-                fmt::format("case {}: {}. The plan rests on what the surrogate makes of that: make runs there "
-                            "first (demcal train STUDY --until posterior, or next-runs.csv of calibrate)",
-                            planned.back().plan.name, why));
-            break;
-          }
-      } catch (const data::InputError& error) {
-        if (error.status != data::ExitStatus::bad_data || cases.size() == 1) throw;
-        doubts.push_back(data::describe(error.problems));
-      }
-    }
-  }
+  auto [planned, doubts] = make_plans(options, workspace, cases, rows, assessment);
   if (planned.empty())
     throw data::InputError(data::ExitStatus::bad_data,
                            {study.file, "no case can be planned on: " + doubts.front(), "see demcal calibrate"});
+
   std::vector<uq::CaseReport> plans;
   for (const Planned& one : planned) plans.push_back(one.plan);
   const nlohmann::ordered_json json = {
       {"format", 1}, {"demcal", data::program_version()}, {"study", study.name}, {"plans", uq::plans_json(plans)}};
-  const std::string path = (fs::path(workspace.out) / "plan.json").string();
+  const std::string path = plan_path(workspace);
   data::write_atomically(path, uq::text_of(json));
   for (std::string& other : add_to_report(workspace, planned)) doubts.push_back(std::move(other));
   const std::vector<std::string> warnings = say_warnings(common, rows, assessment.surrogates, doubts);

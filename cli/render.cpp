@@ -38,6 +38,9 @@ Action add_render(CLI::App& program) {
   return [options] {
     const std::string png =
         options->out.empty() ? std::filesystem::path(options->frame).replace_extension(".png").string() : options->out;
+    if (const std::string ending = std::filesystem::path(png).extension(); ending != ".png" && ending != ".PNG")
+      throw data::InputError(data::ExitStatus::usage, {"--out", fmt::format("'{}' does not end in .png", png),
+                                                       "pictures are PNG; another program converts them"});
     static const std::map<std::string, dem::ColourBy> colours{{"material", dem::ColourBy::material},
                                                               {"speed", dem::ColourBy::speed},
                                                               {"coordination", dem::ColourBy::coordination},

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "campaign/out_files.hpp"
 #include "campaign/study_rows.hpp"
 #include "cli/calibration.hpp"
 #include "data/error.hpp"
@@ -33,7 +34,7 @@ Action add_report(CLI::App& program) {
                     "demcal report data/developer", *common);
   return [common] {
     const Workspace workspace = open_workspace(*common);
-    const std::string report = (std::filesystem::path(workspace.out) / "report.json").string();
+    const std::string report = results_path(workspace);
     if (!std::filesystem::exists(report))
       throw data::InputError(data::ExitStatus::missing_input, {report, "is not there: this study has no results yet",
                                                                "run: demcal calibrate " + common->study});

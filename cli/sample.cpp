@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "campaign/out_files.hpp"
 #include "cli/calibration.hpp"
 #include "data/atomic_file.hpp"
 #include "data/random.hpp"

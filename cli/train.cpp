@@ -7,6 +7,7 @@
 
 #include "campaign/design.hpp"
 #include "campaign/foretell.hpp"
+#include "campaign/out_files.hpp"
 #include "cli/make_runs.hpp"
 #include "cli/train_posterior.hpp"
 #include "cli/train_slurm.hpp"
@@ -52,7 +53,7 @@ void announce(const Common& common, const Campaign& campaign, std::size_t rows) 
 /// The answer, its JSON and the exit status. `foretold`: some runs were expected to be too short.
 data::ExitStatus tell_made(const Common& common, const Workspace& workspace, const BatchResult& made,
                            const SlurmOptions* slurm, bool foretold, bool interrupted) {
-  const std::string table = (fs::path(workspace.out) / "training.csv").string();
+  const std::string table = training_copy_path(workspace);
   say_faults(common, made.warnings, made.failures);
   nlohmann::json json{{"finished", made.finished}, {"failed", made.failures},        {"warnings", made.warnings},
                       {"unsteady", made.unsteady}, {"rows", made.table.rows.size()}, {"table", table}};
@@ -81,7 +82,7 @@ data::ExitStatus train_missing(const TrainOptions& options, const std::optional<
   const data::InterruptGuard interrupt;
   const Common& common = options.common;
   const Workspace workspace = open_workspace(common);
-  require_rig(workspace);
+  require_own_runs(workspace);
   make_out(workspace, "runs");
   const auto held = hold_out(workspace, Writes::training, "train");
 

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "campaign/design.hpp"
+#include "campaign/out_files.hpp"
 #include "campaign/posterior_campaign.hpp"
 #include "cli/make_runs.hpp"
 #include "cli/train_slurm.hpp"
@@ -150,7 +151,7 @@ data::ExitStatus train_until_posterior(const Common& common, const PosteriorTrai
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const Workspace workspace = open_workspace(common);
   data::require_cases(workspace.study);
-  if (workspace.cases.empty()) {
+  if (!own_engine(workspace)) {
     const auto held = hold_out(workspace, Writes::results, "train");
     return list_points(common, workspace, options);
   }

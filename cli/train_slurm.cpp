@@ -74,7 +74,7 @@ SlurmOptions slurm_options(const Common& common, const SlurmChoice& choice, cons
 data::ExitStatus make_task(const Common& common, const SlurmChoice& choice) {
   const data::InterruptGuard interrupt;
   const Workspace workspace = open_workspace(common);
-  require_rig(workspace);
+  require_own_runs(workspace);
   const TaskOutcome outcome =
       run_task(workspace, choice.task_list, choice.task, choice.runs_per_task, interrupt.token());
   for (const std::string& failure : outcome.failures) say(common, "failed: " + failure);

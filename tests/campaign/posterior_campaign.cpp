@@ -1,5 +1,6 @@
 // A campaign around the posterior, with results that are made up: what it asks for, when it ends, what it leaves behind.
 #include "campaign/posterior_campaign.hpp"
+#include "campaign/out_files.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>

@@ -81,3 +81,15 @@ TEST_CASE("a fixed value of any number of digits is the same point in the design
   CHECK(nlohmann::json::parse(second.out)["points"] == points);
   CHECK_THAT(folder.read("quick-results/design.csv"), Contains("2.345678e-18"));
 }
+
+TEST_CASE("a study with a rig whose runs another code makes is not simulated") {
+  const Folder folder;
+  const std::string study = DEMCAL_SOURCE_DIR "/data/developer", none = "training.engine=\"none\"";
+  const auto refused = folder.demcal({"train", study, "--set", none});
+  CHECK(refused.status == 78);
+  CHECK_THAT(refused.err, Contains("another code makes the runs") && Contains("demcal design"));
+  CHECK_FALSE(std::filesystem::exists(folder.path / "developer-results" / "runs"));
+  const auto checked = folder.demcal({"check", study, "--set", none});
+  CHECK_THAT(checked.out, Contains("amid its ranges") && !Contains("the campaign:"));
+  CHECK_THAT(folder.demcal({"check", study}).out, Contains("the campaign:"));
+}

@@ -49,6 +49,7 @@ TEST_CASE("a quantity set twice at a point, and a camera that stands nowhere, ar
   for (const char* from : {"0,0,0", "nan,1,1", "inf,0,0"})
     CHECK_THAT(folder.says({"render", "no.vtkhdf", "--from", from}, 64),
                Contains("--from") && Contains("no direction"));
+  CHECK_THAT(folder.says({"render", "no.vtkhdf", "--out", "bed.jpg"}, 64), Contains("bed.jpg") && Contains(".png"));
 }
 
 TEST_CASE("the answer of a command is on stdout, and its progress and warnings are on stderr") {
