@@ -1,8 +1,9 @@
 // The table of coefficients of a bed, one entry per pair of materials and per material and body.
 //
 // Pairs of one material and walls take the [contact] of the case, and so do unlike materials, but for the elastic
-// moduli, which combine: 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2, 1/G* = 2(2 - nu_1)(1 + nu_1)/E_1 + alike. What
-// case.pairs says of two names then goes before.
+// moduli, which combine as sums over both materials:
+//   1/E* = sum of (1 - nu^2)/E,   1/G* = sum of 2 (2 - nu)(1 + nu)/E.
+// Entries of case.pairs override all of this.
 //
 // Grains softer than the real ones attract less by (E / E_true)^(2/5), E_true = contact.true_young_modulus of every
 // grain. E is the modulus of a pair of two alike that is as stiff as this one:
@@ -147,7 +148,7 @@ BedCoefficients make_bed(const Case& c, const std::vector<BodyLabel>& bodies) {
         return (p.first == one.name && p.second == other.name) || (p.second == one.name && p.first == other.name);
       };
       const double ra = radius(one), rb = radius(other);
-      const double reduced = ra == rb ? 0.5 * ra : ra * rb / (ra + rb);
+      const double reduced = reduced_value(ra, rb);
       bed.grain.push_back(coefficients(c, own(c, concerns),
                                        {elastic(c, one), elastic(c, other), reduced, std::min(ra, rb),
                                         std::min(weight(one), weight(other)), false}));

@@ -19,9 +19,6 @@ constexpr double rayleigh_times = 6.0;
 
 double sphere_mass(const Material& m, double diameter) { return m.density * pi / 6.0 * diameter * diameter * diameter; }
 
-/// Of equals to the last bit.
-double reduced(double a, double b) { return a == b ? 0.5 * a : a * b / (a + b); }
-
 /// Two spheres, or a sphere and a wall, at rest.
 Encounter meeting(const std::vector<Component>& parts, const ContactKind& kind, double (*diameter)(const Material&)) {
   const auto ball = [&](std::size_t index) {
@@ -37,9 +34,11 @@ Encounter meeting(const std::vector<Component>& parts, const ContactKind& kind, 
     e.partner = ball(kind.other);
   return e;
 }
-double reduced_mass(const Encounter& e) { return e.partner ? reduced(e.sphere.mass, e.partner->mass) : e.sphere.mass; }
+double reduced_mass(const Encounter& e) {
+  return e.partner ? reduced_value(e.sphere.mass, e.partner->mass) : e.sphere.mass;
+}
 double reduced_radius(const Encounter& e) {
-  return e.partner ? reduced(e.sphere.radius, e.partner->radius) : e.sphere.radius;
+  return e.partner ? reduced_value(e.sphere.radius, e.partner->radius) : e.sphere.radius;
 }
 
 double pull_off(const PairCoefficients& law, NormalLaw normal, double radius) {

@@ -45,10 +45,13 @@ BedSummary summarise_bed(const Case& c);
 
 /// Smallest diameter of a material [m].
 double smallest_diameter(const Material& m);
-/// That of a sphere of mean mass [m].
+/// Diameter of a sphere of mean mass [m].
 double mean_diameter(const Material& m);
 
-/// One for all, or one each, largest first.
+/// a b / (a + b) of two radii or masses. Exactly a / 2 where both are equal, so that equal spheres get the same bits.
+inline double reduced_value(double a, double b) { return a == b ? 0.5 * a : a * b / (a + b); }
+
+/// The spheres of a bed, largest first. A list holds one value for all of them, or one for each.
 struct Grains {
   std::vector<double> radius;           ///< m
   std::vector<double> density;          ///< kg/m3
@@ -56,7 +59,7 @@ struct Grains {
 };
 Grains draw_grains(const Case& c, std::uint64_t seed);
 
-/// Of `count` spheres [m3] and [kg].
+/// What the first `count` spheres take [m3] and weigh [kg].
 double solid_volume(const Grains& grains, std::size_t count);
 double solid_mass(const Grains& grains, std::size_t count);
 

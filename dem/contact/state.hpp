@@ -51,7 +51,8 @@ struct Pair {
 /// Fills the last word of a chunk's pairs; never looked at.
 inline bool is_padding(Pair p) { return p.i == p.j; }
 
-/// Places of `width` rows each that contacts take while they last: of a chunk's own, so that its thread can.
+/// A free list of history rows. A contact takes a place of `width` rows when it begins, and gives the place back when it ends. Each
+/// chunk has a pool of its own, so that threads need no lock.
 template <class Row>
 struct Pool {
   std::uint32_t width = 1;

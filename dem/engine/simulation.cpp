@@ -11,7 +11,7 @@
 namespace dem {
 namespace {
 
-/// One for all, or one each.
+/// A list holds one value for all spheres, or one for each; an empty one means `otherwise`.
 template <class T>
 T pick(const std::vector<T>& values, std::size_t i, T otherwise) {
   return values.empty() ? otherwise : values.size() == 1 ? values[0] : values[i];

@@ -3,7 +3,8 @@
 //
 //   v(n+1/2) = v(n-1/2) + F(n)/m dt,  x(n+1) = x(n) + v(n+1/2) dt,  v*(n+1) = v(n+1/2) + F(n)/(2m) dt
 // Forces at n+1 see v*(n+1), the velocity extrapolated to that time, instead of the half-step velocity of plain
-// velocity Verlet, which makes the dashpot second order between contact events. Spins alike with inertia 2/5 m r^2.
+// velocity Verlet, which makes the dashpot second order between contact events. Spins are advanced in
+// the same way, with the inertia 2/5 m r^2.
 #include <array>
 #include <cstdint>
 #include <limits>

@@ -139,7 +139,8 @@ std::string properties(const Case& c, const Types& types, const BedCoefficients&
   return text;
 }
 
-/// Of spheres and of walls alike: the models, and after what stands between in a wall's command, their settings.
+/// The contact models as LIGGGHTS names them, for spheres and walls. Their settings follow; in a wall's command other words
+/// stand in between.
 std::string models(const Case& c) {
   std::string law = c.contact.normal == NormalLaw::linear ? "model hooke/stiffness" : "model hertz";
   law += " tangential history";
@@ -308,22 +309,34 @@ std::vector<data::Problem> not_in_liggghts(const Case& c) {
     const auto has = [&](const PairCoefficients& p) { return value(p) > 0.0; };
     return std::any_of(bed.grain.begin(), bed.grain.end(), has) || std::any_of(bed.wall.begin(), bed.wall.end(), has);
   };
-  if (law.normal == NormalLaw::jkr)
-    refuse("contact.normal", "JKR law",
-           "the nearest is normal = \"hertz\" and in its input `cohesion sjkr`, whose force grows with the contact's "
-           "area and is not JKR's");
-  else if (any([](const PairCoefficients& p) { return p.pull_off; }))
-    refuse("contact.cohesion", "attraction that stays the same in a contact",
-           "the nearest is no attraction (hamaker = 0, work_of_adhesion = 0) and in its input `cohesion sjkr`, whose "
-           "force grows with the contact's area");
+  switch (law.normal) {  // without a default: a new law is refused until it is thought of here
+    case NormalLaw::linear:
+    case NormalLaw::hertz:
+      if (any([](const PairCoefficients& p) { return p.pull_off; }))
+        refuse("contact.cohesion", "attraction that stays the same in a contact",
+               "the nearest is no attraction (hamaker = 0, work_of_adhesion = 0) and in its input `cohesion sjkr`, "
+               "whose force grows with the contact's area");
+      break;
+    case NormalLaw::jkr:
+      refuse("contact.normal", "JKR law",
+             "the nearest is normal = \"hertz\" and in its input `cohesion sjkr`, whose force grows with the contact's "
+             "area and is not JKR's");
+      break;
+  }
   if (law.normal != NormalLaw::linear && c.components.size() > 1)
     refuse("materials.components", "our Hertz contact of unlike materials", "the nearest is a bed of one material");
   if (law.normal == NormalLaw::hertz && law.tangential_law() == TangentialLaw::linear)
     refuse("contact.tangential", "linear tangential spring beside the Hertz law",
            "the nearest is tangential = \"mindlin\"");
-  if (law.resistance == ResistanceLaw::spring)
-    refuse("contact.resistance", "rolling spring along R* w x n",
-           "the nearest is resistance = \"constant\", its `rolling_friction cdt`");
+  switch (law.resistance) {
+    case ResistanceLaw::none:
+    case ResistanceLaw::constant:
+      break;
+    case ResistanceLaw::spring:
+      refuse("contact.resistance", "rolling spring along R* w x n",
+             "the nearest is resistance = \"constant\", its `rolling_friction cdt`");
+      break;
+  }
   if (any([](const PairCoefficients& p) { return p.twisting_friction; }))
     refuse("contact.twisting_friction", "friction against twisting", "the nearest is 0");
   if (c.rig.stl) {

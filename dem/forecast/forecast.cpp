@@ -46,6 +46,13 @@ void say_density(const Case& c, Forecast& f) {
   }
 }
 
+/// A centrifuge may have any other multiple of the Earth's gravity.
+void say_gravity(const Case& c, Forecast& f) {
+  if (std::abs(c.run.gravity / 981.0 - 1.0) < 0.01)
+    f.warnings.push_back(fmt::format("run.gravity is {:g} m/s2, a hundred times the Earth's (was {:g} cm/s2 meant?)",
+                                     c.run.gravity, c.run.gravity));
+}
+
 /// How deep spheres press in where the tool hits them, of contact.stiffness.
 void say_impacts(const Case& c, const Derived& d, Forecast& f) {
   if (c.contact.normal != NormalLaw::linear) return;
@@ -88,6 +95,7 @@ Forecast forecast(const PreparedCase& prepared, std::uint64_t seed) {
   const BedSummary bed = summarise_bed(c);
   Forecast f{.spheres = bed.spheres, .mass = bed.mass, .largest = bed.largest};
   say_density(c, f);
+  say_gravity(c, f);
   say_impacts(c, prepared.derived(), f);
   say_samples(c, prepared.derived(), f);
   const RigKind& kind = kind_of(c);

@@ -31,11 +31,11 @@ std::vector<Mark> marks_of(const TriangleMesh& mesh, std::size_t count) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Vec3 across = cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
     area.push_back(all += 0.5 * length(across));
-    // Of a mesh so fine the points on faces are close enough.
+    // In a finer mesh the points on faces are close enough.
     for (std::size_t k = 0; k < 3 && mesh.triangles.size() <= 20000; ++k)
       normals[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back(unit(across));
   }
-  // Of a sequence of low discrepancy, the golden ratio's, which of a triangle's points.
+  // Points inside a triangle follow the golden ratio's sequence, which has a low discrepancy.
   const std::size_t on_faces = count / 2;
   for (std::size_t k = 0, t = 0; k < on_faces; ++k) {
     const double wanted = all * (static_cast<double>(k) + 0.5) / static_cast<double>(on_faces);

@@ -4,9 +4,8 @@
 //   posterior             one variable (chain, draw) per unknown, in the study's unit
 //   sample_stats          lp, acceptance_rate; energy, diverging, tree_depth where the sampler has them
 //   posterior_predictive  one variable (chain, draw, point) per observation set and output: a repeat of the measurement
-//   log_likelihood        the same shape: log density of each measured number on its own (surrogate errors that are
-//   common
-//                         to several numbers are in each of them, so the sum is not the joint one)
+//   log_likelihood        the same shape: log density of each measured number on its own. Surrogate errors that several
+//                         numbers share are in each of them, so the sum is not the joint one
 //   observed_data         the same variables (point); controls are coordinates of the points
 //   constant_data         their standard errors
 #include <cstdint>

@@ -6,8 +6,8 @@
 //   1  leave-one-out errors e_i / s_i of the process fitted to the runs kept, robustly scaled:
 //        z_i = (e_i / s_i - median) / max(1, 1.4826 median |e / s - median|)
 //   2  the runs with |z| above `screen`, the largest first and at most a few at a time, are put aside; at the very
-//   first
-//      those, too, whose output is equal to the last digit in three runs or more (failed runs, written as one number)
+//      first those, too, whose output is equal to the last digit in three runs or more (failed runs, written as one
+//      number)
 //   3  fitted again, the runs put aside are predicted; those within `screen` come back
 //   until nothing changes. What is still aside, and further than `outlying` from what the others predict, is outlying.
 // P. J. Rousseeuw & A. M. Leroy, Robust Regression and Outlier Detection (1987), chapter 6, for deletion and masking;

@@ -152,6 +152,92 @@ SurrogateWord word_of(surrogate::SurrogateVerdict verdict) {
   return SurrogateWord::unusable;
 }
 
+void add_validation(SurrogateReport& report, const surrogate::Validation& found, const FittedSurrogate& fitted,
+                    const data::Unit& unit) {
+  const surrogate::TrainingSet& set = fitted.rows.set;
+  report.runs = found.runs;
+  report.q2 = found.q2_leave_one_out;
+  report.q2_held_out = found.q2_held_out;
+  report.coverage95 = found.coverage_leave_one_out.observed[2];
+  report.coverage_left_out.assign(found.coverage_leave_one_out.observed.begin(),
+                                  found.coverage_leave_one_out.observed.end());
+  report.coverage_held_out.assign(found.coverage_held_out.observed.begin(), found.coverage_held_out.observed.end());
+  for (const surrogate::HeldOutFold& fold : found.folds) {
+    report.fold_distance.push_back(fold.mahalanobis);
+    report.fold_runs.push_back(static_cast<double>(fold.runs.size()));
+    report.fold_probability.push_back(fold.probability);
+    report.pivoted_errors.insert(report.pivoted_errors.end(), fold.pivoted_errors.begin(), fold.pivoted_errors.end());
+  }
+  report.observed = in_unit(set.y, unit);
+  report.predicted = in_unit(found.leave_one_out.mean, unit);
+  report.standardised.assign(found.leave_one_out.standardised.begin(), found.leave_one_out.standardised.end());
+  for (const double variance : set.noise_variance) report.observed_se.push_back(std::sqrt(variance) / unit.factor);
+  report.verdict = word_of(found.verdict);
+  report.finding = found.finding;
+  report.consequence = found.consequence;
+  report.remedy = found.remedy;
+  report.notes = found.notes;
+  if (found.noise.replicated && found.noise.understated() && found.noise.scatter_ratio > far_apart)
+    report.errors_in_doubt = fmt::format(
+        "runs at the same points differ by {:.1f} times what their standard errors say. That is taken for scatter of "
+        "the runs. Are these the rows of two campaigns, of other settings or units?",
+        found.noise.scatter_ratio);
+}
+
+void add_hyper_parameters(SurrogateReport& report, const data::Study& study, const FittedSurrogate& fitted,
+                          surrogate::OutputScale scale) {
+  const TrainingRows& rows = fitted.rows;
+  const surrogate::HyperParameters hyper = fitted.process->hyper_parameters();
+  // On the log scale the nugget is relative; shown at the mean output.
+  const double unit_of_nugget = scale == surrogate::OutputScale::log ? std::abs(rows.set.y.mean()) : 1.0;
+  const double nugget_sd =
+      fitted.two_level ? fitted.two_level->parameters().nugget_sd : hyper.nugget_sd * unit_of_nugget;
+  report.nugget_sd = nugget_sd / study.outputs[rows.output].unit.factor;
+  for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
+    report.inputs.push_back(input_of(study, rows.inputs[k]).name);
+    report.length_scales.push_back(hyper.length_scales[k]);
+  }
+  report.converged =
+      fitted.process->diagnostics().converged && (!fitted.two_level || fitted.two_level->high().diagnostics.converged);
+  const auto& active = fitted.process->data();
+  if (active.points.rows() < active.z.size())
+    report.notes.push_back(fmt::format("{} runs at {}: replicates are pooled with their own errors", active.z.size(),
+                                       data::counted(static_cast<std::size_t>(active.points.rows()), "point")));
+}
+
+void add_sensitivity(SurrogateReport& report, const FittedSurrogate& fitted, std::uint64_t seed) {
+  const std::size_t inputs = fitted.rows.inputs.size();
+  for (const SobolIndex& index : sobol_indices(emulator_of(fitted).predict, static_cast<int>(inputs), {.seed = seed})) {
+    report.first_order.push_back(index.first);
+    report.first_order_sd.push_back(index.first_sd);
+    report.total_order.push_back(index.total);
+    report.total_order_sd.push_back(index.total_sd);
+  }
+  if (inputs > static_cast<std::size_t>(sensitivity_inputs_max))
+    report.notes.push_back(fmt::format("no Sobol indices: they are for {} inputs at most, and this surrogate has {}",
+                                       sensitivity_inputs_max, inputs));
+}
+
+/// Where runs would help most. The surrogate's box is that of the runs; some of them may lie outside the study's.
+std::string points_in_words(const data::Study& study, const TrainingRows& rows, const surrogate::Validation& found) {
+  if (found.more_runs == 0 || found.next_points.rows() == 0) return "";
+  const Eigen::MatrixXd points = found.next_points.cwiseMax(0.0).cwiseMin(1.0);
+  std::string text = " Least is known at";
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    text += fmt::format("{} {}", i > 0 ? ";" : "", point_text(study, rows, points.row(i)));
+  return text + ".";
+}
+
+/// A scale on which the left-out errors would be smaller, or nothing.
+std::string better_scale(const data::Study& study, const FittedSurrogate& fitted,
+                         const surrogate::FitOptions& options) {
+  constexpr double better = 0.7;  // of the error on the study's scales
+  const auto scale = best_log_scale(study, fitted.rows, {}, options);
+  const double now = left_out_error(*fitted.process, fitted.rows.set);
+  if (!scale || !(scale->error < better * now)) return "";
+  return fmt::format(" Set {}: there the left-out errors are {:.2g} times smaller.", scale->key, now / scale->error);
+}
+
 }  // namespace
 
 surrogate::FitOptions options_for(const data::Study& study, const TrainingRows& rows, const SurrogateOptions& options) {
@@ -174,83 +260,19 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   SurrogateReport report;
   report.output = output.name;
   report.material = rows.material;
-  report.runs = found.runs;
   report.unit = output.unit.symbol;
-  report.q2 = found.q2_leave_one_out;
-  report.q2_held_out = found.q2_held_out;
-  report.coverage95 = found.coverage_leave_one_out.observed[2];
-  report.coverage_left_out.assign(found.coverage_leave_one_out.observed.begin(),
-                                  found.coverage_leave_one_out.observed.end());
-  report.coverage_held_out.assign(found.coverage_held_out.observed.begin(), found.coverage_held_out.observed.end());
-  for (const surrogate::HeldOutFold& fold : found.folds) {
-    report.fold_distance.push_back(fold.mahalanobis);
-    report.fold_runs.push_back(static_cast<double>(fold.runs.size()));
-    report.fold_probability.push_back(fold.probability);
-    report.pivoted_errors.insert(report.pivoted_errors.end(), fold.pivoted_errors.begin(), fold.pivoted_errors.end());
-  }
-  if (found.noise.replicated && found.noise.understated() && found.noise.scatter_ratio > far_apart)
-    report.errors_in_doubt = fmt::format(
-        "runs at the same points differ by {:.1f} times what their standard errors say. That is taken for scatter of "
-        "the "
-        "runs. Are these the rows of two campaigns, of other settings or units?",
-        found.noise.scatter_ratio);
-  const surrogate::HyperParameters hyper = fitted.process->hyper_parameters();
-  // On the log scale the nugget is relative; shown at the mean output.
-  const bool logarithmic = fit_options.scale == surrogate::OutputScale::log;
-  const double nugget_sd = fitted.two_level ? fitted.two_level->parameters().nugget_sd
-                                            : hyper.nugget_sd * (logarithmic ? std::abs(rows.set.y.mean()) : 1.0);
-  report.nugget_sd = nugget_sd / output.unit.factor;
-  for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
-    report.inputs.push_back(input_of(study, rows.inputs[k]).name);
-    report.length_scales.push_back(hyper.length_scales[k]);
-  }
-  report.observed = in_unit(rows.set.y, output.unit);
-  report.predicted = in_unit(found.leave_one_out.mean, output.unit);
-  report.standardised.assign(found.leave_one_out.standardised.begin(), found.leave_one_out.standardised.end());
-  for (const double variance : rows.set.noise_variance)
-    report.observed_se.push_back(std::sqrt(variance) / output.unit.factor);
-  report.verdict = word_of(found.verdict);
-  report.finding = found.finding;
-  report.consequence = found.consequence;
-  report.remedy = found.remedy;
-  // The surrogate's box is that of the runs; some of them may lie outside the study's.
-  const Eigen::MatrixXd next_points = found.next_points.cwiseMax(0.0).cwiseMin(1.0);
-  if (found.more_runs > 0 && next_points.rows() > 0) {
-    report.remedy += " Least is known at";
-    for (Eigen::Index i = 0; i < next_points.rows(); ++i)
-      report.remedy += fmt::format("{} {}", i > 0 ? ";" : "", point_text(study, rows, next_points.row(i)));
-    report.remedy += ".";
-  }
-  report.converged =
-      fitted.process->diagnostics().converged && (!fitted.two_level || fitted.two_level->high().diagnostics.converged);
-  report.notes = found.notes;
-  const auto& active = fitted.process->data();
-  if (active.points.rows() < active.z.size())
-    report.notes.push_back(fmt::format("{} runs at {}: replicates are pooled with their own errors", active.z.size(),
-                                       data::counted(static_cast<std::size_t>(active.points.rows()), "point")));
-  for (const SobolIndex& index :
-       sobol_indices(emulator_of(fitted).predict, static_cast<int>(rows.inputs.size()), {.seed = options.fit.seed})) {
-    report.first_order.push_back(index.first);
-    report.first_order_sd.push_back(index.first_sd);
-    report.total_order.push_back(index.total);
-    report.total_order_sd.push_back(index.total_sd);
-  }
-  if (rows.inputs.size() > static_cast<std::size_t>(sensitivity_inputs_max))
-    report.notes.push_back(fmt::format("no Sobol indices: they are for {} inputs at most, and this surrogate has {}",
-                                       sensitivity_inputs_max, rows.inputs.size()));
+  add_validation(report, found, fitted, output.unit);
+  report.remedy += points_in_words(study, rows, found);
+  add_hyper_parameters(report, study, fitted, fit_options.scale);
+  add_sensitivity(report, fitted, options.fit.seed);
   note_gaps(report, study, fitted);
-  if (fitted.two_level)
+  if (fitted.two_level) {
     add_levels(report, fitted, output);
-  else
-    add_outlying(report, fitted, fit_options, study);
-  if (!fitted.two_level && report.verdict != SurrogateWord::good && report.outlying.empty()) {
-    constexpr double better = 0.7;  // of the error on the study's scales
-    const auto scale = best_log_scale(study, rows, {}, fit_options);
-    const double now = left_out_error(*fitted.process, rows.set);
-    if (scale && scale->error < better * now)
-      report.remedy +=
-          fmt::format(" Set {}: there the left-out errors are {:.2g} times smaller.", scale->key, now / scale->error);
+    return report;
   }
+  add_outlying(report, fitted, fit_options, study);
+  if (report.verdict != SurrogateWord::good && report.outlying.empty())
+    report.remedy += better_scale(study, fitted, fit_options);
   return report;
 }
 

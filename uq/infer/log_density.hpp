@@ -4,9 +4,8 @@
 //
 //   log density   log p(x) + const on lower <= x <= upper, minus infinity outside
 //   reference     a normalised density on the same box, wider than p: the prior of a posterior. Chains start from its
-//   draws
-//                 and are tempered from it, log p_b = (1 - b) log reference + b log p, and the evidence is integral p
-//                 dx.
+//                 draws and are tempered from it, log p_b = (1 - b) log reference + b log p
+// The evidence is the integral of p over the box.
 #include <Eigen/Dense>
 #include <concepts>
 #include <functional>

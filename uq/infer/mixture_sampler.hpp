@@ -12,8 +12,7 @@
 //    proposals do not know join both, and stay: a fit to some thousand points loses what holds half a per cent.
 //    After this nothing adapts.
 // 3. A chain starts at a point of its own population. Each move is, by chance, an independence proposal from the
-// mixture
-//    (Metropolis-Hastings ratio p(x') q(x) / p(x) q(x')) or a symmetric local step: along the difference of two points
+//    mixture (Metropolis-Hastings ratio p(x') q(x) / p(x) q(x')) or a symmetric local step: along the difference of two points
 //    of the populations, or of the shape of one of the mixture's components. Proposals of the mixture do not depend on
 //    the chain's state, so they are evaluated in batches.
 // 4. Draws go on until R-hat and effective sample sizes are met and the halves' means and spreads agree, or the largest

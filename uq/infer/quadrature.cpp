@@ -82,92 +82,92 @@ double integral(const Grid& grid, const Cell& cell, double top) {
   return sum;
 }
 
-}  // namespace
+double highest(const std::vector<Cell>& cells) {
+  double top = nowhere;
+  for (const Cell& cell : cells) top = std::max(top, cell.highest());
+  return top;
+}
 
-Quadrature integrate(const Target& target, const QuadratureOptions& options) {
-  assert(target.dimension == 1 || target.dimension == 2);
-  assert(target.lower.allFinite() && target.upper.allFinite());
-  const int dimension = target.dimension;
-  const Grid grid{.target = target, .dimension = dimension, .points = dimension == 1 ? std::size_t{3} : std::size_t{9}};
-  Quadrature result;
-
-  // The first grid.
+/// Equal cells over the box, not evaluated yet.
+std::vector<Cell> first_cells(const Grid& grid, const QuadratureOptions& options) {
   std::vector<int> everyone(static_cast<std::size_t>(options.guides.rows()));
   std::iota(everyone.begin(), everyone.end(), 0);
   std::vector<Cell> cells;
-  const int per_side = dimension == 1 ? 8 * options.first_cells : options.first_cells;
+  const int per_side = grid.dimension == 1 ? 8 * options.first_cells : options.first_cells;
   for (int i = 0; i < per_side; ++i)
-    for (int j = 0; j < (dimension == 2 ? per_side : 1); ++j) {
+    for (int j = 0; j < (grid.dimension == 2 ? per_side : 1); ++j) {
       Cell cell;
       const std::array<int, 2> index = {i, j};
-      for (int k = 0; k < dimension; ++k) {
-        cell.width[k] = (target.upper[k] - target.lower[k]) / per_side;
-        cell.centre[k] = target.lower[k] + (index[k] + 0.5) * cell.width[k];
+      for (int k = 0; k < grid.dimension; ++k) {
+        cell.width[k] = (grid.target.upper[k] - grid.target.lower[k]) / per_side;
+        cell.centre[k] = grid.target.lower[k] + (index[k] + 0.5) * cell.width[k];
       }
       cell.guides = guides_inside(cell, options.guides, everyone);
       cells.push_back(cell);
     }
-  evaluate_cells(grid, cells, 0, options.threads);
-  result.evaluations = static_cast<std::int64_t>(cells.size() * grid.points);
+  return cells;
+}
 
-  // Halve the cells whose integral is not settled.
-  for (int level = 0; level <= options.levels; ++level) {
-    double top = nowhere, total = 0.0;
-    for (const auto& cell : cells) top = std::max(top, cell.highest());
-    for (const auto& cell : cells) total += integral(grid, cell, top);
-    std::vector<Cell> kept, parents;
-    for (auto& cell : cells) {
-      // A guided cell whose points span a wide range of densities has not seen what the guide saw. Others stop when
-      // nothing is in them, or when the last split no longer changed them.
-      double lowest = -nowhere;
-      for (std::size_t i = 0; i < grid.points; ++i) lowest = std::min(lowest, cell.log_density[i]);
-      const bool blind = !cell.guides.empty() && !(cell.highest() - lowest < 20.0);
-      const bool counts = integral(grid, cell, top) > 1e-9 * total;
-      const bool unsettled =
-          counts && (!cell.split_before || cell.error * std::exp(cell.error_top - top) > options.tolerance * total);
-      (blind || unsettled ? parents : kept).push_back(std::move(cell));
-    }
-    const auto cost = static_cast<std::int64_t>((parents.size() << dimension) * grid.points);
-    if (parents.empty() || level == options.levels || result.evaluations + cost > options.evaluations_max) {
-      result.resolved = parents.empty();
-      kept.insert(kept.end(), parents.begin(), parents.end());
-      cells = std::move(kept);
-      break;
-    }
-    const std::size_t first = kept.size(), parts = std::size_t{1} << dimension;
-    for (const auto& parent : parents)
-      for (std::size_t part = 0; part < parts; ++part) {
-        Cell cell = parent;
-        for (int k = 0; k < dimension; ++k) {
-          cell.width[k] = 0.5 * parent.width[k];
-          cell.centre[k] = parent.centre[k] + ((part >> k & 1) != 0 ? 0.25 : -0.25) * parent.width[k];
-        }
-        cell.guides = guides_inside(cell, options.guides, parent.guides);
-        kept.push_back(std::move(cell));
-      }
-    evaluate_cells(grid, kept, first, options.threads);
-    result.evaluations += cost;
-    for (const auto& cell : kept) top = std::max(top, cell.highest());
-    for (std::size_t p = 0; p < parents.size(); ++p) {
-      double sum = 0.0;
-      for (std::size_t part = 0; part < parts; ++part) sum += integral(grid, kept[first + p * parts + part], top);
-      for (std::size_t part = 0; part < parts; ++part) {
-        Cell& cell = kept[first + p * parts + part];
-        cell.split_before = true;
-        cell.error = std::abs(sum - integral(grid, parents[p], top));
-        cell.error_top = top;
-      }
-    }
-    cells = std::move(kept);
+struct Sorted {
+  std::vector<Cell> settled, open;
+};
+
+/// Cells whose integral is settled, and others. A guided cell whose points span a wide range of densities has not seen what
+/// the guide saw. Another is settled when nothing is in it, or when the last split no longer changed it.
+Sorted sort_cells(const Grid& grid, std::vector<Cell> cells, double tolerance) {
+  const double top = highest(cells);
+  double total = 0.0;
+  for (const Cell& cell : cells) total += integral(grid, cell, top);
+  Sorted sorted;
+  for (Cell& cell : cells) {
+    double lowest = -nowhere;
+    for (std::size_t i = 0; i < grid.points; ++i) lowest = std::min(lowest, cell.log_density[i]);
+    const bool blind = !cell.guides.empty() && !(cell.highest() - lowest < 20.0);
+    const bool counts = integral(grid, cell, top) > 1e-9 * total;
+    const bool changing = !cell.split_before || cell.error * std::exp(cell.error_top - top) > tolerance * total;
+    (blind || (counts && changing) ? sorted.open : sorted.settled).push_back(std::move(cell));
   }
+  return sorted;
+}
 
-  // Sums relative to the largest density, in the order of the cells.
-  double top = nowhere;
-  for (const auto& cell : cells) top = std::max(top, cell.highest());
+/// The settled cells, then the halves of the others (quarters in two dimensions), evaluated, each with what its parent's split
+/// has changed.
+std::vector<Cell> halve_open(const Grid& grid, Sorted sorted, const QuadratureOptions& options) {
+  std::vector<Cell> cells = std::move(sorted.settled);
+  const std::size_t first = cells.size(), parts = std::size_t{1} << grid.dimension;
+  for (const Cell& parent : sorted.open)
+    for (std::size_t part = 0; part < parts; ++part) {
+      Cell cell = parent;
+      for (int k = 0; k < grid.dimension; ++k) {
+        cell.width[k] = 0.5 * parent.width[k];
+        cell.centre[k] = parent.centre[k] + ((part >> k & 1) != 0 ? 0.25 : -0.25) * parent.width[k];
+      }
+      cell.guides = guides_inside(cell, options.guides, parent.guides);
+      cells.push_back(std::move(cell));
+    }
+  evaluate_cells(grid, cells, first, options.threads);
+  const double top = std::max(highest(cells), highest(sorted.open));
+  for (std::size_t p = 0; p < sorted.open.size(); ++p) {
+    double sum = 0.0;
+    for (std::size_t part = 0; part < parts; ++part) sum += integral(grid, cells[first + p * parts + part], top);
+    for (std::size_t part = 0; part < parts; ++part) {
+      Cell& cell = cells[first + p * parts + part];
+      cell.split_before = true;
+      cell.error = std::abs(sum - integral(grid, sorted.open[p], top));
+      cell.error_top = top;
+    }
+  }
+  return cells;
+}
+
+/// Evidence and moments; sums relative to the largest density, in the order of the cells.
+void add_moments(const Grid& grid, const std::vector<Cell>& cells, Quadrature& result) {
+  const int dimension = grid.dimension;
+  const double top = highest(cells);
   double total = 0.0;
   Eigen::VectorXd first = Eigen::VectorXd::Zero(dimension);
   Eigen::MatrixXd second = Eigen::MatrixXd::Zero(dimension, dimension);
-  for (const auto& cell : cells)
+  for (const Cell& cell : cells)
     for (std::size_t i = 0; i < grid.points; ++i) {
       const double mass = grid.weight(cell, i) * std::exp(cell.log_density[i] - top);
       const Eigen::VectorXd x = grid.point(cell, i);
@@ -181,11 +181,37 @@ Quadrature integrate(const Target& target, const QuadratureOptions& options) {
   if (dimension == 2) result.correlation = covariance(0, 1) / (result.sd[0] * result.sd[1]);
   result.log_evidence = top + std::log(total);
   result.fourth = Eigen::VectorXd::Zero(dimension);
-  for (const auto& cell : cells)
+  for (const Cell& cell : cells)
     for (std::size_t i = 0; i < grid.points; ++i) {
       const double share = grid.weight(cell, i) * std::exp(cell.log_density[i] - top) / total;
       result.fourth += share * (grid.point(cell, i) - result.mean).array().pow(4).matrix();
     }
+}
+
+}  // namespace
+
+Quadrature integrate(const Target& target, const QuadratureOptions& options) {
+  assert(target.dimension == 1 || target.dimension == 2);
+  assert(target.lower.allFinite() && target.upper.allFinite());
+  const int dimension = target.dimension;
+  const Grid grid{.target = target, .dimension = dimension, .points = dimension == 1 ? std::size_t{3} : std::size_t{9}};
+  std::vector<Cell> cells = first_cells(grid, options);
+  evaluate_cells(grid, cells, 0, options.threads);
+  Quadrature result;
+  result.evaluations = static_cast<std::int64_t>(cells.size() * grid.points);
+  for (int level = 0;; ++level) {
+    Sorted sorted = sort_cells(grid, std::move(cells), options.tolerance);
+    const auto cost = static_cast<std::int64_t>((sorted.open.size() << dimension) * grid.points);
+    result.resolved = sorted.open.empty();
+    if (result.resolved || level == options.levels || result.evaluations + cost > options.evaluations_max) {
+      cells = std::move(sorted.settled);
+      cells.insert(cells.end(), sorted.open.begin(), sorted.open.end());
+      break;
+    }
+    cells = halve_open(grid, std::move(sorted), options);
+    result.evaluations += cost;
+  }
+  add_moments(grid, cells, result);
   return result;
 }
 

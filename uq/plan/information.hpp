@@ -3,9 +3,8 @@
 // Nothing here knows of studies: an Ensemble is draws of the unknowns with the normal law of the reading given each.
 //
 // Of all unknowns theta (D. V. Lindley, Ann. Math. Stat. 27:986 (1956)):
-//   I(theta; y) = E [ log p(y | theta) - log p(y) ],   p(y) estimated by the mean of p(y | theta_j) over the other
-//   draws
-// and of one of them, the rest integrated out:
+//   I(theta; y) = E [ log p(y | theta) - log p(y) ],
+// p(y) estimated by the mean of p(y | theta_j) over the other draws, and of one of them, the rest integrated out:
 //   I(theta_k; y) = E [ log p(y | theta_k) - log p(y) ].
 // p(y | theta_k) is a conditional density, and any other normalised density in its place gives less on average (D.
 // Barber & F. Agakov, NIPS 16 (2003); A. Foster et al., NeurIPS 32 (2019)), so the best of several is taken. Each is a

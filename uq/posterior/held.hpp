@@ -5,9 +5,8 @@
 // The evidence is its integral over the rest.
 //
 // What a surrogate's error makes of a Bayes factor. Both evidences integrate the surrogate's functions f out; with f
-// known the factor would be another. With f = mean + delta, delta ~ N(0, C) jointly at the rows of both sides' most
-// likely points, and the response linear around each of them (J, columns of the free unknowns), a side's log evidence
-// is
+// known the factor would be another. Let f = mean + delta, delta ~ N(0, C) jointly at the rows of both sides' most
+// likely points, with the response linear around each of them (J, columns of the free unknowns). A side's log evidence is
 //   ln Z(delta) = -1/2 (r - delta)' M (r - delta) + const,   r = y - mean,
 //   M = S^-1 - S^-1 J (J' S^-1 J + I)^-1 J' S^-1,            S: the measurement's covariance,
 // I for the priors, which are about as wide as the unit cube. The data say something of delta, too: given them and the

@@ -42,7 +42,8 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
 struct RunsReach {
   double low = 0.0, high = 1.0;
 };
-/// Of all emulators that the unknown moves, the least; the whole support where none is learnt from runs.
+/// The part that the runs of every emulator cover which depends on the unknown; the whole support where no emulator is learnt
+/// from runs.
 RunsReach runs_reach(const CaseModel& model, int unknown, const SupportThresholds& thresholds = {});
 
 /// For each own parameter why no verdict can rest on the surrogates there, or nothing.

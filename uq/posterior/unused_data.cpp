@@ -88,8 +88,7 @@ std::string sentence_of(const PredictionReport& report) {
   const std::size_t n = report.points.size();
   std::string text = fmt::format(
       "{}: {} of {} measured values that the case has not used lie inside their 90 % intervals; chi-squared {:.3g} of "
-      "{} "
-      "(p {:.2g}). The calibration {} them.",
+      "{} (p {:.2g}). The calibration {} them.",
       report.name, report.inside, n, report.chi2, n, report.p, report.predicts ? "predicts" : "does not predict");
   if (report.predicts || n == 0) return text;
   const auto farthest =

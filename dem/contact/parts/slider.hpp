@@ -34,7 +34,7 @@ SlipForce<V> slide(const V& before, const V& velocity, C stiffness, C damping, T
   const V wanted = before + drag * velocity;
   const T size = norm(wanted);
   const V force = select(size > cap, T(cap / size), T(1.0)) * wanted;
-  // What is beyond the cap the spring does not follow, but for what the dashpot holds.
+  // Beyond the cap the spring no longer follows the slip; only the dashpot's share of the excess is still stored.
   const C share = reach / larger(C(reach + damping), C(std::numeric_limits<double>::min()));
   return {-force, before + reach * velocity - share * (wanted - force)};
 }
