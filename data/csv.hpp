@@ -33,7 +33,8 @@ struct Csv {
   std::vector<std::string> units;     ///< "" where none is given
   int header_line = 0;
   std::vector<CsvRow> rows;
-  std::string no_time;  ///< why there is no column of times, where the file's form has one
+  std::vector<std::size_t> sections;  ///< of the rows, the first one below each further heading
+  std::string no_time;                ///< why there is no column of times, where the file's form has one
   std::vector<std::string>
       took;  ///< how the table was read, where it is not plain CSV or not as demcal wrote it: "separated by semicolons"
 

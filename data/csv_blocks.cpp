@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "data/csv_dialect.hpp"
 #include "data/number_text.hpp"
@@ -154,6 +155,11 @@ class BlockFinder {
       block.units_line = records_[block.first].line;
       block.first = next_line(block.first);
     }
+    // A third line of words: what each column is, as plotting programs have it.
+    if (block.units_line > 0 && block.first < records_.size() && is_words(records_[block.first]) &&
+        has_as_many(records_[block.first], block.headings.size()) &&
+        rows_follow(next_line(block.first), block.headings.size()))
+      block.first = next_line(block.first);
     if (!rows_follow(block.first, block.headings.size())) return {};
     const bool apart = blocks_.empty() || record.gap_above || block.units_line > 0 || names_units(block.headings) ||
                        columns() != block.headings.size() || same_columns(blocks_.back().headings, block.headings) ||
@@ -229,18 +235,36 @@ class BlockFinder {
     }
   }
 
-  /// Below the last block's rows comments, empty lines and titles may stand.
+  /// Below the last block's rows comments, empty lines, titles, notes of any words behind an empty line, and statistics of the
+  /// rows may stand. What may be a damaged row stays.
   void end_last() {
     CsvBlock& block = blocks_.back();
-    block.end = records_.size();
     const auto is_title = [&](const CsvRecord& record) {
       return is_words(record) && without_trailing(record.fields) == 1 && columns() > 1;
     };
-    while (block.end > block.first && (records_[block.end - 1].comment || is_blank_record(records_[block.end - 1]) ||
-                                       is_title(records_[block.end - 1]))) {
-      --block.end;
-      if (!records_[block.end].comment && !is_blank_record(records_[block.end])) ++block.footers;
+    const auto is_empty = [](const CsvRecord& record) { return record.comment || is_blank_record(record); };
+    std::size_t from = records_.size();  // lines from here on may be no rows
+    while (from > block.first + 1 &&
+           (is_empty(records_[from - 1]) || is_words(records_[from - 1]) || is_statistic(records_[from - 1])))
+      --from;
+    while (from < records_.size()) {
+      const CsvRecord& record = records_[from];
+      if (is_empty(record) || is_title(record) || is_statistic(record) || (record.gap_above && columns() > 1)) break;
+      ++from;
     }
+    block.end = from;
+    for (; from < records_.size(); ++from) {
+      if (is_empty(records_[from])) continue;
+      if (is_statistic(records_[from]))
+        block.statistics.push_back(statistic_of(records_[from]));
+      else
+        ++block.footers;
+    }
+  }
+
+  /// A row of names may bear that of a statistic: then the first row does, too.
+  bool is_statistic(const CsvRecord& record) const {
+    return !statistic_of(record).empty() && statistic_of(records_[blocks_.back().first]).empty();
   }
 
   const std::vector<CsvRecord>& records_;
@@ -273,6 +297,18 @@ bool is_row(const CsvRecord& record) {
 }
 
 bool is_words(const CsvRecord& record) { return !record.comment && !is_row(record); }
+
+std::string statistic_of(const CsvRecord& record) {
+  static const std::set<std::string> names{
+      "average", "avg",      "mean",    "median", "max",      "maximum",    "min",    "minimum",
+      "sd",      "std",      "stdev",   "stddev", "standard", "sum",        "total",  "count",
+      "range",   "rms",      "cv",      "rsd",    "stdabw",   "mittelwert", "mittel", "standardabweichung",
+      "varianz", "variance", "moyenne", "media",  "ecart",    "se",         "sem",    "summe",
+      "anzahl"};
+  const auto first = std::find_if(record.fields.begin(), record.fields.end(), [](const auto& f) { return !f.empty(); });
+  if (record.comment || first == record.fields.end()) return "";
+  return names.contains(lower_case(first->substr(0, first->find_first_of(" .:_-(")))) ? *first : "";
+}
 
 bool is_measurement(const CsvRecord& record) {
   std::size_t numbers = 0, words = 0;

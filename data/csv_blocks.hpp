@@ -10,13 +10,14 @@ namespace data {
 
 struct CsvBlock {
   std::vector<std::string> headings;
-  std::vector<std::string> units;  ///< of a row below the heading, without brackets; empty where there is none
-  bool in_comment = false;         ///< the heading
-  int line = 0, units_line = 0;    ///< in the file; 0: no row of units
-  std::size_t heading = 0;         ///< of the records; in a comment: its first row
-  std::size_t first = 0, end = 0;  ///< of the records: its rows, and lines among them
-  std::size_t rows = 0;            ///< with as many fields as the heading
-  std::size_t footers = 0;         ///< lines of words below its rows, of the last block
+  std::vector<std::string> units;       ///< of a row below the heading, without brackets; empty where there is none
+  bool in_comment = false;              ///< the heading
+  int line = 0, units_line = 0;         ///< in the file; 0: no row of units
+  std::size_t heading = 0;              ///< of the records; in a comment: its first row
+  std::size_t first = 0, end = 0;       ///< of the records: its rows, and lines among them
+  std::size_t rows = 0;                 ///< with as many fields as the heading
+  std::size_t footers = 0;              ///< lines of words below its rows, of the last block
+  std::vector<std::string> statistics;  ///< what the lines of statistics there call themselves: "Average"
 };
 
 /// Every heading with its rows, in the order of the file. A line of words is a heading where a row with as many fields
@@ -37,6 +38,9 @@ bool is_words(const CsvRecord& record);
 bool is_measurement(const CsvRecord& record);
 
 bool holds_number(const CsvRecord& record);
+
+/// What a line calls itself that begins with the name of a statistic: "Average", "Std. dev.:"; empty: no such name.
+std::string statistic_of(const CsvRecord& record);
 
 /// The number of fields up to the last one that is not empty.
 std::size_t without_trailing(const std::vector<std::string>& fields);

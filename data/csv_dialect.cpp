@@ -119,7 +119,11 @@ std::string separator_name(char separator) {
 
 bool is_comment(std::string_view line, std::string_view& rest) {
   const std::string_view text = trimmed(line);
-  const std::size_t signs = text.starts_with("//") ? 2 : !text.empty() && (text[0] == '#' || text[0] == '%') ? 1 : 0;
+  // A spreadsheet that quotes every cell begins a comment with a quote; a '%' alone in the first cell is a unit.
+  const bool per_cent = text.size() > 1 && text[0] == '%' && text.find_first_of(",;\t|") != 1;
+  const std::size_t signs = text.starts_with("//") || text.starts_with("\"#") ? 2
+                            : text.starts_with('#') || per_cent               ? 1
+                                                                              : 0;
   if (signs == 0) return false;
   rest = text.substr(signs);
   if (!rest.empty() && rest.front() == ' ') rest.remove_prefix(1);
@@ -129,13 +133,19 @@ bool is_comment(std::string_view line, std::string_view& rest) {
 std::vector<std::string> split_line(std::string_view line, char separator) {
   std::vector<std::string> fields;
   if (separator == ' ') {
-    // What stands in brackets is one with the word before: "torque [N m]".
+    // What stands in quotes is one field; what stands in brackets is one with the word before: "torque [N m]".
     std::string field;
     int depth = 0;
+    bool quoted = false;
+    const bool quotes = std::count(line.begin(), line.end(), '"') % 2 == 0;
     for (const char c : line) {
+      if (quotes && c == '"') {
+        quoted = !quoted;
+        continue;
+      }
       if (c == '[' || c == '(') ++depth;
       if ((c == ']' || c == ')') && depth > 0) --depth;
-      if (depth == 0 && (c == ' ' || c == '\t')) {
+      if (depth == 0 && !quoted && (c == ' ' || c == '\t')) {
         if (!field.empty()) fields.push_back(std::move(field));
         field.clear();
       } else {

@@ -99,9 +99,10 @@ void read_rows(CsvTable& table) {
     const auto changes =
         k == 0 ? std::vector<std::optional<UnitChange>>(table.csv.headings.size()) : changes_to_first(table, k);
     converted += std::any_of(changes.begin(), changes.end(), [](const auto& one) { return one.has_value(); });
+    if (k > 0) table.csv.sections.push_back(table.csv.rows.size());
     for (std::size_t i = block.first; i < block.end; ++i) {
       const CsvRecord& record = table.records[i];
-      if (record.comment) continue;
+      if (record.comment || without_trailing(record.fields) == 0) continue;
       auto fields = fields_of(table, record, trailing);
       if (!fields) {
         ++repeated;
@@ -119,8 +120,12 @@ void read_rows(CsvTable& table) {
   if (converted > 0)
     table.csv.took.push_back(
         fmt::format("the rows of {} of them converted to the units of line {}", converted, table.csv.header_line));
-  if (table.blocks.back().footers > 0)
-    table.csv.took.push_back(fmt::format("{} lines of words below the table left out", table.blocks.back().footers));
+  const CsvBlock& last = table.blocks.back();
+  if (last.footers > 0)
+    table.csv.took.push_back(fmt::format("{} of words below the table left out", counted(last.footers, "line")));
+  if (!last.statistics.empty())
+    table.csv.took.push_back(fmt::format("{} of statistics below the table left out ({})",
+                                         counted(last.statistics.size(), "line"), fmt::join(last.statistics, ", ")));
 }
 
 }  // namespace

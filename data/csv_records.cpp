@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "data/error.hpp"
 #include "data/number_text.hpp"
@@ -92,6 +93,26 @@ class Reader {
   int line_;
 };
 
+/// R's write.table names no column of row names: every row has one field more than the heading.
+void name_column_of_row_names(std::vector<CsvRecord>& records) {
+  CsvRecord* heading = nullptr;
+  std::set<std::string> names;
+  std::size_t rows = 0;
+  for (CsvRecord& record : records) {
+    if (record.comment) continue;
+    if (heading == nullptr) {
+      heading = &record;
+      continue;
+    }
+    if (record.fields.size() != heading->fields.size() + 1) return;
+    names.insert(record.fields.front());
+    ++rows;
+  }
+  const auto is_number = [](const std::string& field) { return plain_number(field, DecimalMark::point).has_value(); };
+  if (rows < 2 || names.size() < rows || std::any_of(heading->fields.begin(), heading->fields.end(), is_number)) return;
+  heading->fields.insert(heading->fields.begin(), "");
+}
+
 }  // namespace
 
 std::vector<CsvRecord> read_records(std::string_view text, const Dialect& dialect, const std::string& file) {
@@ -112,6 +133,7 @@ std::vector<CsvRecord> read_records(std::string_view text, const Dialect& dialec
           std::all_of(record.fields.begin(), record.fields.end(), [](const std::string& one) { return one.empty(); });
     if (!gap || record.fields.size() > 1) records.push_back(std::move(record));
   }
+  if (dialect.separator == ' ' || dialect.separator == '\t') name_column_of_row_names(records);
   return records;
 }
 

@@ -30,7 +30,8 @@ std::vector<int> numbers_left_out(const CsvTable& table, bool above) {
     from = block.end;
   }
   for (; from < table.records.size(); ++from)
-    if (holds_number(table.records[from])) lines.push_back(table.records[from].line);
+    if (holds_number(table.records[from]) && statistic_of(table.records[from]).empty())
+      lines.push_back(table.records[from].line);
   return lines;
 }
 

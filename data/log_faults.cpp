@@ -212,6 +212,8 @@ std::optional<double> dies_at(const TorqueLog& log, const Plateau& plateau) {
   return log.time[end];
 }
 
+constexpr double coarse_speed = 0.01;  // of a speed: half a step of the tachometer
+
 std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau) {
   std::vector<std::string> words;
   const Unit& unit = log.torque_unit;
@@ -250,6 +252,9 @@ std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& pla
           "{:.2g} {} beyond its error",
           at, levels.size(), step / unit.factor, unit.symbol, 0.5 * step / unit.factor, unit.symbol));
   }
+  if (0.5 * plateau.speed_step > coarse_speed * std::abs(plateau.speed))
+    words.push_back(fmt::format("{}: the tachometer counts in steps of {:.3g} {}: the speed may be off by half of one",
+                                at, plateau.speed_step / log.speed_unit.factor, log.speed_unit.symbol));
   if (plateau.off_speed > 0.1)
     words.push_back(
         fmt::format("{}: {:.0f} % of the samples lie off that speed by more than the tolerance: the tachometer is "

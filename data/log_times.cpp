@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "data/time_series.hpp"
@@ -24,6 +25,24 @@ std::vector<std::size_t> starts_of(const std::vector<double>& times) {
 }
 
 }  // namespace
+
+bool join_sections(std::vector<double>& times, const std::vector<std::size_t>& starts) {
+  bool joined = false;
+  for (const std::size_t start : starts) {
+    const auto split = times.begin() + static_cast<std::ptrdiff_t>(start);
+    const auto is_time = [](double time) { return std::isfinite(time); };
+    const auto first = std::find_if(split, times.end(), is_time);
+    std::vector<double> before;
+    std::copy_if(times.begin(), split, std::back_inserter(before), is_time);
+    if (first == times.end() || before.size() < 2 || *first > before.back()) continue;
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < before.size(); ++i) steps.push_back(before[i] - before[i - 1]);
+    const double shift = before.back() + median_of(std::move(steps)) - *first;
+    std::for_each(split, times.end(), [shift](double& time) { time += shift; });
+    joined = true;
+  }
+  return joined;
+}
 
 std::size_t pass_midnight(std::vector<double>& times, bool of_day) {
   std::size_t midnights = 0;

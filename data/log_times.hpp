@@ -1,9 +1,14 @@
 #pragma once
 // The times of a log's samples, out of what its logger stamped.
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace data {
+
+/// Sections of a log (`starts`: the first sample of each but the first) one behind the other, in place: where a section's time
+/// begins again, it follows the one before by that one's usual interval. Returns whether any did. Samples without a time are NaN.
+bool join_sections(std::vector<double>& times, const std::vector<std::size_t>& starts);
 
 /// Times made good in place: those of a clock that started again at midnight go on. Returns how many midnights there
 /// were. `of_day`: the stamps are times of day; else only seconds that fall from the end of a day to the start of one

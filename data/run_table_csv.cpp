@@ -225,7 +225,9 @@ class RowNotes {
   /// "is empty, the row is left out" of a field; `what` names the one row, `whats` several.
   void add(const CsvRow& row, std::size_t column, const char* what, const char* whats) {
     const std::string& field = row.fields[column];
-    const std::string found = field.empty() ? "is empty" : "is " + field;
+    const std::string found = field.empty()                                  ? "is empty"
+                              : !is_missing(field) && says_failed("", field) ? "says '" + field + "'"
+                                                                             : "is " + field;
     const auto same = std::find_if(notes_.begin(), notes_.end(), [&](const Note& note) {
       return note.column == column && note.found == found && note.what == what;
     });
@@ -261,6 +263,11 @@ class RowNotes {
   std::vector<Note> notes_;
 };
 
+/// Whether a result is there. Some codes write in its place that the run failed.
+bool has_number(const Csv& csv, const CsvRow& row, std::size_t column) {
+  return !says_failed("", row.fields[column]) && std::isfinite(csv.number(row, column));
+}
+
 /// Columns of a row in which a number is missing or not finite.
 struct Missing {
   std::optional<std::size_t> input;  ///< the first: the row is of no use
@@ -272,9 +279,9 @@ Missing not_finite(const Csv& csv, const CsvRow& row, const Columns& at) {
   for (const std::size_t column : at.inputs)
     if (!missing.input && !std::isfinite(csv.number(row, column))) missing.input = column;
   for (std::size_t i = 0; i < at.outputs.size(); ++i) {
-    if (!std::isfinite(csv.number(row, at.outputs[i]))) {
+    if (!has_number(csv, row, at.outputs[i])) {
       missing.outputs.push_back(at.outputs[i]);
-    } else if (at.errors[i] && !std::isfinite(csv.number(row, *at.errors[i]))) {
+    } else if (at.errors[i] && !has_number(csv, row, *at.errors[i])) {
       missing.outputs.push_back(*at.errors[i]);
     }
   }
@@ -328,8 +335,7 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
     for (std::size_t i = 0; i < at.inputs.size(); ++i)
       row.inputs.push_back(input_units[i].to_si(line.fields[at.inputs[i]]));
     for (std::size_t i = 0; i < at.outputs.size(); ++i) {
-      if (!std::isfinite(csv.number(line, at.outputs[i])) ||
-          (at.errors[i] && !std::isfinite(csv.number(line, *at.errors[i])))) {
+      if (!has_number(csv, line, at.outputs[i]) || (at.errors[i] && !has_number(csv, line, *at.errors[i]))) {
         row.outputs.push_back(std::numeric_limits<double>::quiet_NaN());
         row.standard_errors.push_back(std::numeric_limits<double>::quiet_NaN());
         continue;

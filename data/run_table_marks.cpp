@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "data/copies.hpp"
 #include "data/number_text.hpp"
@@ -85,6 +87,85 @@ void leave_out_zeros(TableRead& read) {
   }
 }
 
+/// What the runs of an output that are not `value` give; SI.
+struct OtherRuns {
+  std::size_t count = 0;
+  double least = HUGE_VAL, largest = 0.0;  ///< magnitudes
+  bool one_sign = true;
+};
+
+OtherRuns runs_beside(const RunTable& table, std::size_t output, double value) {
+  OtherRuns others;
+  double sign = 0.0;
+  for (const RunRow& row : table.rows) {
+    const double one = row.outputs[output];
+    if (row.left_out || !std::isfinite(one) || one == value) continue;
+    ++others.count;
+    others.least = std::min(others.least, std::abs(one));
+    others.largest = std::max(others.largest, std::abs(one));
+    others.one_sign = others.one_sign && one * sign >= 0.0;
+    sign = one;
+  }
+  return others;
+}
+
+/// Whether an input parts these rows from all others that are learnt from: then what they give is the model's.
+bool are_apart(const RunTable& table, const std::vector<RunRow*>& rows) {
+  const std::set<const RunRow*> these(rows.begin(), rows.end());
+  for (std::size_t i = 0; i < rows.front()->inputs.size(); ++i) {
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (const RunRow& row : table.rows) {
+      if (row.left_out) continue;
+      const std::size_t side = these.contains(&row) ? 0 : 1;
+      low[side] = std::min(low[side], row.inputs[i]);
+      high[side] = std::max(high[side], row.inputs[i]);
+    }
+    if (high[0] < low[1] || high[1] < low[0]) return true;
+  }
+  return false;
+}
+
+/// Runs that wrote one number in the place of a result: far beyond all others (1e30, 9999), or exactly 0 where all others lie
+/// well away from it.
+void leave_out_stand_ins(TableRead& read) {
+  constexpr std::size_t several = 3;                       // equal to the last digit, at different inputs
+  constexpr double far = 10.0, absurd = 1e6, away = 0.05;  // of the largest of the others
+  RunTable& table = read.table;
+  for (std::size_t k = 0; k < table.outputs.size(); ++k) {
+    std::map<double, std::vector<RunRow*>> rows_of;
+    for (RunRow& row : table.rows)
+      if (!row.left_out && std::isfinite(row.outputs[k])) rows_of[row.outputs[k]].push_back(&row);
+    for (auto& [value, rows] : rows_of) {
+      const OtherRuns others = runs_beside(table, k, value);
+      if (others.count < several || rows.size() > others.count) continue;
+      const bool beyond = std::abs(value) > (rows.size() < several ? absurd : far) * others.largest;
+      const bool nothing = value == 0.0 && rows.size() >= several && others.one_sign &&
+                           others.least > away * others.largest && !are_apart(table, rows);
+      std::set<std::vector<double>> points;
+      for (const RunRow* row : rows) points.insert(row->inputs);
+      if (!(beyond || nothing) || (rows.size() >= several && points.size() < several)) continue;
+      std::vector<std::string> places;
+      for (RunRow* row : rows) {
+        places.push_back(row->place);
+        row->outputs[k] = NAN;
+        row->standard_errors[k] = NAN;
+        if (std::all_of(row->outputs.begin(), row->outputs.end(), [](double one) { return !std::isfinite(one); }))
+          row->left_out = {LeftOut::Because::it_failed, "one number in the place of a result: a run that failed"};
+      }
+      const Column& column = table.outputs[k];
+      Finding finding = about_rows(FindingKind::failed_runs, Severity::warning, places);
+      finding.what = fmt::format(
+          "{} {} of {} {:.6g}, where the magnitudes of the others lie from {:.4g} to {:.4g}{}: no result of a run, and left "
+          "out",
+          rows.size(), rows.size() == 1 ? "row gives a value" : "rows give a value", column.name,
+          column.unit.from_si(value), column.unit.from_si(others.least), column.unit.from_si(others.largest),
+          behind_number(column.unit.symbol));
+      finding.remedy = "remove them, write nan, or name them in [training] leave_out";
+      read.findings.push_back(std::move(finding));
+    }
+  }
+}
+
 void leave_out_copies(TableRead& read) {
   RunTable& table = read.table;
   std::vector<RepeatableRow> rows;
@@ -158,6 +239,7 @@ bool says_failed(std::string_view column, std::string_view field) {
 void mark_rows(TableRead& read, const std::string&, const Study& study) {
   leave_out_named(read, study);
   leave_out_zeros(read);
+  leave_out_stand_ins(read);
   leave_out_copies(read);
 }
 

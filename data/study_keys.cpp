@@ -35,7 +35,10 @@ bool begins(const std::vector<std::string>& words, const std::vector<std::string
 std::string kind_of(const StudyKey& key) {
   std::string text(key.type);
   if (text.starts_with("choice")) return fmt::format("one of {}{}", key.range, text.substr(6));
-  if (!key.unit.empty() && key.unit != "1") text += fmt::format(" with a unit of {}", key.unit);
+  if (key.unit == "own")
+    text += " in its own unit";
+  else if (!key.unit.empty())
+    text += fmt::format(" with a unit of {}", key.unit);
   if (!key.range.empty()) text += fmt::format(", {}", key.range);
   return text;
 }

@@ -10,10 +10,12 @@
 namespace data {
 
 struct StudyKey {
-  std::string_view name;      ///< dotted, NAME for what the user names: "parameters.NAME.low"
-  std::string_view type;      ///< as AskedKey::type
-  std::string_view unit;      ///< SI unit whose dimension a value must have; empty: none, or that of the section
-  std::string_view range;     ///< in that unit: "[0, 1]", "]0, inf["; of a choice its words: "linear, log"
+  std::string_view name;  ///< dotted, NAME for what the user names: "parameters.NAME.low"
+  std::string_view type;  ///< as AskedKey::type
+  std::string_view unit;  ///< SI unit whose dimension a value must have; empty: none; "own": that of the parameter or
+                          ///< control that it is of, which also bare numbers have
+  std::string_view
+      range;  ///< in that unit: "[0, 1]", "]0, inf["; of a choice its words: "linear, log", or "the outputs"
   std::string_view fallback;  ///< in words or in that unit; empty: there is none
   std::string_view meaning;
   std::string_view example;  ///< TOML

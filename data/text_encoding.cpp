@@ -71,8 +71,8 @@ std::string from_windows_1252(std::string_view bytes) {
   return text;
 }
 
-/// Whether all that is not ASCII is Shift-JIS, kana or kanji of the first plane among it. Their first byte, 0x82 to
-/// 0x9f, is a control character in Latin-1.
+/// Whether all that is not ASCII is Shift-JIS, with kana or kanji of the first plane or wide brackets among it. Their first
+/// byte, 0x81 to 0x9f, is a control character in Latin-1.
 bool is_shift_jis(std::string_view bytes) {
   bool japanese = false;
   for (std::size_t at = 0; at < bytes.size(); ++at) {
@@ -81,7 +81,8 @@ bool is_shift_jis(std::string_view bytes) {
     if (c == 0x80 || c == 0xa0 || c > 0xfc || at + 1 == bytes.size()) return false;
     const std::uint8_t second = byte(bytes, ++at);
     if (second < 0x40 || second == 0x7f || second > 0xfc) return false;
-    japanese = japanese || (c >= 0x82 && c <= 0x9f);
+    const bool bracket = c == 0x81 && (second == 0x69 || second == 0x6a || second == 0x6d || second == 0x6e);
+    japanese = japanese || (c >= 0x82 && c <= 0x9f) || bracket;
   }
   return japanese;
 }

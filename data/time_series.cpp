@@ -7,7 +7,9 @@
 // dropped only when their own mean differs from the mean of the rest by more than `start_up_significance` standard
 // errors, and they die away towards the rest or lie outside of its fluctuations: a slow fluctuation, of which the rest
 // has seen too little to know its errors, does neither. Or, for a start-up whose mean happens to agree, when their
-// variance is that of another process (over four times the rest's). Otherwise everything is kept.
+// variance is that of another process (over four times the rest's). In both cases most of them must be away, as medians
+// tell: rare bursts, of which the first batches have more by chance, are part of a stationary series. Otherwise everything
+// is kept.
 //
 // Spikes. One sample S standard deviations away would have the batches before it dropped, as long as they are fewer
 // than S^2 / 3 samples, and hide a true start-up behind the variance that it adds. So the start is chosen in the series
@@ -41,6 +43,7 @@ constexpr std::size_t window_max = 1000;  // samples
 constexpr double start_up_significance = 3.0;
 constexpr double outside_fluctuations = 3.0;  // standard deviations of a sample
 constexpr double dying_away = 2.0;            // the deviation of the first third over that of the last one
+constexpr double no_bursts = 0.2;             // of the head's deviation, that of its median; less is a few bursts'
 constexpr double spike_distance = 8.0;        // robust standard deviations
 constexpr double to_sd = 1.4826;              // of a median absolute deviation, of a normal distribution
 
@@ -172,18 +175,28 @@ bool dies_away(std::span<const double> head, double level) {
   return std::abs(first) > dying_away * std::abs(last);
 }
 
+/// Median distance from a level.
+double median_distance(std::span<const double> x, double level) {
+  std::vector<double> away;
+  for (const double value : x) away.push_back(std::abs(value - level));
+  return median_of(std::move(away));
+}
+
 /// Whether the first `d` samples belong to another process than the rest.
 bool is_start_up(std::span<const double> series, std::size_t d, const SeriesMean& rest) {
-  const std::span<const double> head = series.first(d);
-  const double head_mean = mean_of(head);
+  const std::span<const double> head = series.first(d), tail = series.subspan(d);
   const double independent = std::max(1.0, static_cast<double>(d) / rest.integrated_time);
   const double error = std::hypot(rest.standard_error, rest.sd / std::sqrt(independent));
-  const double away = std::abs(head_mean - rest.mean);
-  if (away > start_up_significance * error && (away > outside_fluctuations * rest.sd || dies_away(head, rest.mean)))
+  const double middle = median_of({tail.begin(), tail.end()});
+  const double away = std::abs(mean_of(head) - rest.mean);
+  const double typical = std::abs(median_of({head.begin(), head.end()}) - middle);
+  if (away > start_up_significance * error && typical > no_bursts * away &&
+      (away > outside_fluctuations * rest.sd || dies_away(head, rest.mean)))
     return true;
   double squares = 0.0;
   for (const double value : head) squares += (value - rest.mean) * (value - rest.mean);
-  return independent >= 10.0 && squares / static_cast<double>(d) > 4.0 * rest.sd * rest.sd;
+  return independent >= 10.0 && squares / static_cast<double>(d) > 4.0 * rest.sd * rest.sd &&
+         median_distance(head, middle) > 2.0 * median_distance(tail, middle);
 }
 
 /// The least scale of a spike's neighbourhood, from the distances of all samples from their medians.

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 
 #include "data/steadiness.hpp"
 
@@ -71,6 +73,25 @@ void mark_ramps(const TorqueLog& log, std::vector<Plateau>& plateaus, double tol
   };
   for (std::size_t k = 1; k < plateaus.size(); ++k) goes_on(k - 1, k);
   for (std::size_t k = plateaus.size(); k-- > 1;) goes_on(k, k - 1);
+}
+
+/// The step in which the tachometer counts, or 0: every difference between speeds of the log is a multiple of it. A column of
+/// wanted speeds has no more values than holds; a tachometer has others in the ramps between them.
+double tachometer_step(const TorqueLog& log, std::size_t holds) {
+  constexpr std::size_t most = 1000;  // values; more are no steps
+  std::set<double> values;
+  for (const double speed : log.speed) {
+    values.insert(speed);
+    if (values.size() > most) return 0.0;
+  }
+  if (values.size() < 2 * holds + 4) return 0.0;
+  double step = HUGE_VAL;
+  for (auto one = values.begin(); std::next(one) != values.end(); ++one) step = std::min(step, *std::next(one) - *one);
+  const bool multiples = std::all_of(values.begin(), values.end(), [&](double speed) {
+    const double steps = (speed - *values.begin()) / step;
+    return std::abs(steps - std::round(steps)) < 0.1;
+  });
+  return multiples ? step : 0.0;
 }
 
 /// Mean and sd of the speed over what is used. Single dropouts count in neither. Where many samples lie off, the
@@ -286,6 +307,11 @@ std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& 
   }
   join_swings(log, plateaus, options);
   mark_ramps(log, plateaus, options.tolerance);
+  const double step = tachometer_step(log, plateaus.size());
+  for (Plateau& plateau : plateaus) {
+    plateau.speed_step = step;
+    plateau.speed_sd = std::hypot(plateau.speed_sd, step / std::sqrt(12.0));  // a value within the step may be any
+  }
   return plateaus;
 }
 

@@ -80,6 +80,7 @@ struct Plateau {
   bool ramp = false;                   ///< the speed changes all the time, slowly: no plateau
   double speed = 0.0, speed_sd = 0.0;  ///< rad/s, of the samples used
   double off_speed = 0.0;              ///< share of these that lie off it by more than the tolerance
+  double speed_step = 0.0;             ///< rad/s, of the tachometer; its rounding is in speed_sd
   SeriesMean torque;                   ///< N m
 
   /// Uncorrelated samples that would tell as much; an estimate, at most the samples used.

@@ -55,6 +55,7 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::stri
   if (option == "time" && !csv.no_time.empty())
     refuse_data(csv.file, csv.no_time, "give the samples per second with --rate, if they are even all through");
   std::string remedy = fmt::format("name it with --{}", option);
+  if (option == "rpm") remedy += ", or give the speed of the whole log with --constant-speed";
   if (csv.columns.size() == 1)
     remedy = "its columns are not parted by commas, semicolons, tabs or blanks, or it has one column only";
   refuse_data(
@@ -303,6 +304,8 @@ std::vector<double> times_of(const Csv& csv, std::size_t column, const LogColumn
   }
   Stamps stamps = read_stamps(csv, column, columns.time);
   log.took.insert(log.took.end(), stamps.took.begin(), stamps.took.end());
+  if (!stamps.clock && join_sections(stamps.seconds, csv.sections))
+    log.took.push_back("a time that begins again with each heading: the sections joined one behind the other");
   std::vector<double> there;
   for (const double one : stamps.seconds)
     if (std::isfinite(one)) there.push_back(one);

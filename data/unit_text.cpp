@@ -120,6 +120,12 @@ bool is_form_of_times(std::string_view text) {
          lower_case(text).find_first_not_of("hmsdyf:.,/- tz") == std::string::npos;
 }
 
+/// What instruments write for a number without unit.
+bool is_word_for_none(const std::string& text) {
+  const std::string word = lower_case(text);
+  return word == "dimensionless" || word == "unitless" || word == "dimless";
+}
+
 std::optional<Unit> known(const std::string& symbol, std::string_view dimension) {
   try {
     if (!symbol.empty() && convertible(symbol, dimension)) return parse_unit(symbol);
@@ -135,7 +141,8 @@ std::optional<Unit> unit_meant(std::string_view given, std::string_view dimensio
   const std::string text = normalised(given);
   if (auto unit = known(text, dimension)) return unit;
   if (auto unit = known(torque_spelling(text), dimension)) return unit;
-  if (text == "-" && convertible(dimension, "1")) return parse_unit("1");
+  if ((text == "-" || lower_case(text) == "none" || is_word_for_none(text)) && convertible(dimension, "1"))
+    return parse_unit("1");
   if (convertible(dimension, "rpm"))
     if (auto unit = known(rotation_spelling(text), dimension)) return unit;
   if (convertible(dimension, "s"))
@@ -147,7 +154,8 @@ std::optional<Unit> unit_meant(std::string_view given, std::string_view dimensio
 
 bool is_unit(std::string_view given) {
   const std::string text = normalised(given);
-  if (text == "-" || text == "1" || text == "%" || is_form_of_times(text)) return true;
+  if (text == "-" || text == "1" || text == "%" || is_form_of_times(text) || is_word_for_none(text)) return true;
+  if (plain_number(text, DecimalMark::point) || plain_number(text, DecimalMark::comma)) return false;  // "5.00E+01"
   if (text.find_first_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ\xc2") == std::string::npos) return false;
   try {
     parse_unit(text);
@@ -159,8 +167,25 @@ bool is_unit(std::string_view given) {
   return false;
 }
 
+namespace {
+
+/// Brackets, slash and per cent as Japanese and Chinese keyboards write them, as wide as a letter of theirs.
+std::string half_width(std::string text) {
+  for (const auto& [from, to] :
+       std::initializer_list<std::pair<std::string_view, std::string_view>>{{"\xef\xbc\x88", "("},
+                                                                            {"\xef\xbc\x89", ")"},
+                                                                            {"\xef\xbc\xbb", "["},
+                                                                            {"\xef\xbc\xbd", "]"},
+                                                                            {"\xef\xbc\x8f", "/"},
+                                                                            {"\xef\xbc\x85", "%"}})
+    replace_all(text, from, to);
+  return text;
+}
+
+}  // namespace
+
 Heading read_heading(std::string_view given) {
-  const std::string text(trimmed(given));
+  const std::string text = half_width(std::string(trimmed(given)));
   const auto part = [&](std::size_t from, std::size_t count = std::string::npos) {
     return std::string(trimmed(std::string_view(text).substr(from, count)));
   };

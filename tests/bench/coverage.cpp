@@ -349,8 +349,7 @@ void faults(const Options& options) {
   constexpr int truths = 6;
   fmt::print(
       "| fault | not good | scatter note | distance below 0.01 | nugget over stated error, median | 50 % intervals "
-      "hold | "
-      "90 % hold |\n|---|---|---|---|---|---|---|\n");
+      "hold | 90 % hold |\n|---|---|---|---|---|---|---|\n");
   for (const Fault& fault : kinds) {
     int n = 0, noticed = 0, scatter = 0, distance = 0;
     std::vector<double> ratio;

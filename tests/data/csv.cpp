@@ -131,8 +131,21 @@ TEST_CASE("a table gives the same numbers however it is written, and says how it
       {std::string(plain) + "200,8.0" + std::string(9, '\0'), "the line that breaks off there left out"},
       {with(plain, "9.95952", "9.95952D+00"), ""},
       {with(plain, "1234.5", "1'234.5"), ""},
-      {std::string(plain) + "End of file\n", "1 lines of words below the table left out"},
+      {std::string(plain) + "End of file\n", "1 line of words below the table left out"},
+      {std::string(plain) + "\nAverage,9.9,0.2\nStd. dev.:,1.5,0\n",
+       "2 lines of statistics below the table left out (Average, Std. dev.:)"},
+      {"sample,speed,torque,torque_se\nA,50,9.95952,0.204\nB,100,9.37955,0.192\nmax,150,1234.5,0.18\n\nMean,,9.5,\n",
+       "1 line of statistics below the table left out (Mean)"},
       {"speed [rpm],torque (mNm),\"torque_se, mNm\"\n" + rows, ""},
+      {"speed,torque,torque_se\n5.00E+01,9.95952E+00,2.04E-01\n1.00E+02,9.37955e+00,1.92e-01\n150,1.2345E3,.18\n", ""},
+      {std::string(plain) + "\nNote: dried, sieved and conditioned.\n* by hand, in air\n", "2 lines of words below"},
+      {"\"speed\" \"torque\" \"torque_se\"\n" + with(rows, ",", " "), "separated by blanks"},
+      {"\"speed\" \"torque\" \"torque_se\"\n\"1\" 50 9.95952 0.204\n\"2\" 100 9.37955 0.192\n\"3\" 150 1234.5 0.18\n",
+       "separated by blanks"},
+      {"speed,torque,torque_se\nrpm,mN m,mN m\nset,measured,of the mean\n" + rows, "units in line 2"},
+      {with(plain, "100,", ",,\n100,"), ""},
+      {"speed\xef\xbc\x88rpm\xef\xbc\x89,torque\xef\xbc\xbbmN m\xef\xbc\xbd,torque_se\n" + rows, ""},
+      {"speed\x81\x69rpm\x81\x6a,torque,torque_se\n" + rows, "Shift-JIS"},
       {with(plain, "100,", "speed,torque,torque_se\n100,"), "the heading again in line 3: the rows joined"},
   };
   for (const auto& [text, took] : written) {
@@ -141,6 +154,17 @@ TEST_CASE("a table gives the same numbers however it is written, and says how it
     CHECK(data::parse_csv(text, "bench.csv").took_line().find(took) != std::string::npos);
   }
   CHECK(data::parse_csv(plain, "bench.csv").took_line().empty());
+}
+
+TEST_CASE("a per cent in the row of units is a unit, and in a comment it begins one") {
+  CHECK(data::parse_csv("share,torque\n%,mN m\n40,2\n", "t.csv").units == std::vector<std::string>{"%", "mN m"});
+  CHECK(data::parse_csv("% by hand\nshare,torque\n40,2\n", "t.csv").comments == std::vector<std::string>{"by hand"});
+}
+
+TEST_CASE("units in a comment are read where a spreadsheet has quoted every cell") {
+  const data::Csv csv =
+      data::parse_csv("\"# units: speed [rpm]\",\" torque [N m]\"\n\"speed\",\"torque\"\n\"50\",\"2\"\n", "t.csv");
+  CHECK(csv.units == std::vector<std::string>{"rpm", "N m"});
 }
 
 namespace {
@@ -234,8 +258,7 @@ TEST_CASE("a column is found whatever its capitals, and an error in a field is a
   CHECK(failure("M,Speed\n1,2\n").find("the column 'torque' is missing") != std::string::npos);
   CHECK(failure("speed,torque\n1,9.42 \xc2\xb1 0.28\n") ==
         "65: bench.csv:2: torque: '9.42 \xc2\xb1 0.28' is a number with an error (write the error into a column of its "
-        "own, "
-        "torque_se, if it is the standard error of the mean)");
+        "own, torque_se, if it is the standard error of the mean)");
 }
 
 TEST_CASE("a name that two columns have matters where it is asked for and they differ") {

@@ -91,8 +91,7 @@ TEST_CASE("a LabVIEW file without X values has its times by X0 and Delta_X, one 
   check_four(log_of(multi.one(twice)));
   CHECK(refusal(multi.one("0.0\t60.0\t0.0\t1.5\n0.1\t60.5\t0.25\t1.25\n")) ==
         "65: log.lvm:25: the channels are sampled at different times, 0.1 s and 0.25 s (write them on one clock "
-        "(X_Columns "
-        "One), or each into a file of its own)");
+        "(X_Columns One), or each into a file of its own)");
 }
 
 TEST_CASE("units of a LabVIEW file are those in the names, then the labels that are units") {

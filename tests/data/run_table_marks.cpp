@@ -70,6 +70,30 @@ TEST_CASE("an output of 0 with a standard error of 0 among others that have erro
   CHECK(data::used_rows(read("0.4,100,8.1,0\n0.5,100,0,0\n0.6,100,9,0\n").table) == 3);
 }
 
+TEST_CASE("one number in the place of several results is no result, whatever its error") {
+  const std::string good = "0.2,100,8,0.1\n0.3,150,9,0.1\n0.5,120,8.5,0.1\n0.7,250,7,0.1\n";
+  const auto left_out = [&](const std::string& more) {
+    const auto found = read(good + more);
+    const data::Finding* failed = find(found, "failed runs");
+    CHECK((failed != nullptr) == (data::used_rows(found.table) == 4));
+    return failed == nullptr ? std::vector<std::string>() : failed->places;
+  };
+  CHECK(left_out("0.4,100,1e30,1e30\n0.25,200,1e30,1e30\n0.6,90,1e30,1e30\n").size() == 3);
+  CHECK(left_out("0.4,100,9999,0.1\n0.25,200,9999,0.1\n0.6,90,9999,0.1\n").size() == 3);
+  CHECK(left_out("0.4,100,1.7e308,0.1\n").size() == 1);
+  CHECK(left_out("0.4,100,0,0.1\n0.25,200,0,0.1\n0.6,90,0,0.1\n").size() == 3);
+  CHECK(left_out("0.4,100,80,0.1\n").empty());                               // an outlier, for the surrogate to name
+  CHECK(left_out("0.1,100,0,0.1\n0.1,200,0,0.1\n0.15,90,0,0.1\n").empty());  // where friction is low: the model's
+  CHECK(left_out("0.4,100,9.5,0.1\n0.25,200,9.5,0.1\n0.6,90,9.5,0.1\n").empty());  // rounded
+}
+
+TEST_CASE("a word of failure instead of a result leaves the row out, and another word is no number") {
+  const auto found = read("0.2,100,8,0.1\n0.3,150,FAILED,\n0.5,120,diverged,0.1\n0.7,250,7,0.1\n");
+  CHECK(data::used_rows(found.table) == 2);
+  CHECK_THAT(found.left_out.at(0), Contains("runs.csv:3: torque") && Contains("says 'FAILED'"));
+  CHECK_THROWS_WITH(read("0.2,100,eight,0.1\n"), Contains("'eight' is not a number"));
+}
+
 TEST_CASE("words of failure in a status column leave the row out, and a column use is the user's own choice") {
   const auto status = read("0.4,100,8.1,0.1,ok\n0.5,100,3,0.1,FAILED\n0.6,100,9,0.1,done\n", "", header + ",status");
   CHECK(data::used_rows(status.table) == 2);

@@ -110,8 +110,7 @@ TEST_CASE("priors are read in the parameter's unit") {
   CHECK(beta.beta == 3.5);
   CHECK(failure_of(folder, [&] { prior("{ kind = \"uniform\", high = 11 }"); }) ==
         "78: study.toml:7: parameters.a.prior.high: 11 mJ/m2 is outside the parameter's range, 1 mJ/m2 to 10 mJ/m2 "
-        "(narrow "
-        "the prior or widen the range; nothing is simulated outside it)");
+        "(narrow the prior or widen the range; nothing is simulated outside it)");
   CHECK(failure_of(folder, [&] { prior("{ kind = \"normal\", mean = 4, sd = 0 }"); }) ==
         "78: study.toml:7: parameters.a.prior.sd: 0 is not above 0 mJ/m2 (choose a value above 0 mJ/m2)");
   CHECK(failure_of(folder, [&] { prior("{ kind = \"normal\", mean = 40, sd = 1 }"); }).find("over three sd away") !=
@@ -222,14 +221,12 @@ TEST_CASE("a case must give every parameter one role and name only what exists")
   CHECK(problem(case_with("free = [\"friction\", \"cohesion\"]\n")).empty());
   CHECK(problem(case_with("free = [\"friction\"]\n")) ==
         "78: study.toml:24: calibrate.powder.free: leaves out 'cohesion', which is not fixed either (add it to free, "
-        "or write "
-        "fixed = { cohesion = VALUE })");
+        "or write fixed = { cohesion = VALUE })");
   CHECK(problem(case_with("free = [\"friction\", \"cohesion\"]\nfixed = { cohesion = 1 }\n")) ==
         "78: study.toml:24: calibrate.powder.free: 'cohesion' is both free and fixed (name it in one of them)");
   CHECK(problem(case_with("free = [\"friction\"]\nfixed = { cohesion = 11 }\n")) ==
         "78: study.toml:25: calibrate.powder.fixed: cohesion = 11 mJ/m2 is outside its range, 0 to 10 (choose a value "
-        "inside, "
-        "where there are runs)");
+        "inside, where there are runs)");
   CHECK(problem(case_with("free = [\"fricton\", \"cohesion\"]\nfixed = { friction = 0.4 }\n")) ==
         "78: study.toml:24: calibrate.powder.free: 'fricton' is not a parameter (did you mean 'friction'?)");
   CHECK(problem(case_with(

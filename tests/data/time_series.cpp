@@ -127,6 +127,45 @@ TEST_CASE("a spike does not decide where a series begins, nor hides where it doe
         }
 }
 
+TEST_CASE("rare bursts of which the beginning has more by chance are no start-up") {
+  // Bursts of eight samples that die away, of exponential size, upon noise: as of a lump that the blade breaks now and then.
+  const int series = 200;
+  int truncated = 0;
+  double of_found = 0.0, of_all = 0.0;
+  for (int i = 0; i < series; ++i) {
+    data::RandomStream random(static_cast<std::uint64_t>(i), data::Purpose::test, 77);
+    std::vector<double> x(600);
+    for (double& value : x) value = 0.1 * random.normal();
+    double share = 0.0;  // of a burst of size 1, over the samples
+    for (int k = 0; k < 8; ++k) share += std::exp(-k / 3.0);
+    for (std::size_t t = 0; t < x.size(); ++t) {
+      x[t] -= 0.02 * share;
+      if (random.uniform() > 0.02) continue;
+      const double size = -std::log(random.uniform());
+      for (std::size_t k = 0; k < 8 && t + k < x.size(); ++k)
+        x[t + k] += size * std::exp(-static_cast<double>(k) / 3.0);
+    }
+    const data::SeriesMean found = data::mean_with_error(x);
+    truncated += found.dropped > 0 ? 1 : 0;
+    of_found += std::pow(found.mean, 2);
+    of_all += std::pow(data::mean_with_error(x, {.start_up_fraction_max = 0.0}).mean, 2);
+  }
+  INFO("truncated " << truncated << ", rms " << std::sqrt(of_found / of_all) << " of that of all");
+  CHECK(truncated <= 0.02 * series);
+  CHECK(of_found < 1.05 * 1.05 * of_all);
+}
+
+TEST_CASE("a beginning that decays is cut, also where its mean is near the scatter of the rest") {
+  int cut = 0;
+  const int series = 100;
+  for (int i = 0; i < series; ++i) {
+    std::vector<double> x = autoregressive(0.5, 600, 4000 + static_cast<std::uint32_t>(i));
+    for (std::size_t t = 0; t < x.size(); ++t) x[t] += 5.0 * std::exp(-static_cast<double>(t) / 30.0);
+    cut += data::mean_with_error(x).dropped >= 30 ? 1 : 0;
+  }
+  CHECK(cut >= 0.95 * series);
+}
+
 TEST_CASE("without its spikes, single ones and short bursts, a series has the mean that it had before them") {
   std::vector<double> x = autoregressive(0.8, 3000, 43);
   const data::SeriesMean before = data::mean_with_error(x);

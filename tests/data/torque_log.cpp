@@ -155,7 +155,7 @@ TEST_CASE("what is wrong with a log is named with its place and a remedy") {
         "--torque-unit)");
   CHECK(refusal("time,torque [N m],swiftness\n0,1,1\n") ==
         "65: log.csv:1: the column 'rpm' is missing (the columns are time, torque [N m], swiftness) (name it with "
-        "--rpm)");
+        "--rpm, or give the speed of the whole log with --constant-speed)");
   CHECK(refusal("time,torque [N],rpm\n0,1,1\n") ==
         "65: log.csv:1: 'N' is not a unit of torque (a unit like 'N m'; --torque-unit overrides the header)");
   CHECK(refusal("time,torque [N m],rpm\n0,1,1\n1,1,1\n1,1,1\n") ==

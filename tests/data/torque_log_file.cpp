@@ -181,6 +181,42 @@ TEST_CASE("an instrument's export of one section a hold is one log") {
   CHECK(log.speed.front() == Approx(5.25));
 }
 
+TEST_CASE("sections whose time begins again follow each other") {
+  std::string text = "time [s],torque [mN m],rpm\n";
+  for (int hold = 0; hold < 3; ++hold) {
+    if (hold > 0) text += "time [s],torque [mN m],rpm\n";
+    for (int i = 0; i < 40; ++i) text += fmt::format("{},{},{}\n", 0.5 * i, 1 + hold, 50 * (1 + hold));
+  }
+  const data::TorqueLog log = log_of(text);
+  REQUIRE(log.time.size() == 120);
+  for (std::size_t i = 0; i < log.time.size(); ++i) CHECK(log.time[i] == Approx(0.5 * static_cast<double>(i)));
+  CHECK_THAT(fmt::format("{}", fmt::join(log.took, "; ")), Catch::Contains("begins again with each heading"));
+  // Without a heading between them it may be a log that was started again, or a clock set back.
+  CHECK(refusal("time [s],torque [mN m],rpm\n0,1,50\n1,1,50\n0,1,50\n").find("does not come after") !=
+        std::string::npos);
+}
+
+TEST_CASE("a tachometer that counts in coarse steps is named, wanted speeds are not") {
+  const auto with_speeds = [](auto speed) {
+    data::RandomStream random(5, data::Purpose::test);
+    std::string text = "time [s],torque [mN m],rpm\n";
+    for (int i = 0; i < 900; ++i)
+      text += fmt::format("{:.1f},{:.4f},{}\n", 0.1 * i, 3.0 + 0.05 * random.normal(), speed(i));
+    return log_of(text);
+  };
+  const auto ramp = [](int i) {
+    return i % 300 < 40 ? 50 * (i / 300) + 50.0 * (i % 300) / 40.0 : 50.0 * (1 + i / 300);
+  };
+  const data::TorqueLog coarse = with_speeds([&](int i) { return 6 * std::floor(ramp(i) / 6.0); });
+  const std::vector<std::string> words = faults_of(coarse);
+  REQUIRE(words.size() == 3);
+  CHECK_THAT(words.front(), Catch::Contains("steps of 6 rpm"));
+  for (const data::Plateau& plateau : data::find_plateaus(coarse))
+    CHECK(plateau.speed_sd == Approx(6.0 * M_PI / 30.0 / std::sqrt(12.0)).epsilon(0.01));
+  CHECK(faults_of(with_speeds([](int i) { return 50 * (1 + i / 300); })).empty());
+  CHECK(faults_of(with_speeds([&](int i) { return 0.1 * std::round(10.0 * ramp(i)); })).empty());
+}
+
 TEST_CASE("times that can be read in two ways are asked back") {
   CHECK(refusal("time,torque [Nm],rpm\n14:02,1,1\n14:03,1,1\n")
             .find("'14:02' may be hours and minutes, or minutes and seconds") != std::string::npos);
@@ -271,8 +307,7 @@ TEST_CASE("a meter's words for no value and for too much are taken for that, and
   }
   CHECK(refusal(head + "1,Poor,50\n2,<0.01,50\n3,Poor,50\n") ==
         "65: log.csv:3: torque: 3 fields from here on are no numbers: '<0.01' (1), 'Poor' (2) (write numbers with a "
-        "decimal "
-        "point, and nothing where there is no value)");
+        "decimal point, and nothing where there is no value)");
   CHECK(refusal(head + "1,low,50\n").find("65: log.csv:3: torque: 'low' is not a number") == 0);
 }
 

@@ -18,6 +18,10 @@ const std::set<std::string> read_elsewhere{"training.unsteady"};
 const std::set<std::string> in_words{"training.engine", "observe.rig", "observe.material", "calibrate.material",
                                      "contact.tangential"};
 
+/// SI units of the parameters and controls of the sample that the readers are given (asked.cpp), and its outputs.
+const std::set<std::string> units_of_the_sample{"1", "kg m2 s-2", "rad s-1"};
+const std::vector<std::string> outputs_of_the_sample{"NAME7"};
+
 bool is_section(const std::string& name) {
   const std::string first = name.substr(0, name.find('.'));
   return name == first || name == first + ".NAME";
@@ -62,15 +66,28 @@ TEST_CASE("every key in the reference is one that a reader asks for, with its ty
     REQUIRE(found != readers.asked.end());
     const data::AskedKey& how = found->second;
     CHECK(std::string(key.type) == how.type);
-    CHECK(std::string(key.unit) == (how.unit == "1" ? "" : how.unit));
+    if (key.unit == "own") {
+      CHECK(units_of_the_sample.count(how.unit) > 0);
+      CHECK(name.find("NAME") != std::string::npos);
+    } else {
+      CHECK(std::string(key.unit) == (how.unit == "1" ? "" : how.unit));
+    }
     const bool choice = how.type.starts_with("choice");
-    CHECK(std::string(key.range) == (choice ? fmt::format("{}", fmt::join(how.choices, ", ")) : range_text(how.range)));
+    const std::string words = how.choices == outputs_of_the_sample ? "the outputs"
+                              : choice                             ? fmt::format("{}", fmt::join(how.choices, ", "))
+                                                                   : range_text(how.range);
+    CHECK(std::string(key.range) == words);
     // A default in words is one that depends on other keys.
     double number = 0.0;
     if (std::istringstream(how.fallback) >> number && !key.fallback.empty() && std::isdigit(key.fallback.front()))
       CHECK(std::string(key.fallback) == how.fallback);
     if (how.type == "choice" && in_words.count(name) == 0) CHECK(std::string(key.fallback) == how.fallback);
   }
+}
+
+TEST_CASE("a measurement may be of every kind of rig") {
+  const keys::Asked readers = keys::asked_by_the_readers();
+  CHECK(readers.asked.at("observe.rig").choices == readers.asked.at("rig.kind").choices);
 }
 
 TEST_CASE("every key has a meaning, and an example that is TOML") {

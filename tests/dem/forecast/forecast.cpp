@@ -3,6 +3,7 @@
 #include "dem/forecast/forecast.hpp"
 #include "dem/forecast/effort.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "dem/bed/derived.hpp"
@@ -225,6 +226,19 @@ TEST_CASE("a slice's surface is that of its cross-section, and a fill that burie
   CHECK(found[0].place == "rig.fill_mass");
   CHECK_THAT(found[0].what, Contains("times the room below the blade's top"));
   CHECK_THAT(found[0].remedy, Contains("density"));
+}
+
+TEST_CASE("a gravity of 981 m/s2 is asked about, and a centrifuge's is not") {
+  dem::Case c;
+  const auto warned = [&](double gravity) {
+    c.run.gravity = gravity;
+    const std::vector<std::string> warnings = dem::forecast(dem::prepare(c), 1).warnings;
+    return std::any_of(warnings.begin(), warnings.end(),
+                       [](const std::string& one) { return one.find("cm/s2") != std::string::npos; });
+  };
+  CHECK(warned(981.0));
+  CHECK_FALSE(warned(9.81));
+  CHECK_FALSE(warned(500.0));
 }
 
 TEST_CASE("a slice whose spheres do not pass between trough and shaft is refused, and its packing ends everywhere") {
