@@ -245,26 +245,37 @@ class BlockFinder {
     const auto is_empty = [](const CsvRecord& record) { return record.comment || is_blank_record(record); };
     std::size_t from = records_.size();  // lines from here on may be no rows
     while (from > block.first + 1 &&
-           (is_empty(records_[from - 1]) || is_words(records_[from - 1]) || is_statistic(records_[from - 1])))
+           (is_empty(records_[from - 1]) || is_words(records_[from - 1]) || is_statistic(from - 1)))
       --from;
     while (from < records_.size()) {
       const CsvRecord& record = records_[from];
-      if (is_empty(record) || is_title(record) || is_statistic(record) || (record.gap_above && columns() > 1)) break;
+      if (is_empty(record) || is_title(record) || is_statistic(from) || (record.gap_above && columns() > 1)) break;
       ++from;
     }
     block.end = from;
     for (; from < records_.size(); ++from) {
       if (is_empty(records_[from])) continue;
-      if (is_statistic(records_[from]))
+      if (is_statistic(from))
         block.statistics.push_back(statistic_of(records_[from]));
       else
         ++block.footers;
     }
   }
 
-  /// A row of names may bear that of a statistic: then the first row does, too.
-  bool is_statistic(const CsvRecord& record) const {
-    return !statistic_of(record).empty() && statistic_of(records_[blocks_.back().first]).empty();
+  /// A sample may bear the name of a statistic, "max": then it has all values and no empty line above it, and no other
+  /// statistic stands beside it.
+  bool is_statistic(std::size_t at) const {
+    static const std::set<std::string> samples_too{"max", "min",   "maximum", "minimum", "sum",     "total",
+                                                   "se",  "count", "range",   "media",   "standard"};
+    const CsvRecord& record = records_[at];
+    const std::string name = statistic_of(record);
+    if (name.empty() || !statistic_of(records_[blocks_.back().first]).empty()) return false;
+    const bool has_all = static_cast<std::size_t>(std::count(record.fields.begin(), record.fields.end(), "")) == 0;
+    const bool beside =
+        (at + 1 < records_.size() && !records_[at + 1].gap_above && !statistic_of(records_[at + 1]).empty()) ||
+        !statistic_of(records_[at - 1]).empty();
+    return !samples_too.contains(lower_case(name)) || record.gap_above || !has_all || beside ||
+           kinds_->differ_from(record);
   }
 
   const std::vector<CsvRecord>& records_;

@@ -85,8 +85,14 @@ Fit fit_of(const std::vector<std::string_view>& lines, char separator) {
            (line.fields.size() == fit.fields || line.all == wide);
   };
   std::size_t numbers = 0, fields = 0, matching = 0;
+  // R names no column of row names, so that its heading has one field fewer.
+  const auto is_heading_of_r = [&](const SplitLine& line) {
+    return &line == &split.front() && (separator == ' ' || separator == '\t') && line.fields.size() + 1 == fit.fields &&
+           std::none_of(line.fields.begin(), line.fields.end(),
+                        [&](const auto& one) { return numeric(one, separator); });
+  };
   for (const SplitLine& line : split) {
-    if (!of_table(line)) continue;
+    if (!of_table(line) && !is_heading_of_r(line)) continue;
     matching += line.comment ? 0 : 1;
     std::size_t here = 0;
     for (const std::string& field : line.fields) here += numeric(field, separator) ? 1 : 0;
@@ -119,11 +125,11 @@ std::string separator_name(char separator) {
 
 bool is_comment(std::string_view line, std::string_view& rest) {
   const std::string_view text = trimmed(line);
-  // A spreadsheet that quotes every cell begins a comment with a quote; a '%' alone in the first cell is a unit.
+  // A spreadsheet that quotes every cell begins our line of units with a quote; a '%' alone in the first cell is a unit.
   const bool per_cent = text.size() > 1 && text[0] == '%' && text.find_first_of(",;\t|") != 1;
-  const std::size_t signs = text.starts_with("//") || text.starts_with("\"#") ? 2
-                            : text.starts_with('#') || per_cent               ? 1
-                                                                              : 0;
+  const std::size_t signs = text.starts_with("//") || text.starts_with("\"# units: ") ? 2
+                            : text.starts_with('#') || per_cent                       ? 1
+                                                                                      : 0;
   if (signs == 0) return false;
   rest = text.substr(signs);
   if (!rest.empty() && rest.front() == ' ') rest.remove_prefix(1);
