@@ -10,8 +10,27 @@
 #include "dem/run/looks.hpp"
 
 namespace campaign {
+namespace {
+
+/// Before anything of the size of the bed is made: what `require_memory` would refuse by far.
+void refuse_absurd(const Workspace& workspace, const dem::Derived& derived) {
+  constexpr double bytes_at_least = 100.0;  // of a sphere
+  const double bytes = bytes_at_least * static_cast<double>(derived.spheres), machine = data::machine_memory();
+  if (bytes <= machine) return;
+  throw data::InputError(
+      data::ExitStatus::bad_study,
+      {workspace.study.file + ": [rig] fill",
+       fmt::format(
+           "makes {:.3g} spheres of {:.3g} m, which need over {:.2g} GB of memory, and this machine has {:.2g} GB",
+           static_cast<double>(derived.spheres), derived.diameter, 1e-9 * bytes, 1e-9 * machine),
+       "check the diameter and its unit and the fill; use fewer or larger spheres (coarse_graining)"});
+}
+
+}  // namespace
+
 Foretold foretell(const Workspace& workspace, const Point& point) {
   dem::PreparedCase prepared = dem::prepare(case_at(workspace, point));
+  refuse_absurd(workspace, prepared.derived());
   dem::Forecast forecast = dem::forecast(prepared, workspace.study.seed);
   Foretold told{std::move(prepared), std::move(forecast)};
   if (!told.forecast.problems.empty())

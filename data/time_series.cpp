@@ -190,7 +190,9 @@ bool is_start_up(std::span<const double> series, std::size_t d, const SeriesMean
   const double middle = median_of({tail.begin(), tail.end()});
   const double away = std::abs(mean_of(head) - rest.mean);
   const double typical = std::abs(median_of({head.begin(), head.end()}) - middle);
-  if (away > start_up_significance * error && typical > no_bursts * away &&
+  const double of_median =
+      1.2533 * to_sd * median_distance(tail, middle) / std::sqrt(independent);  // of a normal one's
+  if (away > start_up_significance * error && typical > std::max(no_bursts * away, 2.0 * of_median) &&
       (away > outside_fluctuations * rest.sd || dies_away(head, rest.mean)))
     return true;
   double squares = 0.0;

@@ -1,11 +1,14 @@
 #include "dem/rig/packing.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
 
+#include "data/error.hpp"
 #include "data/random.hpp"
 #include "data/shuffle.hpp"
 
@@ -158,7 +161,29 @@ double depth_in_bodies(std::span<const Body> bodies, std::span<const Surface> su
   return deepest;
 }
 
+namespace {
+
+/// The whole region is searched for places: so many that they fit no memory come of a wrong unit.
+void refuse_too_fine(const Packable& where) {
+  constexpr double most = 1e9;
+  const auto [low, high] = extent(where);
+  const Vec3 room = high - low;
+  const double places = room.x * room.y * room.z / std::pow(where.diameter, 3);
+  if (!(places > most)) return;
+  throw data::InputError(
+      data::ExitStatus::bad_study,
+      {"material.diameter",
+       fmt::format(
+           "{:.3g} mm is so small that the fill region, {:.3g} x {:.3g} x {:.3g} mm, has {:.2g} places for a sphere",
+           1e3 * where.diameter, 1e3 * room.x, 1e3 * room.y, 1e3 * room.z, places),
+       "check the unit of the diameter and that of the meshes; or use larger spheres (coarse_graining), or a smaller "
+       "rig.region"});
+}
+
+}  // namespace
+
 std::vector<Vec3> free_sites(const Packable& where, std::span<const Body> bodies, std::uint64_t seed) {
+  refuse_too_fine(where);
   const Lattice l = make_lattice(where);
   // No body passes between two neighbouring sites that keep clear of it by half their spacing.
   const double widest = *std::max_element(l.step.begin(), l.step.end());

@@ -108,15 +108,70 @@ bool is_scaled(const data::Study& study, const data::ObservationSet& set, std::s
   return false;
 }
 
+Extent outputs_of_runs(const data::RunTable& table, const data::ObservationSet& set, std::size_t output) {
+  Extent runs;
+  for (const data::RunRow& row : table.rows)
+    if (!row.left_out && row.material == set.material && std::isfinite(row.outputs[output]))
+      runs.add(row.outputs[output]);
+  return runs;
+}
+
+Finding exchanged_in(const data::ObservationSet& set, const std::string& one, const std::string& other,
+                     std::string why) {
+  return {.kind = data::FindingKind::exchanged_columns,
+          .place = place_of(set, set.points.front()),
+          .severity = Severity::refusal,
+          .what = fmt::format("the columns {} and {} look exchanged: {}", one, other, why),
+          .remedy = "exchange the two names in the header",
+          .places = {}};
+}
+
+/// An output's column beside that of its standard errors, or beside a control's, where the numbers of each lie where the other's
+/// belong.
+void check_exchanged(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
+                     std::vector<Finding>& findings) {
+  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    const data::Output& output = study.outputs[set.outputs[column]];
+    const Extent runs = outputs_of_runs(table, set, set.outputs[column]);
+    Extent values, errors;
+    for (const data::Observation& point : set.points)
+      if (point.has(column)) {
+        values.add(point.values[column]);
+        errors.add(point.standard_errors[column]);
+      }
+    if (runs.values.size() < 5 || values.values.size() < 2 || is_scaled(study, set, set.outputs[column])) continue;
+    const bool outside = values.high < runs.low || values.low > runs.high;
+    if (outside && errors.low >= runs.low && errors.high <= runs.high && values.high < errors.low) {
+      findings.push_back(
+          exchanged_in(set, output.name, output.name + "_se",
+                       fmt::format("{0} lies outside all runs, and {0}_se among what they give, {1:.4g} to {2:.4g}{3}",
+                                   output.name, output.unit.from_si(runs.low), output.unit.from_si(runs.high),
+                                   behind_number(output.unit.symbol))));
+      continue;
+    }
+    for (std::size_t c = 0; c < study.controls.size(); ++c) {
+      const data::Control& control = study.controls[c];
+      Extent seen;
+      for (const data::Observation& point : set.points) seen.add(control.unit.from_si(point.controls[c]));
+      const double low = control.unit.from_si(control.low), high = control.unit.from_si(control.high);
+      const bool control_off = seen.high < low || seen.low > high;
+      if (outside && control_off && output.unit.from_si(values.low) >= low &&
+          output.unit.from_si(values.high) <= high && seen.low >= output.unit.from_si(runs.low) &&
+          seen.high <= output.unit.from_si(runs.high))
+        findings.push_back(exchanged_in(set, control.name, output.name,
+                                        fmt::format("{} lies among what the runs give of {}, and {} in the range of {}",
+                                                    control.name, output.name, output.name, control.name)));
+    }
+  }
+}
+
 /// Observed outputs beside those of all runs of the material.
 void check_magnitude(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
                      std::vector<Finding>& findings) {
   for (std::size_t column = 0; column < set.outputs.size(); ++column) {
     const data::Output& output = study.outputs[set.outputs[column]];
-    Extent runs, seen;
-    for (const data::RunRow& row : table.rows)
-      if (!row.left_out && row.material == set.material && std::isfinite(row.outputs[set.outputs[column]]))
-        runs.add(row.outputs[set.outputs[column]]);
+    const Extent runs = outputs_of_runs(table, set, set.outputs[column]);
+    Extent seen;
     for (const data::Observation& point : set.points)
       if (point.has(column)) seen.add(point.values[column]);
     if (runs.values.size() < 5 || seen.values.empty() || is_scaled(study, set, set.outputs[column])) continue;
@@ -386,6 +441,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
     check_copies(set, findings);
     check_unmeasured(study, set, findings);
     if (set.points.empty()) continue;
+    check_exchanged(study, table, set, findings);
     check_magnitude(study, table, set, findings);
     check_control_unit(study, table, set, findings);
     check_errors(study, set, thresholds, findings);

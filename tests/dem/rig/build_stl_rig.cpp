@@ -128,6 +128,16 @@ TEST_CASE(
   CHECK_THROWS_WITH(dem::build_rig(c, 3), Catch::Contains("1000000 spheres") && Catch::Contains("has room for"));
 }
 
+TEST_CASE("spheres so small that their places fit no memory are refused before any is looked for") {
+  const SliceFolder folder;
+  const data::StudyFile file = folder.study(rig + replaced(rest, "1.4 mm", "1.4 um"));
+  const dem::Case c = dem::read_case(file, "steel");
+  CHECK_NOTHROW(file.finish());
+  CHECK_THROWS_WITH(dem::build_rig(c, 1), Catch::Contains("material.diameter") &&
+                                              Catch::Contains("0.0014 mm is so small") &&
+                                              Catch::Contains("check the unit"));
+}
+
 TEST_CASE("spheres start where a CSV says, and one outside the box or inside a mesh is named") {
   const SliceFolder folder;
   const auto write = [&](const char* rows) { folder.write("at.csv", std::string("x,y,z\n") + rows); };

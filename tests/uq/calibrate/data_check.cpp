@@ -337,6 +337,28 @@ TEST_CASE("exchanged columns are refused with both names", "[uq]") {
   CHECK_THAT(looked.findings[0].what, Contains("the columns friction and cohesion look exchanged"));
 }
 
+TEST_CASE("exchanged columns of a measurement are refused with both names", "[uq]") {
+  const auto refused = [](const Files& files) {
+    for (const data::Finding& one : look(files).findings)
+      if (one.kind == data::FindingKind::exchanged_columns && one.severity == Severity::refusal) return one.what;
+    return std::string();
+  };
+  Files files;
+  CHECK(refused(files).empty());
+  SECTION("a value and its standard error") {
+    files.each_reading([](Row& row) { std::swap(row.torque, row.error); });
+    CHECK_THAT(refused(files), Contains("the columns torque and torque_se look exchanged"));
+  }
+  SECTION("a speed and a torque") {
+    files.each_reading([](Row& row) { std::swap(row.torque, row.speed); });
+    CHECK_THAT(refused(files), Contains("the columns speed and torque look exchanged"));
+  }
+  SECTION("a torque in another unit is no exchange") {
+    files.each_reading([](Row& row) { row.torque *= 1000.0, row.error *= 1000.0; });
+    CHECK(refused(files).empty());
+  }
+}
+
 TEST_CASE("a range narrowed below the table's is neither an exchange nor a unit", "[uq]") {
   Files files;
   files.parameters =
