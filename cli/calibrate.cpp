@@ -20,7 +20,7 @@
 namespace cli {
 namespace {
 
-struct CalibrateOptions {
+struct CalibrateCommand {
   Common common;
   std::shared_ptr<std::optional<data::Sampler>> sampler;
   int verify = 0;  ///< points of each case's posterior; 0: none
@@ -30,7 +30,7 @@ struct CalibrateOptions {
   bool no_scan = false;
 };
 
-uq::Calibration calibrate_once(const CalibrateOptions& options, const Workspace& workspace, const StudyRows& rows) {
+uq::Calibration calibrate_once(const CalibrateCommand& options, const Workspace& workspace, const StudyRows& rows) {
   const uq::SurrogateOptions surrogates = surrogate_options(options.common, workspace, rows);
   uq::Calibration result;
   {
@@ -81,7 +81,7 @@ bool all_agree(const std::vector<uq::VerificationReport>& reports) {
                      [](const uq::VerificationReport& one) { return one.agrees || one.values.empty(); });
 }
 
-data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
+data::ExitStatus calibrate_and_verify(const CalibrateCommand& options) {
   const data::InterruptGuard interrupt;
   const Common& common = options.common;
   const auto begin = std::chrono::steady_clock::now();
@@ -166,7 +166,7 @@ data::ExitStatus calibrate_and_verify(const CalibrateOptions& options) {
 }  // namespace
 
 Action add_calibrate(CLI::App& program) {
-  const auto options = std::make_shared<CalibrateOptions>();
+  const auto options = std::make_shared<CalibrateCommand>();
   CLI::App* command =
       add_study_command(program, "calibrate", "fit, sample, identify, report: what the torque determines and what not",
                         "demcal calibrate data/developer", options->common);

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr int runs_listed = 4;  // training runs shown beside the measurements
 
-struct PlanOptions {
+struct PlanCommand {
   Common common;
   std::string about, only;
   double budget = 0.0;
@@ -34,7 +34,7 @@ struct PlanOptions {
 };
 
 /// Indices of the cases that are asked for.
-std::vector<std::size_t> chosen_cases(const PlanOptions& options, const Workspace& workspace) {
+std::vector<std::size_t> chosen_cases(const PlanCommand& options, const Workspace& workspace) {
   std::vector<std::size_t> chosen;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < workspace.study.cases.size(); ++i) {
@@ -155,7 +155,7 @@ struct Plans {
 
 /// One plan a case; fits the surrogates of `assessment`. A case that observes nothing is given a reading in the study
 /// (uq/plan/unmeasured.hpp).
-Plans make_plans(const PlanOptions& options, Workspace& workspace, const std::vector<std::size_t>& cases,
+Plans make_plans(const PlanCommand& options, Workspace& workspace, const std::vector<std::size_t>& cases,
                  const StudyRows& rows, Assessment& assessment) {
   data::Study& study = workspace.study;
   const Common& common = options.common;
@@ -197,7 +197,7 @@ Plans make_plans(const PlanOptions& options, Workspace& workspace, const std::ve
   return made;
 }
 
-data::ExitStatus plan(const PlanOptions& options) {
+data::ExitStatus plan(const PlanCommand& options) {
   const Common& common = options.common;
   Workspace workspace = open_workspace(common);
   if (options.prior)
@@ -231,7 +231,7 @@ data::ExitStatus plan(const PlanOptions& options) {
 }  // namespace
 
 Action add_plan(CLI::App& program) {
-  const auto options = std::make_shared<PlanOptions>();
+  const auto options = std::make_shared<PlanCommand>();
   CLI::App* command =
       add_study_command(program, "plan", "what to measure next: which reading teaches most of a parameter, per cost",
                         "demcal plan data/developer --about friction --batch 2", options->common);

@@ -196,104 +196,153 @@ void read_file_header(PacketReader& reader, std::string_view text) {
   }
 }
 
+/// The segments of a file as one table: the first one's channels, and times that go on from one to the next.
+class Joined {
+ public:
+  explicit Joined(PacketReader& reader)
+      : reader_(reader), computed_(lower_case(reader.tag(reader.file_tags, "X_Columns")) == "no") {}
+
+  bool begins_segment() const {
+    const std::string& front = reader_.fields.front();
+    return !segment_ || (!front.empty() && !reader_.number(front) && !is_missing(front));
+  }
+
+  void begin() {
+    segment_ = begin_segment(reader_);
+    ++segments_;
+    in_segment_ = 0;
+    offset_ = 0.0;
+    if (!first_) {
+      first_ = segment_;
+      return;
+    }
+    require_same_channels();
+    if (segment_->start && first_->start) offset_ = *segment_->start - *first_->start;
+  }
+
+  void add_row() {
+    const std::vector<std::string>& fields = reader_.fields;
+    const std::size_t names = segment_->names.size();
+    if (fields.size() < names)
+      fail(reader_.csv.file, reader_.lines.line(),
+           fmt::format("has {} fields where the line of names has {}", fields.size(), names),
+           "complete the line; the file may have been cut off here");
+    if (fields.size() > names && !fields[names].empty()) ++comments_;
+    times_.push_back(next_time());
+    CsvRow row{.fields = {""}, .line = reader_.lines.line()};
+    for (const std::size_t i : segment_->y)
+      row.fields.push_back(plain_number(fields[i], reader_.mark).value_or(fields[i]));
+    reader_.csv.rows.push_back(std::move(row));
+    ++in_segment_;
+    if (computed_ && segment_->samples > 0 && in_segment_ > segment_->samples)
+      no_time(
+          fmt::format("X_Columns is No, and more rows than the {} of a packet (Samples) follow: nothing says when the "
+                      "next packet begins",
+                      segment_->samples));
+  }
+
+  /// Headings, units and times, once all rows are read.
+  void finish() {
+    Csv& csv = reader_.csv;
+    if (!first_)
+      throw InputError(ExitStatus::bad_data, Problem{csv.file, "has no segment with samples", "export it again"});
+    if (const std::string x = reader_.tag(first_->tags, "X_Dimension", first_->y.front());
+        !x.empty() && lower_case(x) != "time")
+      csv.no_time = fmt::format("its X values are '{}', no time", x);
+    if (computed_ && !first_->step) csv.no_time = "X_Columns is No, and its header has no Delta_X";
+    csv.header_line = first_->line;
+    csv.headings = {"X_Value"};
+    csv.units = {"s"};
+    for (const std::size_t i : first_->y) {
+      csv.headings.push_back(first_->names[i]);
+      const std::string label = reader_.tag(first_->tags, "Y_Unit_Label", i);
+      csv.units.push_back(is_unit(label) && label != "-" ? label : "");
+    }
+    csv.no_time.empty() ? write_times() : remove_times();
+    if (segments_ > 1) csv.took.push_back(fmt::format("{} segments joined", segments_));
+    if (comments_ > 0) csv.took.push_back(fmt::format("comments of {} rows left out", comments_));
+  }
+
+ private:
+  void no_time(std::string why) {
+    if (reader_.csv.no_time.empty()) reader_.csv.no_time = std::move(why);
+  }
+
+  void require_same_channels() const {
+    const std::string& file = reader_.csv.file;
+    const std::string remedy = "write each into a file of its own";
+    if (segment_->names != first_->names)
+      fail(file, segment_->line,
+           fmt::format("the segment has the channels {}, that of line {} has {}", names_of(*segment_), first_->line,
+                       names_of(*first_)),
+           remedy);
+    for (const std::size_t i : segment_->y) {
+      const std::string here = reader_.tag(segment_->tags, "Y_Unit_Label", i);
+      const std::string there = reader_.tag(first_->tags, "Y_Unit_Label", i);
+      if (here != there)
+        fail(file, segment_->line,
+             fmt::format("'{}' is in '{}' in this segment and in '{}' in that of line {}", segment_->names[i], here,
+                         there, first_->line),
+             remedy);
+    }
+  }
+
+  /// Of the row that is read, by the first segment's clock.
+  double next_time() {
+    double time = computed_
+                      ? segment_->x0.value_or(0.0) + static_cast<double>(in_segment_) * segment_->step.value_or(NAN)
+                      : x_of(reader_, *segment_);
+    if (time < of_1904) time += offset_;
+    if (in_segment_ == 0 && segments_ > 1 && time <= end_)
+      no_time(fmt::format("the segment of line {} begins at {:g} s, but the one above it ends at {:g} s",
+                          segment_->line, time, end_));
+    if (!std::isnan(time)) end_ = time;
+    return time;
+  }
+
+  void write_times() {
+    Csv& csv = reader_.csv;
+    const double start = !times_.empty() && times_.front() >= of_1904 ? times_.front() : 0.0;
+    for (std::size_t i = 0; i < times_.size(); ++i)
+      csv.rows[i].fields.front() = std::isnan(times_[i]) ? "" : shortest(times_[i] - start);
+    if (computed_) csv.took.push_back(fmt::format("times by X0 and Delta_X, {:g} s apart", *first_->step));
+  }
+
+  void remove_times() {
+    Csv& csv = reader_.csv;
+    csv.headings.erase(csv.headings.begin());
+    csv.units.erase(csv.units.begin());
+    for (CsvRow& row : csv.rows) row.fields.erase(row.fields.begin());
+  }
+
+  PacketReader& reader_;
+  bool computed_;  ///< no column of X values: times by X0 and Delta_X
+  std::vector<double> times_;
+  std::optional<Segment> first_, segment_;
+  std::size_t segments_ = 0, in_segment_ = 0, comments_ = 0;
+  double offset_ = 0.0;  ///< from a segment's X values to the first one's clock
+  double end_ = -std::numeric_limits<double>::infinity();
+};
+
 }  // namespace
 
 bool is_lvm(std::string_view text) { return trimmed(text.substr(0, 64)).starts_with(magic); }
 
 Csv read_lvm(std::string_view text, const std::string& file) {
   PacketReader reader{.csv = {}, .lines = Lines(text)};
-  Csv& csv = reader.csv;
-  csv.file = file;
-  csv.took.emplace_back("a LabVIEW measurement file");
+  reader.csv.file = file;
+  reader.csv.took.emplace_back("a LabVIEW measurement file");
   read_file_header(reader, text);
-
-  const bool computed = lower_case(reader.tag(reader.file_tags, "X_Columns")) == "no";
-  std::vector<double> times;
-  std::optional<Segment> first, segment;
-  std::size_t segments = 0, in_segment = 0, comments = 0;
-  double offset = 0.0;  // from a segment's X values to the first one's clock
-  double end = -std::numeric_limits<double>::infinity();
+  Joined joined(reader);
   while (reader.next()) {
     if (is_blank(reader.fields)) continue;
-    const std::string& front = reader.fields.front();
-    if (!segment || (!front.empty() && !reader.number(front) && !is_missing(front))) {
-      segment = begin_segment(reader);
-      ++segments;
-      in_segment = 0;
-      offset = 0.0;
-      if (!first) {
-        first = segment;
-        continue;
-      }
-      if (segment->names != first->names)
-        fail(file, segment->line,
-             fmt::format("the segment has the channels {}, that of line {} has {}", names_of(*segment), first->line,
-                         names_of(*first)),
-             "write each into a file of its own");
-      for (const std::size_t i : segment->y)
-        if (reader.tag(segment->tags, "Y_Unit_Label", i) != reader.tag(first->tags, "Y_Unit_Label", i))
-          fail(file, segment->line,
-               fmt::format("'{}' is in '{}' in this segment and in '{}' in that of line {}", segment->names[i],
-                           reader.tag(segment->tags, "Y_Unit_Label", i), reader.tag(first->tags, "Y_Unit_Label", i),
-                           first->line),
-               "write each into a file of its own");
-      if (segment->start && first->start) offset = *segment->start - *first->start;
-      continue;
-    }
-    if (reader.fields.size() < segment->names.size())
-      fail(file, reader.lines.line(),
-           fmt::format("has {} fields where the line of names has {}", reader.fields.size(), segment->names.size()),
-           "complete the line; the file may have been cut off here");
-    if (reader.fields.size() > segment->names.size() && !reader.fields[segment->names.size()].empty()) ++comments;
-    double time = computed ? segment->x0.value_or(0.0) + static_cast<double>(in_segment) * segment->step.value_or(NAN)
-                           : x_of(reader, *segment);
-    if (time < of_1904) time += offset;
-    if (in_segment == 0 && segments > 1 && time <= end && csv.no_time.empty())
-      csv.no_time = fmt::format("the segment of line {} begins at {:g} s, but the one above it ends at {:g} s",
-                                segment->line, time, end);
-    if (!std::isnan(time)) end = time;
-    times.push_back(time);
-    CsvRow row{.fields = {""}, .line = reader.lines.line()};
-    for (const std::size_t i : segment->y)
-      row.fields.push_back(plain_number(reader.fields[i], reader.mark).value_or(reader.fields[i]));
-    csv.rows.push_back(std::move(row));
-    ++in_segment;
-    if (computed && segment->samples > 0 && in_segment > segment->samples && csv.no_time.empty())
-      csv.no_time = fmt::format(
-          "X_Columns is No, and more rows than the {} of a packet (Samples) follow: nothing says when the next packet "
-          "begins",
-          segment->samples);
+    if (joined.begins_segment())
+      joined.begin();
+    else
+      joined.add_row();
   }
-  if (!first) throw InputError(ExitStatus::bad_data, Problem{file, "has no segment with samples", "export it again"});
-
-  if (const std::string x = reader.tag(first->tags, "X_Dimension", first->y.front());
-      !x.empty() && lower_case(x) != "time")
-    csv.no_time = fmt::format("its X values are '{}', no time", x);
-  if (computed && !first->step) csv.no_time = "X_Columns is No, and its header has no Delta_X";
-  csv.header_line = first->line;
-  csv.headings = {"X_Value"};
-  csv.units = {"s"};
-  for (const std::size_t i : first->y) {
-    csv.headings.push_back(first->names[i]);
-    const std::string label = reader.tag(first->tags, "Y_Unit_Label", i);
-    csv.units.push_back(is_unit(label) && label != "-" ? label : "");
-  }
-  if (csv.no_time.empty()) {
-    if (!times.empty() && times.front() >= of_1904) {
-      const double start = times.front();
-      for (double& time : times) time -= start;
-    }
-    for (std::size_t i = 0; i < times.size(); ++i)
-      csv.rows[i].fields.front() = std::isnan(times[i]) ? "" : shortest(times[i]);
-    if (computed) csv.took.push_back(fmt::format("times by X0 and Delta_X, {:g} s apart", *first->step));
-  } else {
-    csv.headings.erase(csv.headings.begin());
-    csv.units.erase(csv.units.begin());
-    for (CsvRow& row : csv.rows) row.fields.erase(row.fields.begin());
-  }
-  if (segments > 1) csv.took.push_back(fmt::format("{} segments joined", segments));
-  if (comments > 0) csv.took.push_back(fmt::format("comments of {} rows left out", comments));
-  return std::move(csv);
+  joined.finish();
+  return std::move(reader.csv);
 }
 
 }  // namespace data

@@ -5,7 +5,7 @@
 
 namespace surrogate {
 
-class Mixture {
+class MixedPrediction {
  public:
   void add(double weight, const Prediction& part) {
     if (count_++ == 0) {

@@ -126,7 +126,7 @@ void GaussianProcess::predict(const Eigen::MatrixXd& points, PredictionWorkspace
     rescale(*data_, result);
     return;
   }
-  Mixture mixture;
+  MixedPrediction mixture;
   for (const Conditioned& part : averaged()) {
     cross(part, *this, points, Slopes::no, workspace);
     latent(part, *this, {0, points.rows()}, workspace, workspace.part);
@@ -149,7 +149,7 @@ Eigen::VectorXd GaussianProcess::predict_mean(const Eigen::MatrixXd& points) con
       origin = mean;
       shift = Eigen::VectorXd::Zero(mean.size());
     }
-    shift += part.weight * (mean - origin);  // as Mixture sums
+    shift += part.weight * (mean - origin);  // as MixedPrediction sums
   }
   return origin + shift;
 }
@@ -163,7 +163,7 @@ std::vector<Prediction> GaussianProcess::predict_batch(const Eigen::MatrixXd& po
   for (Index first = 0; first < groups; first += block) {
     const Index count = std::min(block, groups - first);
     const Eigen::MatrixXd rows = points.middleRows(first * group, count * group);
-    std::vector<Mixture> mixtures(averaged().size() > 1 ? static_cast<std::size_t>(count) : 0);
+    std::vector<MixedPrediction> mixtures(averaged().size() > 1 ? static_cast<std::size_t>(count) : 0);
     for (const Conditioned& part : averaged()) {
       cross(part, *this, rows, Slopes::no, workspace);
       for (Index g = 0; g < count; ++g) {

@@ -53,10 +53,10 @@ void GaussianProcess::predict_with_gradient(const Eigen::MatrixXd& points, std::
   const bool single = averaged().size() == 1;
   PredictionGradient& target = single ? result : workspace.gradient_part;
 
-  Eigen::VectorXd origin, shift;  // mixture of the gradients, as in Mixture
+  Eigen::VectorXd origin, shift;  // mixture of the gradients, as in MixedPrediction
   std::vector<Eigen::VectorXd> first_gradient(wanted), shift_gradient(wanted);
   std::vector<Eigen::MatrixXd> spread_gradient(wanted);
-  Mixture mixture;
+  MixedPrediction mixture;
 
   for (const Conditioned& part : averaged()) {
     cross(part, *this, points, Slopes::yes, workspace);

@@ -126,7 +126,7 @@ void TwoLevelProcess::predict_block(const MatrixXd& points, int group, Workspace
     square_distances(own, own, w.scratch);
     w.squares_within.middleCols(first, group) = w.scratch;
   }
-  std::vector<Mixture> mixtures(results.size());
+  std::vector<MixedPrediction> mixtures(results.size());
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const TwoLevelParameters& p = high_.settings[i];
     const Part& part = parts_[i];

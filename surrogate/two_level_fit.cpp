@@ -72,7 +72,7 @@ const Named components[] = {{"rho", -5.0, 5.0, 1.0, 1.0},
                             {"discrepancy", std::log(1e-5), std::log(10.0), std::log(0.3), 1.5},
                             {"nugget", std::log(1e-5), std::log(3.0), std::log(0.03), 1.5}};
 
-StartOutcome maximise(const Problem& problem, const VectorXd& start) {
+StartOutcome fit_by_bobyqa(const Problem& problem, const VectorXd& start) {
   StartOutcome outcome{.start = start, .end = start, .objective = -std::numeric_limits<double>::infinity()};
   struct Call {
     const Problem& problem;
@@ -140,7 +140,7 @@ TwoLevelProcess fit_two_level(const GaussianProcess& low, const TrainingSet& hig
   for (Index start = 0; start < cube.rows(); ++start) {
     VectorXd u = posterior.prior_mean;
     for (Index j = 0; j < count && start > 0; ++j) u[j] += components[j].prior_sd * (2.0 * cube(start, j) - 1.0);
-    diagnostics.starts.push_back(maximise(problem, u.cwiseMax(posterior.low).cwiseMin(posterior.high)));
+    diagnostics.starts.push_back(fit_by_bobyqa(problem, u.cwiseMax(posterior.low).cwiseMin(posterior.high)));
   }
   const StartOutcome best =
       *std::max_element(diagnostics.starts.begin(), diagnostics.starts.end(),

@@ -3,8 +3,8 @@
 #include <map>
 
 #include "surrogate/held_out.hpp"
+#include "surrogate/judgement.hpp"
 #include "surrogate/two_level.hpp"
-#include "surrogate/verdict.hpp"
 
 namespace surrogate {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "surrogate/design.hpp"
 #include "surrogate/held_out.hpp"
+#include "surrogate/judgement.hpp"
 #include "surrogate/levels.hpp"
 #include "surrogate/noise_check.hpp"
-#include "surrogate/verdict.hpp"
 
 namespace surrogate {
 namespace {

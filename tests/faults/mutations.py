@@ -88,7 +88,7 @@ MUTATIONS = [
     Mutation("the profile forgets other maxima", PROFILE, "found.maxima.push_back(one);", "", (PROFILE,),
              "test_uq_verdict", "a narrow second maximum*"),
     Mutation("the deviance lacks its two", "uq/verdict/profile_interval.cpp",
-             "(2.0 * (all.best.value - profile.deviance.array())", "((all.best.value - profile.deviance.array())",
+             "(2.0 * (all.best.value - profile.log_likelihood.array())", "((all.best.value - profile.log_likelihood.array())",
              ("uq/verdict/profile_interval.cpp",), "test_uq_verdict",
              "profile intervals of LikelihoodProfiler.jl's sep*"),
     Mutation("the interval's ends do not know that the errors' size is unknown", DROP,

@@ -6,7 +6,7 @@
 
 #include "data/random.hpp"
 #include "surrogate/design.hpp"
-#include "surrogate/verdict.hpp"
+#include "surrogate/judgement.hpp"
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;

@@ -102,8 +102,8 @@ Eigen::ArrayXXd spread_out(const Eigen::MatrixXd& points, const Eigen::VectorXd&
 }
 
 /// Expectation maximisation from the responsibilities `share` (points x components, summing to the weights).
-Gaussians maximise(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const Eigen::MatrixXd& pooled,
-                   Eigen::ArrayXXd share, const MixtureOptions& options) {
+Gaussians fit_gaussians(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, const Eigen::MatrixXd& pooled,
+                        Eigen::ArrayXXd share, const MixtureOptions& options) {
   const Eigen::Index count = share.cols();
   Gaussians fit{.weights = Eigen::VectorXd::Zero(count), .means = {}, .covariances = {}, .factors = {}};
   fit.means.assign(static_cast<std::size_t>(count), points.transpose() * weights);
@@ -209,15 +209,15 @@ Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weight
   double best_criterion = std::numeric_limits<double>::infinity();
   const int known = before ? before->fitted : 0;
   if (known > 0) {
-    best = maximise(points, normalised, pooled, responsibilities(*before, points, normalised), options);
+    best = fit_gaussians(points, normalised, pooled, responsibilities(*before, points, normalised), options);
     best_criterion = criterion_of(best, known);
   }
   const Eigen::MatrixXd pooled_factor = factor_for_proposal(pooled);
   for (const int count : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
     if (count <= known) continue;
     if (count > options.components_max || (count > 1 && effective < 4.0 * numbers_of(count))) break;
-    const Gaussians fit =
-        maximise(points, normalised, pooled, spread_out(points, normalised, pooled_factor, count, random), options);
+    const Gaussians fit = fit_gaussians(points, normalised, pooled,
+                                        spread_out(points, normalised, pooled_factor, count, random), options);
     const double criterion = criterion_of(fit, count);
     const bool better = criterion < best_criterion;
     if (better) {

@@ -132,7 +132,7 @@ VectorXd variance_ratio(const Emulator& emulator, const MatrixXd& points) {
 }
 
 /// What one draw meets in one emulator.
-struct Meeting {
+struct RunsAround {
   std::vector<bool> outside;               ///< per input: at half of the rows or more
   std::vector<int> gap;                    ///< per input: which gap, or -1
   std::optional<std::size_t> empty_plane;  ///< the emptiest, where half of the rows lie in a hole of some plane
@@ -140,14 +140,14 @@ struct Meeting {
   double distance = 0.0, ratio = 0.0;  ///< means over the rows
 };
 
-Meeting meet(const Ground& ground, const VectorXd& u, const SupportThresholds& t) {
+RunsAround runs_around(const Ground& ground, const VectorXd& u, const SupportThresholds& t) {
   const Emulator& emulator = ground.group->emulator;
   const MatrixXd points = points_at(ground, u);
   const VectorXd ratios = variance_ratio(emulator, points);
   const MatrixXd scaled = emulator.runs->points.array().rowwise() / emulator.runs->length_scales.transpose().array();
   const Index rows = points.rows(), inputs = points.cols();
   std::vector<Index> outside(static_cast<std::size_t>(inputs), 0), gap(outside);
-  Meeting met{.outside = {}, .gap = std::vector<int>(static_cast<std::size_t>(inputs), -1)};
+  RunsAround met{.outside = {}, .gap = std::vector<int>(static_cast<std::size_t>(inputs), -1)};
   std::vector<Index> holes(ground.planes.size(), 0);
   Index empty = 0, uncertain = 0, any = 0;
   for (Index i = 0; i < rows; ++i) {
@@ -334,7 +334,7 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
     }
     for (Index d = 0; d < some.rows(); ++d) {
       const auto at = static_cast<std::size_t>(d);
-      const Meeting met = meet(ground, some.row(d).transpose(), t);
+      const RunsAround met = runs_around(ground, some.row(d).transpose(), t);
       unsupported[at] = unsupported[at] || met.unsupported;
       empty[at] = empty[at] || met.empty_plane;
       if (met.empty_plane) {

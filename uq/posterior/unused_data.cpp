@@ -26,20 +26,20 @@ constexpr Index drawn_each = 25;        // data of each law, for the tail of chi
 constexpr double numbers_most = 4.0e6;  // of all these data
 
 /// The rows' laws, one a draw.
-struct Mixture {
+struct PredictiveLaws {
   MatrixXd mean, sd;  ///< draws x rows, SI
   VectorXd centre;
   MatrixXd covariance;
   MatrixXd data;  ///< drawn from it x rows, SI
 };
 
-Mixture mixture_of(const CaseModel& model, const MatrixXd& draws, const std::vector<Index>& wanted,
-                   const std::vector<Index>& measured, data::RandomStream random) {
+PredictiveLaws mixture_of(const CaseModel& model, const MatrixXd& draws, const std::vector<Index>& wanted,
+                          const std::vector<Index>& measured, data::RandomStream random) {
   const auto rows = static_cast<Index>(wanted.size());
   const double numbers = static_cast<double>(draws.rows() * std::max<Index>(rows, 1));
   const Index each = std::clamp<Index>(static_cast<Index>(numbers_most / numbers), 1, drawn_each);
-  Mixture all{MatrixXd(draws.rows(), rows), MatrixXd(draws.rows(), rows), VectorXd::Zero(rows),
-              MatrixXd::Zero(rows, rows), MatrixXd(draws.rows() * each, rows)};
+  PredictiveLaws all{MatrixXd(draws.rows(), rows), MatrixXd(draws.rows(), rows), VectorXd::Zero(rows),
+                     MatrixXd::Zero(rows, rows), MatrixXd(draws.rows() * each, rows)};
   const VectorXd y = observed(model);
   for (Index i = 0; i < draws.rows(); ++i) {
     const ReadingLaw law = reading_law(predict(model, draws.row(i).transpose()), y, wanted, measured);
@@ -59,7 +59,7 @@ Mixture mixture_of(const CaseModel& model, const MatrixXd& draws, const std::vec
 }
 
 /// The chance of data at least as far off; below what the drawn data resolve, of normal ones.
-double tail_of(const Mixture& all, double chi2) {
+double tail_of(const PredictiveLaws& all, double chi2) {
   const Eigen::LDLT<MatrixXd> factor(all.covariance);
   const MatrixXd away = (all.data.rowwise() - all.centre.transpose()).transpose();
   const Eigen::ArrayXd drawn = away.cwiseProduct(factor.solve(away)).colwise().sum().transpose().array();
@@ -69,7 +69,7 @@ double tail_of(const Mixture& all, double chi2) {
 }
 
 /// Quantile of a row by bisection of the mixture's distribution function.
-double quantile_of(const Mixture& all, Index row, double probability) {
+double quantile_of(const PredictiveLaws& all, Index row, double probability) {
   double low = (all.mean.col(row) - 8.0 * all.sd.col(row)).minCoeff();
   double high = (all.mean.col(row) + 8.0 * all.sd.col(row)).maxCoeff();
   for (int step = 0; step < 100 && high - low > 1e-12 * (std::abs(low) + std::abs(high)); ++step) {
@@ -120,8 +120,8 @@ PredictionReport predict_unused(const data::Study& study, const std::vector<Emul
   for (std::size_t row = 0; row < from.size(); ++row)
     (unused.count(from[row].set) > 0 ? rows : measured).push_back(static_cast<Index>(row));
 
-  const Mixture all = mixture_of(model, thinned(draws, draws_used), rows, measured,
-                                 data::RandomStream(study.seed, data::Purpose::unused_data));
+  const PredictiveLaws all = mixture_of(model, thinned(draws, draws_used), rows, measured,
+                                        data::RandomStream(study.seed, data::Purpose::unused_data));
   const VectorXd away = observed(model)(rows) - all.centre;
   PredictionReport report{.name = wanted.name, .observed_sets = wanted.observe, .points = {}, .sentence = {}};
   for (Index i = 0; i < away.size(); ++i) {

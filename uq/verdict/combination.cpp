@@ -186,34 +186,23 @@ double filled_share(const Eigen::MatrixXd& values) {
   return std::exp(static_cast<double>(m) * (log_distance(ranks) - log_distance(shuffled)));
 }
 
-CombinationText write_combination(const FittedCombination& combination, const std::vector<CombinationColumn>& columns) {
-  CombinationText out{.text = {}, .unit = {}, .scale = 1.0, .written = combination};
-  std::vector<CombinationTerm>& terms = out.written.terms;
-  const bool product = combination.form == CombinationForm::product;
-  const auto same_units = std::all_of(columns.begin(), columns.end(), [&](const CombinationColumn& column) {
-    return column.unit == columns.front().unit || (is_bare(column.unit) && is_bare(columns.front().unit));
-  });
-  const auto with_unit = std::count_if(columns.begin(), columns.end(),
-                                       [&](const CombinationColumn& column) { return !is_bare(column.unit); });
-  const int digits = combination.spread < 0.02 ? 3 : 2;
+namespace {
 
-  if (product) {
-    // The smaller exponent of a pair is one, unless all are whole.
-    if (!combination.exact_numbers) {
-      const double reference = terms.size() == 2 && std::abs(terms[1].power) < 0.667 * std::abs(terms[0].power)
-                                   ? std::abs(terms[1].power)
-                                   : std::abs(terms[0].power);
-      for (CombinationTerm& term : terms) term.power = std::round(100.0 * term.power / reference) / 100.0;
-    }
-    for (std::size_t i = 0; i < terms.size(); ++i)
-      if (!is_bare(columns[i].unit) && with_unit == 1 && terms[i].power == 1.0) out.unit = columns[i].unit;
-  } else {
-    if (same_units) out.unit = columns.front().unit;
+/// Columns as they are printed: names in units of a power of ten near their values, where units would be mixed.
+struct PrintedColumns {
+  std::vector<std::string> names, own;  ///< with that unit, and without
+  std::vector<double> scales;           ///< of it
+
+  std::string raised(std::size_t i, double power) const {
+    const std::string exponent = power_text(power);
+    const bool brackets = !exponent.empty() && names[i] != own[i];
+    return (brackets ? "(" + names[i] + ")" : names[i]) + exponent;
   }
-  const bool plain = !out.unit.empty() || with_unit == 0;
-  // Columns in units of a power of ten near their values, where units would be mixed.
-  std::vector<std::string> names;
-  std::vector<double> scales;
+};
+
+/// `plain`: the combination has a unit of its own, or none of the columns has one.
+PrintedColumns printed(const std::vector<CombinationColumn>& columns, bool plain, bool product) {
+  PrintedColumns all;
   for (const CombinationColumn& column : columns) {
     double scale = 1.0;
     std::string name = column.name;
@@ -225,41 +214,72 @@ CombinationText write_combination(const FittedCombination& combination, const st
       scale = std::pow(10.0, decade);
       name += fmt::format("/{:.0e}", scale);
     }
-    names.push_back(name);
-    scales.push_back(scale);
+    all.names.push_back(name);
+    all.own.push_back(column.name);
+    all.scales.push_back(scale);
   }
-  const auto raised = [&](std::size_t i, double power) {
-    const std::string exponent = power_text(power);
-    const bool brackets = !exponent.empty() && names[i] != columns[i].name;
-    return (brackets ? "(" + names[i] + ")" : names[i]) + exponent;
-  };
-  if (product) {
-    // What is multiplied first, then what divides.
-    const bool flip = std::all_of(terms.begin(), terms.end(), [](const auto& term) { return term.power < 0.0; });
-    for (CombinationTerm& term : terms) term.power = flip ? -term.power : term.power;
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < terms.size(); ++i)
-      if (terms[i].power > 0.0) order.push_back(i);
-    // Of a pair the one with the plain exponent comes first.
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return terms[a].power == 1.0 && terms[b].power != 1.0; });
-    for (const std::size_t i : order) out.text += (out.text.empty() ? "" : " * ") + raised(i, terms[i].power);
-    for (std::size_t i = 0; i < terms.size(); ++i)
-      if (terms[i].power < 0.0) out.text += " / " + raised(i, -terms[i].power);
-    for (std::size_t i = 0; i < terms.size(); ++i) out.scale *= std::pow(scales[i], -terms[i].power);
-    return out;
-  }
-  // A sum whose first coefficient is one, the others as printed.
-  const double first = terms[0].coefficient * std::pow(scales[0], terms[0].power);
+  return all;
+}
+
+/// The smaller exponent of a pair is one, unless all are whole.
+void round_powers(std::vector<CombinationTerm>& terms) {
+  const double first = std::abs(terms[0].power);
+  const double reference =
+      terms.size() == 2 && std::abs(terms[1].power) < 0.667 * first ? std::abs(terms[1].power) : first;
+  for (CombinationTerm& term : terms) term.power = std::round(100.0 * term.power / reference) / 100.0;
+}
+
+/// What is multiplied first, the plain exponent in front, then what divides.
+void write_product(const PrintedColumns& columns, CombinationText& out) {
+  std::vector<CombinationTerm>& terms = out.written.terms;
+  const bool flip = std::all_of(terms.begin(), terms.end(), [](const auto& term) { return term.power < 0.0; });
+  for (CombinationTerm& term : terms) term.power = flip ? -term.power : term.power;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < terms.size(); ++i)
+    if (terms[i].power > 0.0) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return terms[a].power == 1.0 && terms[b].power != 1.0; });
+  for (const std::size_t i : order) out.text += (out.text.empty() ? "" : " * ") + columns.raised(i, terms[i].power);
+  for (std::size_t i = 0; i < terms.size(); ++i)
+    if (terms[i].power < 0.0) out.text += " / " + columns.raised(i, -terms[i].power);
+  for (std::size_t i = 0; i < terms.size(); ++i) out.scale *= std::pow(columns.scales[i], -terms[i].power);
+}
+
+/// The first coefficient is one; the others are those that are printed.
+void write_sum(const PrintedColumns& columns, int digits, CombinationText& out) {
+  std::vector<CombinationTerm>& terms = out.written.terms;
+  const double first = terms[0].coefficient * std::pow(columns.scales[0], terms[0].power);
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    const double unit = std::pow(scales[i], terms[i].power);
-    const double printed = i == 0 ? 1.0 : rounded(terms[i].coefficient * unit / first, digits);
-    terms[i].coefficient = printed / unit;
-    const double size = std::abs(printed);
-    if (i > 0) out.text += printed < 0.0 ? " - " : " + ";
+    const double unit = std::pow(columns.scales[i], terms[i].power);
+    const double shown = i == 0 ? 1.0 : rounded(terms[i].coefficient * unit / first, digits);
+    terms[i].coefficient = shown / unit;
+    const double size = std::abs(shown);
+    if (i > 0) out.text += shown < 0.0 ? " - " : " + ";
     if (size != 1.0) out.text += decimal(size, digits) + " x ";
-    out.text += raised(i, terms[i].power);
+    out.text += columns.raised(i, terms[i].power);
   }
+}
+
+}  // namespace
+
+CombinationText write_combination(const FittedCombination& combination, const std::vector<CombinationColumn>& columns) {
+  CombinationText out{.text = {}, .unit = {}, .scale = 1.0, .written = combination};
+  std::vector<CombinationTerm>& terms = out.written.terms;
+  const bool product = combination.form == CombinationForm::product;
+  const auto with_unit = std::count_if(columns.begin(), columns.end(),
+                                       [&](const CombinationColumn& column) { return !is_bare(column.unit); });
+  const bool same_unit = std::all_of(columns.begin(), columns.end(), [&](const CombinationColumn& column) {
+    return column.unit == columns.front().unit || (is_bare(column.unit) && is_bare(columns.front().unit));
+  });
+  if (product && !combination.exact_numbers) round_powers(terms);
+  if (!product && same_unit) out.unit = columns.front().unit;
+  for (std::size_t i = 0; product && i < terms.size(); ++i)
+    if (!is_bare(columns[i].unit) && with_unit == 1 && terms[i].power == 1.0) out.unit = columns[i].unit;
+  const PrintedColumns shown = printed(columns, !out.unit.empty() || with_unit == 0, product);
+  if (product)
+    write_product(shown, out);
+  else
+    write_sum(shown, combination.spread < 0.02 ? 3 : 2, out);
   return out;
 }
 

@@ -1,4 +1,4 @@
-#include "surrogate/verdict.hpp"
+#include "surrogate/judgement.hpp"
 
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
