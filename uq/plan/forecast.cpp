@@ -92,7 +92,7 @@ std::vector<std::vector<WordFacts>> Forecast::facts_of_draws(const std::vector<I
       WordFacts one;
       if (before[k].usable() && after[k].usable()) {
         const VectorXd deviance = after[k].deviances(y);
-        one = after[k].facts(found_[k], before[k], found_deviance[k], deviance, profiles_[k].drop);
+        one = after[k].facts(found_[k], before[k], found_deviance[k], deviance, thresholds_);
         one.influences = deviance.maxCoeff() > thresholds_.silent_deviance;
         const auto [low, high] = after[k].ends_by_another(deviance, profiles_[k].drop);
         if (ends == OthersEnds::open) {

@@ -216,7 +216,7 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
     found.profiles.push_back(std::move(profile));
   }
   found.ends = range_ends(model, found.best.x);
-  for (auto& profile : found.profiles) finish_profile(model, found, profile, options.thresholds);
+  for (auto& profile : found.profiles) finish_profile(model, found, guides.draws, profile, options.thresholds);
   return found;
 }
 

@@ -17,6 +17,8 @@
 //     deviance less the growth of log |S| / |N| from the best fit on stays below the drop there.
 // An unknown without influence (influence.hpp) pins nothing, and nor does a bound at 0 that nature sets.
 //
+// A hill of the likelihood beyond the drop that holds a share of the posterior (mode_weight) is a part, too, with ends where
+// the deviance has risen by the drop from its own least (hills.hpp).
 // Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take the barrier away,
 // the hole is in doubt, and the interval goes through it. The maximisers form a path along the ridge, if there is one.
 #include <Eigen/Dense>
@@ -95,8 +97,9 @@ Differentiable profiled(const CaseModel& model);
 Maximum maximise_profiled(const CaseModel& model, const Box& box, const Eigen::MatrixXd& starts,
                           const std::vector<Held>& held = {});
 
-/// From log likelihoods along a path to deviances and to the interval's parts and ends.
-void finish_profile(const CaseModel& model, const Profiles& all, Profile& profile, const VerdictThresholds& thresholds);
+/// From log likelihoods along a path to deviances and to the interval's parts and ends. `draws`: of the posterior, rows in u.
+void finish_profile(const CaseModel& model, const Profiles& all, const Eigen::MatrixXd& draws, Profile& profile,
+                    const VerdictThresholds& thresholds);
 
 /// The low end of an unknown's support is a bound that nature sets, not the user: a linear range that begins at 0.
 bool physical_low(const Unknown& unknown);

@@ -4,6 +4,7 @@
 
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/support.hpp"
+#include "uq/verdict/hills.hpp"
 #include "uq/verdict/profile.hpp"
 
 namespace uq {
@@ -30,6 +31,7 @@ Crossing find_crossing(const CaseModel& model, const Box& box, const Profile& pr
   Eigen::VectorXd warm = profile.path.row(from).transpose();
   Side inside{profile.u[from], std::sqrt(profile.deviance[from]) - root};
   Side outside{profile.u[to], std::sqrt(profile.deviance[to]) - root};
+  if (outside.excess <= 0.0) return {.at = outside.at, .maximiser = profile.path.row(to).transpose()};
   int last = 0;
   for (int i = 0; i < 14; ++i) {
     const double share = std::clamp(inside.excess / (inside.excess - outside.excess), 0.02, 0.98);
@@ -152,35 +154,97 @@ bool in_doubt(const CaseModel& model, const Yardstick& yardstick, const Profile&
 
 }  // namespace
 
-void finish_profile(const CaseModel& model, const Profiles& all, Profile& profile,
+namespace {
+
+/// Points of a path in a row that belong to one part of the interval, and the deviance at its ends.
+struct PointsInside {
+  Eigen::Index first = 0, last = 0;
+  double level = 0.0;
+  bool minor = false;  ///< beyond the drop
+};
+
+/// Those below the drop.
+std::vector<PointsInside> points_below(const Profile& profile) {
+  std::vector<PointsInside> runs;
+  for (Eigen::Index i = 0; i < profile.u.size(); ++i) {
+    if (profile.deviance[i] > profile.drop) continue;
+    if (runs.empty() || runs.back().last != i - 1) runs.push_back({i, i, profile.drop, false});
+    runs.back().last = i;
+  }
+  return runs;
+}
+
+/// Whether a hill above the drop is a value of its own: it holds a share of the posterior, by the draws or by the profile, and no
+/// error of the surrogate would join it to its neighbours.
+bool is_minor_value(const CaseModel& model, const Yardstick& yardstick, const Profile& profile, const Hill& hill,
+                    const Eigen::MatrixXd& draws, double least_mass) {
+  const double least = profile.deviance[hill.best];
+  if (least <= profile.drop) return false;
+  const auto u = draws.col(profile.unknown).array();
+  const auto inside = (u >= profile.u[hill.first] && u <= profile.u[hill.last]).count();
+  const double share = draws.rows() > 0 ? static_cast<double>(inside) / static_cast<double>(draws.rows()) : 0.0;
+  if (std::max(hill.mass, share) < least_mass) return false;
+  const auto doubtful = [&](Eigen::Index peak) {
+    const bool end = peak == 0 || peak == profile.u.size() - 1;
+    return !end && in_doubt(model, yardstick, profile, peak, {hill.best, hill.best}, least);
+  };
+  return !doubtful(hill.first) && !doubtful(hill.last);
+}
+
+/// The parts of the interval from left to right. Each reaches as far as the deviance has risen by the drop from its own least, at
+/// most to the peaks beside it: what is known of a value where it is the right one.
+std::vector<PointsInside> points_inside(const CaseModel& model, const Yardstick& yardstick, const Profile& profile,
+                                        const Eigen::MatrixXd& draws, double least_mass) {
+  const ScaledPrior& prior = model.unknowns[static_cast<std::size_t>(profile.unknown)].prior;
+  Eigen::VectorXd log_prior(profile.u.size());
+  for (Eigen::Index i = 0; i < log_prior.size(); ++i) log_prior[i] = std::max(prior.log_density(profile.u[i]), -200.0);
+  const std::vector<Hill> hills = find_hills(profile.u, profile.deviance, log_prior);
+  std::vector<PointsInside> runs = points_below(profile);
+  for (const Hill& hill : hills)
+    if (is_minor_value(model, yardstick, profile, hill, draws, least_mass))
+      runs.push_back({hill.best, hill.best, profile.drop, true});
+  std::sort(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (PointsInside& run : runs) {
+    run.level += profile.deviance.segment(run.first, run.last - run.first + 1).minCoeff();
+    Eigen::Index low = run.first, high = run.last;  // peaks on either side
+    for (const Hill& hill : hills)
+      if (hill.best >= run.first && hill.best <= run.last) {
+        low = std::min(low, hill.first);
+        high = std::max(high, hill.last);
+      }
+    while (run.first - 1 > low && profile.deviance[run.first - 1] <= run.level) --run.first;
+    while (run.last + 1 < high && profile.deviance[run.last + 1] <= run.level) ++run.last;
+  }
+  return runs;
+}
+
+}  // namespace
+
+void finish_profile(const CaseModel& model, const Profiles& all, const Eigen::MatrixXd& draws, Profile& profile,
                     const VerdictThresholds& thresholds) {
   const Box box{model.lower(), model.upper()};
   const double drop = profile.drop;
   profile.deviance = (2.0 * (all.best.value - profile.log_likelihood.array())).max(0.0);
   const Eigen::Index count = profile.u.size();
 
-  // Runs of points inside, their ends where the deviance crosses the drop.
-  std::vector<std::pair<Eigen::Index, Eigen::Index>> runs;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    if (profile.deviance[i] > drop) continue;
-    if (runs.empty() || runs.back().second != i - 1) runs.emplace_back(i, i);
-    runs.back().second = i;
-  }
-  if (runs.empty()) return;  // the best fit itself is a point inside, so this does not happen
   const Yardstick yardstick = make_yardstick(model, all.best.x);
+  const std::vector<PointsInside> runs = points_inside(model, yardstick, profile, draws, thresholds.mode_weight);
+  if (runs.empty()) return;  // the best fit itself is a point inside, so this does not happen
+
+  // Their ends where the deviance crosses the drop.
   std::vector<ProfilePart> parts;
   Crossing first, last;
-  for (const auto& [begin, end] : runs) {
-    ProfilePart part{.low = profile.u[begin], .high = profile.u[end], .best = begin};
-    for (Eigen::Index i = begin; i <= end; ++i)
+  for (const PointsInside& run : runs) {
+    ProfilePart part{.low = profile.u[run.first], .high = profile.u[run.last], .best = run.first};
+    for (Eigen::Index i = run.first; i <= run.last; ++i)
       if (profile.deviance[i] < profile.deviance[part.best]) part.best = i;
-    if (begin > 0) {
-      const Crossing low = find_crossing(model, box, profile, begin, begin - 1, all.best.value, drop);
+    if (run.first > 0) {
+      const Crossing low = find_crossing(model, box, profile, run.first, run.first - 1, all.best.value, run.level);
       part.low = low.at;
       if (parts.empty()) first = low;
     }
-    if (end < count - 1) {
-      last = find_crossing(model, box, profile, end, end + 1, all.best.value, drop);
+    if (run.last < count - 1) {
+      last = find_crossing(model, box, profile, run.last, run.last + 1, all.best.value, run.level);
       part.high = last.at;
     }
     parts.push_back(part);
@@ -189,23 +253,24 @@ void finish_profile(const CaseModel& model, const Profiles& all, Profile& profil
     profile.low_pinned = pinned(model, box, all, profile, first, thresholds);
     if (!profile.low_pinned) profile.low = parts.front().low;
   }
-  if (runs.back().second < count - 1) {
+  if (runs.back().last < count - 1) {
     profile.high_pinned = pinned(model, box, all, profile, last, thresholds);
     if (!profile.high_pinned) profile.high = parts.back().high;
   }
 
   open_beyond(all, profile, thresholds);
   open_beyond_runs(model, parts, profile);
-  open_to_ignorance(model, all.best.x, {runs.front().first, runs.back().second}, profile);
+  open_to_ignorance(model, all.best.x, {runs.front().first, runs.back().last}, profile);
 
   // Barriers between them.
   profile.parts = {parts.front()};
   for (std::size_t i = 1; i < parts.size(); ++i) {
-    Eigen::Index peak = runs[i - 1].second + 1;
+    Eigen::Index peak = runs[i - 1].last + 1;
     for (Eigen::Index j = peak; j < runs[i].first; ++j)
       if (profile.deviance[j] > profile.deviance[peak]) peak = j;
     ProfileBarrier barrier{.low = parts[i - 1].high, .high = parts[i].low, .deviance = profile.deviance[peak]};
-    barrier.in_doubt = in_doubt(model, yardstick, profile, peak, {profile.parts.back().best, parts[i].best}, drop);
+    barrier.in_doubt = !runs[i - 1].minor && !runs[i].minor &&
+                       in_doubt(model, yardstick, profile, peak, {profile.parts.back().best, parts[i].best}, drop);
     profile.barriers.push_back(barrier);
     if (barrier.in_doubt) {
       ProfilePart& joined = profile.parts.back();

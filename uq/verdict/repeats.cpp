@@ -8,6 +8,7 @@
 #include "data/random.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/predictive.hpp"
+#include "uq/verdict/hills.hpp"
 
 namespace uq {
 namespace {
@@ -146,12 +147,34 @@ double PathWords::variance(const Eigen::VectorXd& deviance, const Parts& parts, 
   return total > 0.0 ? spread / total : 0.0;
 }
 
-PathWords::Parts PathWords::parts(const Eigen::VectorXd& deviance, double drop) const {
+std::vector<bool> PathWords::minor_hills(const Eigen::VectorXd& deviance, double drop, double least_mass) const {
+  std::vector<bool> begins(points_.size(), false);
+  Eigen::VectorXd u(deviance.size()), log_prior(deviance.size());
+  for (Eigen::Index i = 0; i < u.size(); ++i) {
+    u[i] = points_[static_cast<std::size_t>(i)].u;
+    log_prior[i] = points_[static_cast<std::size_t>(i)].log_prior;
+  }
+  for (const Hill& hill : find_hills(u, deviance, log_prior)) {
+    const double least = deviance[hill.best];
+    if (least <= drop || hill.mass < least_mass) continue;
+    const auto real = [&](Eigen::Index peak) {
+      const bool end = peak == 0 || peak == u.size() - 1;
+      return end || std::sqrt(deviance[peak]) - std::sqrt(least) >= 2.0 * points_[static_cast<std::size_t>(peak)].doubt;
+    };
+    if (real(hill.first) && real(hill.last)) begins[static_cast<std::size_t>(hill.best)] = true;
+  }
+  return begins;
+}
+
+PathWords::Parts PathWords::parts(const Eigen::VectorXd& deviance, double drop, double least_mass) const {
   Parts found{.count = 0, .of = std::vector<std::size_t>(points_.size(), 0)};
+  const std::vector<bool> minor = minor_hills(deviance, drop, least_mass);
   bool real = true;  // what lies between here and the last point inside is more than the surrogate's doubt
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const double value = deviance[i];
-    if (value <= drop) {
+    if (minor[i]) {
+      ++found.count;
+    } else if (value <= drop) {
       if (real) ++found.count;
       real = false;
     } else if (std::sqrt(value) - std::sqrt(drop) >= 2.0 * points_[i].doubt) {
@@ -163,10 +186,12 @@ PathWords::Parts PathWords::parts(const Eigen::VectorXd& deviance, double drop) 
 }
 
 WordFacts PathWords::facts(const FoundFacts& found, const PathWords& before, const Eigen::VectorXd& found_deviance,
-                           const Eigen::VectorXd& deviance, double drop) const {
+                           const Eigen::VectorXd& deviance, const VerdictThresholds& thresholds) const {
   const Profile& profile = *found.profile;
+  const double drop = profile.drop;
   WordFacts facts = found.facts;
-  const Parts now = parts(deviance, drop), then = before.parts(found_deviance, drop);
+  const Parts now = parts(deviance, drop, thresholds.mode_weight),
+              then = before.parts(found_deviance, drop, thresholds.mode_weight);
   facts.parts = now.count;
   facts.open_low = profile.low_pinned || profile.runs_end_low || profile.low_unknown || deviance[0] <= drop;
   facts.open_high =
@@ -210,8 +235,8 @@ std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, c
     const Eigen::VectorXd before = words_of.deviances(y);
     std::vector<Verdict> words;
     for (Eigen::Index b = 0; b < repeats.rows(); ++b) {
-      const WordFacts facts = words_of.facts(found[k], words_of, before, words_of.deviances(repeats.row(b).transpose()),
-                                             found[k].profile->drop);
+      const WordFacts facts =
+          words_of.facts(found[k], words_of, before, words_of.deviances(repeats.row(b).transpose()), thresholds);
       words.push_back(word_of(facts, thresholds));
     }
     all[k] = probabilities_of(words);

@@ -66,7 +66,7 @@ class PathWords {
   /// Facts as found, with what hangs on the data's noise taken from `deviance`; `before`, `found_deviance`: those of
   /// the data as they were found.
   WordFacts facts(const FoundFacts& found, const PathWords& before, const Eigen::VectorXd& found_deviance,
-                  const Eigen::VectorXd& deviance, double drop) const;
+                  const Eigen::VectorXd& deviance, const VerdictThresholds& thresholds) const;
 
  private:
   struct Local {
@@ -82,7 +82,9 @@ class PathWords {
     int count = 0;
     std::vector<std::size_t> of;  ///< for each point the part nearest to it
   };
-  Parts parts(const Eigen::VectorXd& deviance, double drop) const;
+  Parts parts(const Eigen::VectorXd& deviance, double drop, double least_mass) const;
+  /// The best points of hills that are parts though they lie above the drop (hills.hpp).
+  std::vector<bool> minor_hills(const Eigen::VectorXd& deviance, double drop, double least_mass) const;
   double variance(const Eigen::VectorXd& deviance, const Parts& parts, bool within) const;
 
   std::vector<Local> points_;
