@@ -193,9 +193,9 @@ struct PrintedColumns {
   std::vector<std::string> names, own;  ///< with that unit, and without
   std::vector<double> scales;           ///< of it
 
-  std::string raised(std::size_t i, double power) const {
+  std::string raised(std::size_t i, double power, bool divides = false) const {
     const std::string exponent = power_text(power);
-    const bool brackets = !exponent.empty() && names[i] != own[i];
+    const bool brackets = (!exponent.empty() || divides) && names[i] != own[i];
     return (brackets ? "(" + names[i] + ")" : names[i]) + exponent;
   }
 };
@@ -241,7 +241,7 @@ void write_product(const PrintedColumns& columns, CombinationText& out) {
                    [&](std::size_t a, std::size_t b) { return terms[a].power == 1.0 && terms[b].power != 1.0; });
   for (const std::size_t i : order) out.text += (out.text.empty() ? "" : " * ") + columns.raised(i, terms[i].power);
   for (std::size_t i = 0; i < terms.size(); ++i)
-    if (terms[i].power < 0.0) out.text += " / " + columns.raised(i, -terms[i].power);
+    if (terms[i].power < 0.0) out.text += " / " + columns.raised(i, -terms[i].power, true);
   for (std::size_t i = 0; i < terms.size(); ++i) out.scale *= std::pow(columns.scales[i], -terms[i].power);
 }
 

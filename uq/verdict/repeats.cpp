@@ -39,7 +39,8 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
                     .noise = prediction.noise,
                     .linked_errors = prediction.linked_errors,
                     .slopes = {},
-                    .precision = {}};
+                    .precision = {},
+                    .pull_of_certificates = {}};
     const Eigen::MatrixXd slopes = sensitivity(model, u);
     std::vector<Eigen::Index> free;
     for (Eigen::Index s = 0; s < u.size(); ++s) {
@@ -50,12 +51,16 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
       // A bound at 0 that nature sets ends nothing (uq/verdict/profile.hpp).
       if (s < model.own_count() && (high || (low && !physical_low(model.unknowns[s])))) point.at_end = true;
     }
+    const Evaluation certificates = log_certificates(model, u);
+    point.log_certificates = certificates.value;
     point.slopes.resize(slopes.rows(), static_cast<Eigen::Index>(free.size()));
     point.precision.resize(point.slopes.cols());
+    point.pull_of_certificates.resize(point.slopes.cols());
     for (std::size_t k = 0; k < free.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
       point.slopes.col(column) = slopes.col(free[k]);
       point.precision[column] = 1.0 / std::pow(model.unknowns[free[k]].prior.sd(), 2);
+      point.pull_of_certificates[column] = certificates.gradient.size() > 0 ? certificates.gradient[free[k]] : 0.0;
     }
     found.push_back(std::move(point));
   }
@@ -77,6 +82,8 @@ PathWords::PathWords(const std::vector<PathPoint>& points, const std::vector<Eig
     local.covariance.compute(covariance);
     if (local.covariance.info() != Eigen::Success) continue;
     local.log_determinant = 2.0 * local.covariance.matrixLLT().diagonal().array().log().sum();
+    local.log_certificates = point.log_certificates;
+    local.pull_of_certificates = point.pull_of_certificates;
     local.slopes = point.slopes(rows, Eigen::all);
     local.covariance.matrixL().solveInPlace(local.slopes);
     Eigen::MatrixXd precision = local.slopes.transpose() * local.slopes;
@@ -89,9 +96,16 @@ PathWords::PathWords(const std::vector<PathPoint>& points, const std::vector<Eig
 }
 
 std::pair<bool, bool> PathWords::ends_by_another(const Eigen::VectorXd& deviance, double drop) const {
-  const auto end_of = [&](auto first, auto last, int outwards) {
-    for (auto i = first; i != last; i -= outwards)
-      if (deviance[i] <= drop) return i != first && (points_[i].at_end || points_[i + outwards].at_end);
+  // Between the outermost point inside and the next one the other comes to its end somewhere: it counts where the interval ends
+  // nearer to the outer one.
+  const auto far_out = [&](int inside, int outside) {
+    const double near = std::sqrt(deviance[inside]), away = std::sqrt(deviance[outside]);
+    return std::sqrt(drop) - near > 0.5 * (away - near);
+  };
+  const auto end_of = [&](int first, int last, int outwards) {
+    for (int i = first; i != last; i -= outwards)
+      if (deviance[i] <= drop)
+        return i != first && (points_[i].at_end || (points_[i + outwards].at_end && far_out(i, i + outwards)));
     return false;
   };
   const int n = static_cast<int>(points_.size());
@@ -104,9 +118,9 @@ Eigen::VectorXd PathWords::deviances(const Eigen::VectorXd& y) const {
     const Local& point = points_[i];
     Eigen::VectorXd r = y - point.mean;
     point.covariance.matrixL().solveInPlace(r);
-    double value = r.squaredNorm() + point.log_determinant;
+    double value = r.squaredNorm() + point.log_determinant - 2.0 * point.log_certificates;
     if (point.slopes.cols() > 0) {
-      const Eigen::VectorXd pull = point.slopes.transpose() * r;
+      const Eigen::VectorXd pull = point.slopes.transpose() * r + point.pull_of_certificates;
       value -= pull.dot(point.bent.solve(pull));
     }
     deviance[i] = value;

@@ -5,7 +5,8 @@
 // best fit. The case is not sampled again. About each point i of a profile's path the model is taken as linear in the
 // other unknowns; with residual r = L^-1 (y' - m_i), slopes A = L^-1 dm/du, L L' = S_i and the priors' widths as weak
 // springs P about the path,
-//   deviance'_i = |r|^2 - r' A (A' A + P)^-1 A' r + log |S_i|    (less its least over i).
+//   deviance'_i = |r|^2 - p' (A' A + P)^-1 p + log |S_i| - 2 c_i,   p = A' r + dc_i/du    (less its least over i),
+// c the log density of what calibrated the nuisances, such as a meter's gain: a path may lead far from it.
 // From it come the open sides, the parts, and the contraction: 1 - contraction changes as the variance of
 // prior x exp(-deviance' / 2) does. A hole that two of the surrogate's sds explain is none. What does not hang on the data's
 // noise stays as found: influence, structure, a side that another parameter's range ends. An unknown at the end of its
@@ -42,9 +43,11 @@ struct PathPoint {
   Eigen::MatrixXd covariance;  ///< without the noise
   Eigen::VectorXd noise;       ///< variances
   std::vector<LinkedErrors> linked_errors;
-  Eigen::MatrixXd slopes;     ///< rows x the unknowns that can move
-  Eigen::VectorXd precision;  ///< of their priors
-  bool at_end = false;        ///< another of the case's parameters stands at the end of its range
+  Eigen::MatrixXd slopes;                ///< rows x the unknowns that can move
+  Eigen::VectorXd precision;             ///< of their priors
+  double log_certificates = 0.0;         ///< of what calibrated the nuisances, there
+  Eigen::VectorXd pull_of_certificates;  ///< its slope along the unknowns that can move
+  bool at_end = false;                   ///< another of the case's parameters stands at the end of its range
 };
 
 /// Points that may matter: near enough to the best or beside such a point, and the two ends; all of them when `all`.
@@ -74,6 +77,8 @@ class PathWords {
     Eigen::VectorXd mean;
     Eigen::LLT<Eigen::MatrixXd> covariance;
     double log_determinant = 0.0;
+    double log_certificates = 0.0;
+    Eigen::VectorXd pull_of_certificates;
     Eigen::MatrixXd slopes;            ///< whitened
     Eigen::LLT<Eigen::MatrixXd> bent;  ///< A' A + P
     bool at_end = false;

@@ -75,6 +75,12 @@ TEST_CASE("units are readable where they would be mixed", "[uq]") {
   CHECK(found.scale * evaluate(found.written, Eigen::Vector2d(0.55, 10e-18)) == Approx(-0.45));
 }
 
+TEST_CASE("a divisor with a unit of its own stands in brackets", "[uq]") {
+  FittedCombination quotient{.form = CombinationForm::product, .terms = {{1.0, 1.0}, {-1.0, 1.0}}};
+  const CombinationText found = write_combination(quotient, {{"hamaker", "J", 2e-20}, {"modulus", "Pa", 3e7}});
+  CHECK(found.text == "hamaker/(1e-20 J) / (modulus/(1e+07 Pa))");
+}
+
 TEST_CASE("the combination that points share is named by the form that keeps nearer to them", "[uq]") {
   Eigen::MatrixXd hyperbola(9, 2), line(9, 2);
   for (Eigen::Index i = 0; i < 9; ++i) {
