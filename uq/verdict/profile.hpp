@@ -45,7 +45,7 @@ struct ProfilePart {
   Eigen::Index best = 0;  ///< its point of least deviance
 };
 
-/// What parts two of them.
+/// The barrier between two parts of the interval.
 struct ProfileBarrier {
   double low = 0.0, high = 0.0;  ///< u
   double deviance = 0.0;         ///< largest in between
@@ -56,8 +56,8 @@ struct Profile {
   int unknown = 0;
   double drop = deviance_95;                          ///< deviance at the interval's ends
   Eigen::VectorXd u;                                  ///< held values, rising
-  Eigen::VectorXd log_likelihood;                     ///< largest at each
-  Eigen::VectorXd deviance;                           ///< from it, once the largest of all profiles is known
+  Eigen::VectorXd log_likelihood;                     ///< largest log likelihood at each
+  Eigen::VectorXd deviance;                           ///< deviance from it, once the largest of all profiles is known
   Eigen::MatrixXd path;                               ///< points x unknowns: the maximiser at each
   std::optional<double> low, high;                    ///< ends of the interval, in u; none: open
   std::optional<int> low_pinned, high_pinned;         ///< unknown at the end of whose range an open side ends
@@ -91,9 +91,9 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
 /// log likelihood of the data and of what calibrated the nuisances.
 Differentiable profiled(const CaseModel& model);
 
-/// The largest of it from each start, with coordinates held. A quasi-Newton search stalls on a thin ridge, where a
-/// nuisance undoes what a parameter does: Gauss-Newton steps, which see the ridge in the data's slopes, go on from there
-/// until they promise less than a thousandth.
+/// The largest value of `profiled` from each start, with coordinates held. A quasi-Newton search stalls on a thin
+/// ridge, where a nuisance undoes what a parameter does: Gauss-Newton steps, which see the ridge in the data's slopes,
+/// go on from there until they promise less than a thousandth.
 Maximum maximise_profiled(const CaseModel& model, const Box& box, const Eigen::MatrixXd& starts,
                           const std::vector<Held>& held = {});
 

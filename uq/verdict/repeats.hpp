@@ -1,5 +1,5 @@
 #pragma once
-// How sure a verdict is of its word: what the words would be if the measurement were made again.
+// The certainty of a verdict's word: what the words would be if the measurement were made again.
 //
 // Repeats are drawn from the posterior predictive, y' = m(u') + S^1/2 z, u' a draw, S the covariance of the data at the
 // best fit. The case is not sampled again. About each point i of a profile's path the model is taken as linear in the
@@ -23,11 +23,11 @@ namespace uq {
 
 struct RepeatOptions {
   int repeats = 200;
-  int rows_max = 300;  ///< of data; beyond, nothing is repeated
+  int rows_max = 300;  ///< rows of data at most; with more, nothing is repeated
   std::uint64_t seed = 1;
 };
 
-/// Facts of own parameter k, as found, with the draws' share.
+/// The facts of one of the case's own parameters, as found, with the draws' share.
 struct FoundFacts {
   WordFacts facts;
   const Profile* profile = nullptr;
@@ -37,13 +37,13 @@ struct FoundFacts {
 struct PathPoint {
   double u = 0.0;
   double log_prior = 0.0;  ///< of the profiled parameter, there
-  double doubt = 0.0;      ///< of the surrogate, against the best fit, in data errors
+  double doubt = 0.0;      ///< the surrogate's doubt against the best fit, in data errors
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;  ///< without the noise
   Eigen::VectorXd noise;       ///< variances
   std::vector<LinkedErrors> linked_errors;
   Eigen::MatrixXd slopes;     ///< rows x the unknowns that can move
-  Eigen::VectorXd precision;  ///< of their priors
+  Eigen::VectorXd precision;  ///< precisions of these unknowns' priors
   bool at_end = false;        ///< another of the case's parameters stands at the end of its range
 };
 
@@ -55,11 +55,12 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
 /// Deviances and words along a path, for any data of some of the model's rows.
 class PathWords {
  public:
-  /// `noise_share`: of each row's noise variance: 1 / n for a mean of n readings.
+  /// Prepares the points for some rows. `noise_share`: share of each row's noise variance, 1 / n for a mean of n
+  /// readings.
   PathWords(const std::vector<PathPoint>& points, const std::vector<Eigen::Index>& rows,
             const Eigen::VectorXd& noise_share);
   bool usable() const { return points_.size() >= 3; }
-  /// Less their least; at the points that a covariance could be factored at.
+  /// The deviances less their least, at the points where a covariance could be factored.
   Eigen::VectorXd deviances(const Eigen::VectorXd& y) const;
   /// Whether the interval's low and high end lie where another parameter's range ends, and not this one's data.
   std::pair<bool, bool> ends_by_another(const Eigen::VectorXd& deviance, double drop) const;
@@ -90,7 +91,7 @@ class PathWords {
   std::vector<Local> points_;
 };
 
-/// Per parameter, by falling probability; empty where there are too many rows.
+/// The words' probabilities of each parameter, the largest first; empty where there are too many rows.
 std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, const std::vector<FoundFacts>& found,
                                                        const Eigen::MatrixXd& draws, const Eigen::VectorXd& best,
                                                        const VerdictThresholds& thresholds,
