@@ -3,9 +3,9 @@
 // values, and how many readings a word needs.
 //
 // A reading is drawn from its law given a draw of the posterior and the data (outlook.hpp), and joins the data; along
-// the profiles' paths the deviances of both together, and from them the words, follow as in uq/verdict/repeats.hpp, without
-// another search. A side is open, too, where the interval ends beside a point at which another parameter has come to
-// the end of its range.
+// the profiles' paths the deviances of both together, and from them the words, follow as in uq/verdict/repeats.hpp,
+// without another search. A side is open, too, where the interval ends beside a point at which another parameter has
+// come to the end of its range.
 #include <cstdint>
 #include <optional>
 #include <string>

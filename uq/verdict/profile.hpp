@@ -12,15 +12,16 @@
 //     where the data would have it, the deviance at the end would be at least twice as large;
 //   - the unknown would move there if another could go beyond the end of its range (range_end.hpp);
 //   - no run was made (runs_reach): the deviance there is the surrogate's prior, which nothing has tested;
-//   - only ignorance speaks: up to the end of the range values are unlikely only since the surrogate knows less of them (a
-//     gap among the runs, a corner). With S(u) the data's covariance and N(u) the same without the surrogate's part, the
-//     deviance less the growth of log |S| / |N| from the best fit on stays below the drop there.
+//   - only ignorance speaks: up to the end of the range values are unlikely only since the surrogate knows less of them
+//     (a gap among the runs, a corner). With S(u) the data's covariance and N(u) the same without the surrogate's part,
+//     the deviance less the growth of log |S| / |N| from the best fit on stays below the drop there.
 // An unknown without influence (influence.hpp) pins nothing, and nor does a bound at 0 that nature sets.
 //
-// A hill of the likelihood beyond the drop that holds a share of the posterior (mode_weight) is a part, too, with ends where
-// the deviance has risen by the drop from its own least (hills.hpp).
-// Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take the barrier away,
-// the hole is in doubt, and the interval goes through it. The maximisers form a path along the ridge, if there is one.
+// A hill of the likelihood beyond the drop that holds a share of the posterior (mode_weight) is a part, too, with ends
+// where the deviance has risen by the drop from its own least (hills.hpp).
+// Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take the barrier
+// away, the hole is in doubt, and the interval goes through it. The maximisers form a path along the ridge, if there is
+// one.
 #include <Eigen/Dense>
 #include <optional>
 #include <vector>
@@ -97,7 +98,8 @@ Differentiable profiled(const CaseModel& model);
 Maximum maximise_profiled(const CaseModel& model, const Box& box, const Eigen::MatrixXd& starts,
                           const std::vector<Held>& held = {});
 
-/// From log likelihoods along a path to deviances and to the interval's parts and ends. `draws`: of the posterior, rows in u.
+/// Turns log likelihoods along a path into deviances and the interval's parts and ends. `draws`: draws of the
+/// posterior, rows in u.
 void finish_profile(const CaseModel& model, const Profiles& all, const Eigen::MatrixXd& draws, Profile& profile,
                     const VerdictThresholds& thresholds);
 

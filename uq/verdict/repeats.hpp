@@ -7,9 +7,9 @@
 // springs P about the path,
 //   deviance'_i = |r|^2 - r' A (A' A + P)^-1 A' r + log |S_i|    (less its least over i).
 // From it come the open sides, the parts, and the contraction: 1 - contraction changes as the variance of
-// prior x exp(-deviance' / 2) does. A hole that two of the surrogate's sds explain is none. What does not hang on the data's
-// noise stays as found: influence, structure, a side that another parameter's range ends. An unknown at the end of its
-// range on the path stays there.
+// prior x exp(-deviance' / 2) does. A hole that two of the surrogate's sds explain is none. What does not hang on the
+// data's noise stays as found: influence, structure, a side that another parameter's range ends. An unknown at the end
+// of its range on the path stays there.
 #include <cstdint>
 #include <utility>
 #include <vector>
