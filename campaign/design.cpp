@@ -153,7 +153,7 @@ Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& tab
     return std::any_of(listed.begin(), listed.end(),
                        [&](const Point& one) { return point_key(workspace, one) == point_key(workspace, point); });
   };
-  // What an interrupted call left of the list is done first, and then no further points.
+  // Points of the list that an interrupted call left are done first, and then no further points.
   campaign.continues = !left.empty() && std::all_of(left.begin(), left.end(), is_listed);
   for (const Point& point : campaign.continues ? left : listed)
     if (static_cast<int>(campaign.points.size()) < runs && known.insert(point_key(workspace, point)).second)

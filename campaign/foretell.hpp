@@ -1,5 +1,5 @@
 #pragma once
-// What the runs of a study will be, said before any is made: by `check` of each material, and by `simulate` and `train`
+// The forecast of a study's runs, told before any is made: by `check` for each material, and by `simulate` and `train`
 // before they start.
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -18,30 +18,30 @@ struct Foretold {
   dem::PreparedCase prepared;
   dem::Forecast forecast;
 };
-/// Of the point's run. Throws data::InputError (78) with every problem that makes it nonsense.
+/// The forecast of the point's run. Throws data::InputError (78) with every problem that makes the run nonsense.
 Foretold foretell(const Workspace& workspace, const Point& point);
 
-/// What a run costs, by a measurement on this machine.
+/// The cost of a run, by a measurement on this machine.
 struct Cost {
-  double steps = 0.0;    ///< at most
+  double steps = 0.0;    ///< time steps at most
   double seconds = 0.0;  ///< of processor time, at most
   double bytes = 0.0;
   dem::Effort effort;
-  std::vector<std::string> warnings;  ///< beyond this machine's memory, or a day
+  std::vector<std::string> warnings;  ///< warnings of a run beyond this machine's memory, or beyond a day
 };
 Cost cost_of(const dem::PreparedCase& prepared);
 
 /// Throws data::InputError (78) where so many runs at a time need more memory than this machine has.
 void require_memory(const Workspace& workspace, const Foretold& told, int jobs);
 
-/// What is wrong with a run of so many spheres in a machine of so many bytes; nothing where it fits.
+/// The problem of a run of this many spheres in a machine of this many bytes; nothing where it fits.
 std::optional<data::Problem> too_large(const Cost& cost, std::int64_t spheres, int jobs, double machine);
 
-/// Problems at the ends of each parameter's and control's range, the others amid theirs.
+/// Problems at the ends of each parameter's and control's range, the other inputs in the middle of theirs.
 std::vector<std::string> problems_at_ends(const Workspace& workspace, const Point& middle);
 
-/// Of the points whose run ends, at run.longest, before it has measured what it must: none of them will train anything.
-/// One sentence of the worst of them; empty where there is none.
+/// A sentence on the points whose run ends, at run.longest, before it has measured what it must: none of them will
+/// train anything. It tells of the worst of them; empty where there is none.
 std::string too_short(const Workspace& workspace, const std::vector<Point>& points);
 
 /// For each input of the point that the study's range does not cover, a sentence.

@@ -1,5 +1,6 @@
 #pragma once
-// What comes of the runs of a batch, one after the other, whoever makes them: rows of the table, failures, warnings.
+// The outcome of the runs of a batch, taken one after the other, whoever makes them: rows of the table, failures,
+// warnings.
 #include <exception>
 #include <string>
 #include <unordered_map>
@@ -21,13 +22,13 @@ struct LeftWithSlurm {
 
 struct BatchResult {
   data::RunTable table;               ///< the rows there were, and one for each finished run
-  std::size_t finished = 0;           ///< runs
-  std::size_t unsteady = 0;           ///< of them, not of the steady flow
+  std::size_t finished = 0;           ///< number of finished runs
+  std::size_t unsteady = 0;           ///< finished runs that are not of the steady flow
   std::vector<bool> ended;            ///< per run: finished or failed
-  std::vector<std::string> failures;  ///< point and reason
+  std::vector<std::string> failures;  ///< point and reason of each failed run
   std::vector<std::string> warnings;
-  std::exception_ptr error;  ///< of a worker; the others stopped
-  LeftWithSlurm left = {};   ///< none where the runs are made here
+  std::exception_ptr error;  ///< error of a worker; the others stopped
+  LeftWithSlurm left = {};   ///< runs left with Slurm; none where the runs are made here
 };
 
 class Ledger {
@@ -44,7 +45,7 @@ class Ledger {
   BatchResult result;
 
  private:
-  std::unordered_map<std::string, std::size_t> places_;  ///< of rows, by their key
+  std::unordered_map<std::string, std::size_t> places_;  ///< places of rows, by their key
 };
 
 }  // namespace campaign

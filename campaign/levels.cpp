@@ -18,14 +18,14 @@ const data::Parameter* hamaker_parameter(const data::Study& study) {
   return found == study.parameters.end() ? nullptr : &*found;
 }
 
-/// What the materials of one powder must have in common: a name, values of either and their unit.
+/// A property that the materials of one powder must have in common: a name, both values and their unit.
 struct Property {
   const char* name;
   double one, other;
   const char* unit;
 };
 
-/// What makes two materials no levels of one powder.
+/// Finds what keeps two materials from being levels of one powder.
 void check_levels(const data::Study& study, const data::Material& one, const dem::Case& own,
                   const data::Material& other, const dem::Case& its, std::vector<data::Problem>& problems) {
   constexpr double same = 0.02;

@@ -9,7 +9,7 @@
 
 namespace campaign {
 
-/// The file as `demcal new` writes it.
+/// The text of bench.csv as `demcal new` writes it.
 std::string_view placeholder_torque();
 
 /// A warning for each observation file that still has the template's rows, whatever stands in its comments.

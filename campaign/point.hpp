@@ -15,23 +15,24 @@ struct Point {
   std::vector<double> inputs;  ///< SI: parameters, then controls, in the study's order
 };
 
-/// "friction=0.4", "hamaker=2e-18 J": a bare number is in the unit of the parameter or control. What is not given is
-/// the material's fixed value or the middle of the range. Throws InputError (64) on an unknown name, unit or a value
-/// outside the target's physical range.
+/// Reads a point from texts like "friction=0.4" and "hamaker=2e-18 J". A bare number is in the unit of the parameter or
+/// control. What is not given is the material's fixed value or the middle of the range. Throws InputError (64) on an
+/// unknown name, unit or a value outside the target's physical range.
 Point parse_point(const Workspace& workspace, const std::string& material, const std::vector<std::string>& at);
 
-/// "friction 0.4, hamaker 2e-18 J, rpm 150 rpm".
+/// The point in words: "friction 0.4, hamaker 2e-18 J, rpm 150 rpm".
 std::string describe(const data::Study& study, const Point& point);
 
-/// The material's DEM case with the point's values set by target, run until the errors of the study's outputs are known.
+/// The material's DEM case with the point's values set by target, run until the errors of the study's outputs are
+/// known.
 dem::Case case_at(const Workspace& workspace, const Point& point);
 
 /// Hash of every DEM setting of the material that decides what a run estimates and is not an input: rows with another
 /// hash are stale.
 std::string settings_hash(const Workspace& workspace, const std::string& material);
 
-/// Hash of those that decide how the bed moves: run.start_up_turns, what is dropped of a run, is not among them. A run
-/// kept in a file goes on, with its seed, when another part of it is wanted.
+/// Hash of the DEM settings that decide how the bed moves; run.start_up_turns, which decides what is dropped of a run,
+/// is not among them. A run kept in a file goes on, with its seed, when another part of it is wanted.
 std::string course_hash(const Workspace& workspace, const std::string& material);
 
 /// A 64-bit number that depends on every character of the text.

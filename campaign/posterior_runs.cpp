@@ -38,7 +38,7 @@ const uq::FittedSurrogate& surrogate_of(const std::vector<uq::FittedSurrogate>& 
   });
 }
 
-/// What one more run is expected to scatter by: the usual standard error of the runs, and the scatter beyond it.
+/// The expected scatter of one more run: the usual standard error of the runs, and the scatter beyond it.
 uq::RunNoise noise_of(const uq::FittedSurrogate& fitted) {
   const surrogate::TrainingSet& set = fitted.rows.set;
   const bool log = fitted.process->data().scale == surrogate::OutputScale::log;
@@ -78,7 +78,7 @@ Point to_point(const Workspace& workspace, const std::vector<uq::FittedSurrogate
   return point;
 }
 
-/// The same back: as the criterion sees a run at this point.
+/// The point as the criterion sees a run there; the reverse of the function above.
 uq::RunPoint to_run(const Workspace& workspace, const std::vector<uq::FittedSurrogate>& surrogates,
                     const Point& point) {
   const data::Study& study = workspace.study;
@@ -98,8 +98,8 @@ uq::RunPoint to_run(const Workspace& workspace, const std::vector<uq::FittedSurr
   return run;
 }
 
-/// Adds points of the design from `first` on to a material's `planned` runs, until they and its rows reach each measured
-/// control as far as a case asks for.
+/// Adds points of the design from `first` on to a material's `planned` runs, until they and its rows reach each
+/// measured control as far as a case asks for.
 void reach_observations(const Workspace& workspace, const std::string& material, int first, const data::RunTable& table,
                         std::vector<PlannedRun>& planned) {
   const data::Study& study = workspace.study;

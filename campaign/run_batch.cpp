@@ -15,7 +15,7 @@
 namespace campaign {
 namespace {
 
-/// What the workers share; the mutex guards all but the counter.
+/// The state that the workers share; the mutex guards all but the counter.
 struct Shared {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;

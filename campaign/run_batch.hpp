@@ -13,20 +13,20 @@ namespace campaign {
 
 struct BatchOptions {
   int jobs = 1;                         ///< runs at the same time
-  std::vector<data::RunRow> kept = {};  ///< rows of other settings, written back
+  std::vector<data::RunRow> kept = {};  ///< rows of other settings, which are written back
   std::stop_token stop = {};
   data::Progress* progress = nullptr;  ///< told of each run that ended and of failures; may be none
 };
 
-/// Throws InputError (78) where the rig makes a run nonsense, before any is made.
+/// Makes the runs. Throws InputError (78) where the rig makes a run nonsense, before any is made.
 BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                       const BatchOptions& options);
 
-/// Throws InputError (78) where the rig makes the runs of a material nonsense, or so many at a time here need more memory
-/// than this machine has; 0: they are made elsewhere.
+/// Throws InputError (78) where the rig makes the runs of a material nonsense, or where `here` runs at a time need more
+/// memory than this machine has. `here` 0: the runs are made elsewhere.
 void foretell_materials(const Workspace& workspace, const std::vector<PlannedRun>& runs, int here);
 
-/// The same study under another seed.
+/// The workspace with another seed of the study.
 Workspace with_seed(const Workspace& workspace, std::uint64_t seed);
 
 }  // namespace campaign

@@ -30,7 +30,7 @@ std::string course_of(const std::string& settings) {
   return course;
 }
 
-/// What an earlier start left in the file, if it is a run of the same course.
+/// The run that an earlier start left in the file, if it is a run of the same course.
 std::optional<dem::SavedRun> earlier(const std::string& path, const dem::Case& c, std::uint64_t seed) {
   if (!std::filesystem::exists(path)) return {};
   try {

@@ -12,25 +12,26 @@
 namespace campaign {
 
 struct PointRun {
-  std::string path;  ///< of the run's file
+  std::string path;  ///< path of the run's file
   int threads = 1;
-  bool keep_state = true;  ///< a steady run's file holds its last state too, to look at; another's always does
+  bool keep_state = true;  ///< a steady run's file holds its last state, to look at; other runs' files always do
   int frames = 0;          ///< moments kept as files for ParaView (dem/run/frame_file.hpp)
   std::string frames_folder = {};
   std::stop_token stop = {};
   std::function<void(const dem::RunProgress&)> progress = {};
 };
 
-/// This run, finished or failed, when the file holds it, ended as it would end now.
+/// The result of this run, finished or failed, when the file holds it and it ended as it would end now.
 std::optional<dem::RunResult> ended_run(const Workspace& workspace, const Point& point, const std::string& path);
-/// Whether it does.
+/// Whether the file holds this run, ended as it would end now.
 bool is_done(const Workspace& workspace, const Point& point, const std::string& path);
 
 /// How many steps of this run the file holds, ended or interrupted; 0 where it holds another run or none.
 std::uint64_t steps_made(const Workspace& workspace, const Point& point, const std::string& path);
 
-/// The result, which the file holds too. A finished run of which the study now wants more, or less, goes on from its
-/// last state or is cut short: to the same bits as a new one. A file of another point, seed or setting is replaced.
+/// Makes the run, and returns the result, which the file holds too. A finished run of which the study now wants more,
+/// or less, goes on from its last state or is cut short: to the same bits as a new run. A file of another point, seed
+/// or setting is replaced.
 dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options);
 
 }  // namespace campaign

@@ -46,7 +46,7 @@ std::string end_of_log(const std::string& path) {
   return text;
 }
 
-/// One run of the call.
+/// A run of this call that is followed.
 struct Followed {
   std::string name, path;
   std::int64_t seen = 0;  ///< change of its file when it was read last
@@ -203,7 +203,7 @@ class Follower {
     save_slurm_record(workspace_.out, record_);
   }
 
-  /// What becomes of the runs whose tasks are no longer in the queue.
+  /// Decides what becomes of the runs whose tasks are no longer in the queue.
   void decide() {
     if (silent_) return;
     std::size_t again = 0;
@@ -259,7 +259,7 @@ class Follower {
       if (!size) return false;
       max_array_size_ = *size;
     }
-    // What was lost is submitted run by run, so that one that ends its task cannot take others along.
+    // Lost runs are submitted one by one, so that a run that ends its task cannot take others along.
     return submit(fresh, fresh.empty() ? 1 : runs_per_task(fresh.size())) && submit(again, 1);
   }
 
@@ -377,7 +377,7 @@ class Follower {
   SlurmRecord record_;
   std::vector<Followed> followed_;    ///< one for each of runs_
   std::set<std::size_t> cancelled_;   ///< runs whose tasks somebody cancelled
-  std::map<std::string, int> tries_;  ///< of runs that were lost, by name
+  std::map<std::string, int> tries_;  ///< tries of runs that were lost, by name
   Queue queue_;                       ///< as it was when Slurm answered last
   int max_array_size_ = 0;            ///< 0: not known yet
   bool silent_ = false;               ///< Slurm did not answer last time

@@ -14,20 +14,21 @@
 namespace campaign {
 
 struct SlurmOptions {
-  std::vector<std::string> program;       ///< words that start this program on this study to make a task's runs
-  std::vector<std::string> options = {};  ///< of sbatch: "--partition=short"
+  std::vector<std::string> program;       ///< command that starts this program on this study to make a task's runs
+  std::vector<std::string> options = {};  ///< options of sbatch: "--partition=short"
   int runs_per_task = 0;                  ///< 0: as many as make about ten minutes
   int at_once = 0;                        ///< tasks of a job at the same time; 0: as many as Slurm starts
-  bool detach = false;                    ///< come back as soon as all is submitted
+  bool detach = false;                    ///< return as soon as all is submitted
   int most_tries = 3;                     ///< submissions of a run; those that brought it further do not count
   double first_wait = 1.0;                ///< s between two looks at the queue; it grows
-  double longest_wait = 20.0;             ///< s
+  double longest_wait = 20.0;             ///< longest wait between two looks, s
   std::function<data::ProgramEnd(const data::ProgramCall&)> start = data::run_program;
 };
 
-/// Returns when all runs have ended, when `batch.stop` is requested (the jobs stay), or as SlurmOptions::detach says.
-/// `batch.jobs` has no meaning here. While the controller does not answer it waits, and says so. Throws InputError: 69
-/// where Slurm's programs are missing, 64 where sbatch refuses the job, 78 where the rig makes a run nonsense.
+/// Makes the runs with Slurm. Returns when all runs have ended, when `batch.stop` is requested (the jobs stay), or as
+/// SlurmOptions::detach says. `batch.jobs` has no meaning here. While the controller does not answer it waits, and says
+/// so. Throws InputError: 69 where Slurm's programs are missing, 64 where sbatch refuses the job, 78 where the rig
+/// makes a run nonsense.
 BatchResult run_on_slurm(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                          const BatchOptions& batch, const SlurmOptions& options);
 

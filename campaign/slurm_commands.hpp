@@ -18,20 +18,20 @@ class SlurmCommands {
   /// Throws InputError (69) where sbatch or squeue cannot be started.
   void require_programs() const;
 
-  /// None while the controller does not answer.
+  /// The cluster's MaxArraySize; none while the controller does not answer.
   std::optional<int> max_array_size() const;
 
   struct Submitted {
-    std::optional<std::string> id;     ///< of the job, when sbatch took it
-    Refusal refusal = Refusal::other;  ///< when not
-    std::string said = {};             ///< by sbatch
+    std::optional<std::string> id;     ///< number of the job, when sbatch took it
+    Refusal refusal = Refusal::other;  ///< why sbatch took no job
+    std::string said = {};             ///< words of sbatch
   };
   Submitted submit(const Submission& submission) const;
 
   struct Seen {
     bool answered = false;
     Queue queue;
-    std::string said = {};  ///< by squeue, when it has no answer
+    std::string said = {};  ///< words of squeue, when it has no answer
   };
   Seen ask(const std::vector<std::string>& job_names) const;
 

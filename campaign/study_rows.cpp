@@ -35,7 +35,7 @@ void tell_unknown_rows(const data::Study& study, StudyRows& rows) {
                                .places = {}});
 }
 
-/// Of the study's level or, `cheaper`, of the one under it.
+/// Leaves out the unsteady rows of the study's level or, with `cheaper`, of the level under it.
 void leave_out_unsteady(const Workspace& workspace, bool cheaper, data::RunTable& table,
                         std::vector<std::string>& notes) {
   if (workspace.unsteady == Unsteady::use) return;

@@ -6,8 +6,8 @@
 
 namespace campaign {
 
-/// OUT/training.h5. Where it is damaged, the rows are those of training.csv beside it, and `notes` says so; where that
-/// is no better, throws InputError (65).
+/// Reads OUT/training.h5. Where it is damaged, the rows are those of training.csv beside it, and `notes` says so. Where
+/// that file is no better, throws InputError (65).
 data::TableRead read_own_table(const Workspace& workspace, std::vector<std::string>& notes);
 
 /// Writes both files: the rows in use, and those of other settings that the table held, ordered by material, then by a

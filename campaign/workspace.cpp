@@ -51,7 +51,8 @@ void check_target(const data::Section& section, const data::Input& input) {
   outside("high", input.axis.high);
 }
 
-/// What a target sets: the names of the bed's amount are of one quantity, and so are contact.A-B.KEY and contact.B-A.KEY.
+/// The quantity that a target sets. The names of the bed's amount stand for one quantity, and so do contact.A-B.KEY and
+/// contact.B-A.KEY.
 std::string quantity_set_by(const data::Input& input) {
   std::string name = dem::target(input.target).name;
   if (name == "rig.fill_mass" || name == "rig.level") return "rig.fill";

@@ -1,5 +1,5 @@
 #pragma once
-// A study opened to be worked on: what it says, the DEM case of each material, and the folder of its results.
+// A study opened for work: what it says, the DEM case of each material, and the folder of its results.
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -20,11 +20,11 @@ struct SurrogateOptions;
 
 namespace campaign {
 
-/// Which study, and what is changed of it for this once.
+/// The study to open, and what is changed of it for this call.
 struct StudyOptions {
   std::string study;                  ///< file, or folder that holds study.toml
-  std::string out;                    ///< results; by default ./STUDY-NAME-results
-  std::optional<std::uint64_t> seed;  ///< instead of the study's
+  std::string out;                    ///< folder of results; by default ./STUDY-NAME-results
+  std::optional<std::uint64_t> seed;  ///< seed that replaces the study's
   std::vector<std::string> set;       ///< "study.key=VALUE"
 };
 
@@ -42,7 +42,7 @@ namespace campaign {
 struct Workspace {
   data::Study study;
   std::map<std::string, dem::Case> cases;  ///< by material; empty when the study has no [rig]
-  /// As the study says; rows and fitted surrogates are added by the commands that fit.
+  /// Options of the surrogates as the study says; the commands that fit add rows and fitted surrogates.
   std::shared_ptr<const uq::SurrogateOptions> surrogates;
   std::string out;                   ///< results folder, absolute; made by the first write
   std::vector<std::string> changes;  ///< "study.seed=3": what StudyOptions set beside the study's file
@@ -65,7 +65,7 @@ void require_own_runs(const Workspace& workspace);
 /// Makes the results folder. Throws InputError (73), also when it is the study's own folder or cannot be written to.
 void make_out(const Workspace& workspace, const std::string& subfolder = "");
 
-/// Which files of the results folder a command writes: two commands at once must not write the same.
+/// The files of the results folder that a command writes: two commands at once must not write the same.
 enum class Writes { training, results, run };
 /// Makes the folder and holds it for those files while the result lives. Throws InputError (73), also when another
 /// process holds it; the message says which.

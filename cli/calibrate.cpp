@@ -25,7 +25,7 @@ struct CalibrateCommand {
   std::shared_ptr<std::optional<data::Sampler>> sampler;
   int verify = 0;  ///< points of each case's posterior; 0: none
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  int rounds = 3;    ///< of verification, at most
+  int rounds = 3;    ///< rounds of verification, at most
   std::string time;  ///< no new round after it
   bool no_scan = false;
 };

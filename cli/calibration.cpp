@@ -24,7 +24,8 @@ namespace cli {
 namespace fs = std::filesystem;
 namespace {
 
-/// What the rig's attraction amounts to at the top of the calibrated range: a Hamaker constant alone says nothing.
+/// A note on the size of the rig's attraction at the top of the calibrated range: a Hamaker constant alone says
+/// nothing.
 std::string attraction_note(const std::string& material, const dem::Case& c) {
   const dem::Derived derived = dem::derive(c);
   return fmt::format(
@@ -118,7 +119,7 @@ void say_surrogates(const Common& common, const std::vector<uq::FittedSurrogate>
 
 namespace {
 
-/// What results rest on, each with its digest.
+/// The inputs that results rest on, each with its digest.
 std::vector<std::pair<std::string, std::string>> inputs_of(const Workspace& workspace, const StudyRows& rows) {
   const data::Study& study = workspace.study;
   std::vector<std::pair<std::string, std::string>> found;

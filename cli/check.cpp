@@ -17,7 +17,7 @@
 namespace cli {
 namespace {
 
-/// What something refuses, one text per problem.
+/// The refusals of an action, one text per problem.
 template <class Action>
 std::vector<std::string> refusals(const Action& action) {
   std::vector<std::string> texts;
@@ -29,7 +29,7 @@ std::vector<std::string> refusals(const Action& action) {
   return texts;
 }
 
-/// What a calibration would refuse of the runs that there are, and a plan of the candidates that [plan] lists.
+/// The runs that a calibration would refuse, and the candidates of [plan] that a plan would refuse.
 std::vector<std::string> refused_later(const Workspace& workspace, const StudyRows& rows) {
   const data::Study& study = workspace.study;
   if (data::used_rows(rows.table) == 0) return {};
@@ -42,12 +42,12 @@ std::vector<std::string> refused_later(const Workspace& workspace, const StudyRo
   return found;
 }
 
-/// What the rig will be amid its ranges, and what the missing runs will cost.
+/// The forecast of the rig in the middle of its ranges, and the cost of the missing runs.
 struct MaterialsForetold {
   std::vector<std::string> warnings;
   nlohmann::json materials = nlohmann::json::array();
   std::size_t missing = 0;
-  double seconds = 0.0;  ///< of processor time, at most
+  double seconds = 0.0;  ///< s of processor time, at most
 };
 
 /// Says it of each material that is simulated.

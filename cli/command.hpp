@@ -1,5 +1,5 @@
 #pragma once
-// What the commands share: common options, how a command is declared, and where its words go.
+// Common parts of the commands: shared options, how a command is declared, and where its words go.
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -12,15 +12,15 @@
 
 namespace cli {
 
-using namespace campaign;  // the commands speak of its things all the time
+using namespace campaign;  // the commands use its names all the time
 
-/// What a parsed command line does.
+/// The action of a parsed command line.
 using Action = std::function<data::ExitStatus()>;
 
 /// For ->transform or ->check of an option: a finite number from `low` to `high`. (CLI11's own ranges let nan pass.)
 CLI::Validator number_in(double low, double high, const std::string& what);
 
-/// For ->check of an option: one of these words; for another, the one that was meant.
+/// For ->check of an option: one of these words. For any other word the message names the one that was probably meant.
 CLI::Validator one_of(const std::vector<std::string>& choices);
 
 /// Options of every command on a study.
@@ -33,17 +33,18 @@ struct Common : StudyOptions {
 CLI::App* add_study_command(CLI::App& program, const std::string& name, const std::string& purpose,
                             const std::string& example, Common& common);
 
-/// --isa of a command that simulates: pins the instruction set of the contact forces.
+/// Adds --isa to a command that simulates: it pins the instruction set of the contact forces.
 void add_isa_option(CLI::App& command);
 
-/// The study, read without problems; how its tables were read is said.
+/// Opens the study, read without problems, and says how its tables were read.
 Workspace open_workspace(const Common& common);
 
-/// A line for the user on stderr, unless --quiet: progress, notes and warnings.
+/// Writes a line for the user on stderr, unless --quiet: progress, notes and warnings.
 void say(const Common& common, const std::string& text);
-/// A line of what was asked for on stdout, unless --quiet. With --json it goes to stderr, as stdout holds JSON alone.
+/// Writes a line of what was asked for on stdout, unless --quiet. With --json it goes to stderr, as stdout holds JSON
+/// alone.
 void answer(const Common& common, const std::string& text);
-/// The machine-readable result on stdout, when --json.
+/// Writes the machine-readable result on stdout, when --json is given.
 void print_json(const Common& common, const nlohmann::json& result);
 
 Action add_new(CLI::App& program);

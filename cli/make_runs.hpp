@@ -1,5 +1,5 @@
 #pragma once
-// Runs of a campaign made with progress, here or by Slurm, for each command that makes some.
+// The making of a campaign's runs with a progress display, here or by Slurm, for each command that makes some.
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -11,12 +11,13 @@
 namespace cli {
 
 struct RunMaking {
-  std::string what = "training runs";      ///< the progress's name
-  int jobs = 1;                            ///< at the same time, of those that are made here
-  std::optional<SlurmOptions> slurm = {};  ///< none: they are made here
+  std::string what = "training runs";      ///< name that the progress display shows
+  int jobs = 1;                            ///< runs at the same time, of those that are made here
+  std::optional<SlurmOptions> slurm = {};  ///< how Slurm makes the runs; none: they are made here
 };
 
-/// `kept`: rows of other settings, written back beside the table's. Throws as run_batch and run_on_slurm do.
+/// Makes the runs. `kept`: rows of other settings, written back beside the table's. Throws as run_batch and
+/// run_on_slurm do.
 BatchResult make_runs(const Common& common, const Workspace& workspace, const std::vector<PlannedRun>& runs,
                       data::RunTable table, const std::vector<data::RunRow>& kept, const RunMaking& how,
                       std::stop_token stop);

@@ -44,7 +44,7 @@ struct Observed {
   std::vector<data::Plateau> plateaus;
   double ramps = 0.0;                 ///< s in which the speed changed slowly
   double refused = 0.0;               ///< s of holds of which no observation is made
-  std::vector<std::string> warnings;  ///< of what was left out
+  std::vector<std::string> warnings;  ///< warnings of what was left out
 };
 
 /// Throws InputError (65) where none is left.

@@ -9,8 +9,9 @@
 
 namespace cli {
 
-/// One row per plateau; beside the columns that a study reads, what the mean rests on. Names are plain, for programs that
-/// look for them; the comment of units is read also as a spreadsheet saves it again.
+/// A table with one row per plateau. Beside the columns that a study reads it has the numbers on which each mean rests.
+/// Names are plain, for programs that look for them. The comment of units can also be read after a spreadsheet has
+/// saved it again.
 std::string observations_csv(const ObserveOptions& options, const data::TorqueLog& log,
                              const std::vector<data::Plateau>& plateaus, const Idle& idle, const data::Unit& unit);
 

@@ -6,7 +6,7 @@
 
 namespace cli {
 
-/// Beside the observations `out`: the picture, its script and its data.
+/// The paths of the files beside the observations `out`: the picture, its script and its data.
 std::vector<std::filesystem::path> observe_pictures(const std::filesystem::path& out);
 
 /// Throws InputError, before anything is read or drawn: 64 when `out` has the name of one of the picture's files; 73

@@ -1,5 +1,5 @@
 #pragma once
-// What demcal observe is asked to do.
+// The options of demcal observe.
 #include <cmath>
 #include <optional>
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace cli {
 
-/// Seconds of a log.
+/// A part of a log, in seconds.
 struct Window {
-  std::vector<double> seconds;  ///< none: all of it; or from and to
+  std::vector<double> seconds;  ///< empty: all of the log; else its begin and end
   double from() const { return seconds.empty() ? -INFINITY : seconds[0]; }
   double to() const { return seconds.empty() ? INFINITY : seconds[1]; }
 };

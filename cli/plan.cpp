@@ -106,8 +106,8 @@ bool is_of_posterior(const Planned& planned, const uq::CaseReport& report) {
   });
 }
 
-/// Puts the plans into the report of the last calibration, where there is one of this study. Says of which cases the report
-/// has another posterior: their plans are left out.
+/// Puts the plans into the report of the last calibration, where there is one of this study. Says of which cases the
+/// report has another posterior: their plans are left out.
 std::vector<std::string> add_to_report(const Workspace& workspace, const std::vector<Planned>& all) {
   std::vector<std::string> other;
   const std::string path = results_path(workspace);
@@ -133,7 +133,7 @@ std::vector<std::string> add_to_report(const Workspace& workspace, const std::ve
   return other;
 }
 
-/// What there is to say against a posterior that is planned on.
+/// The doubts about a posterior that is planned on.
 std::vector<std::string> doubts_about(const std::string& name, const uq::SampledCase& sampled) {
   std::vector<std::string> doubts;
   if (!sampled.draws.converged)
@@ -150,7 +150,7 @@ std::vector<std::string> doubts_about(const std::string& name, const uq::Sampled
 
 struct Plans {
   std::vector<Planned> planned;
-  std::vector<std::string> doubts;  ///< of what is planned on, and cases that cannot be
+  std::vector<std::string> doubts;  ///< doubts about what is planned on, and cases that cannot be planned
 };
 
 /// One plan a case; fits the surrogates of `assessment`. A case that observes nothing is given a reading in the study

@@ -62,7 +62,7 @@ std::string man_command(const CLI::App& command) {
   return text + fmt::format(".PP\n{}\n", roff(command.get_footer()));
 }
 
-/// In single quotes of a shell.
+/// The text in a shell's single quotes.
 std::string in_single_quotes(std::string_view text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -1,6 +1,6 @@
 #pragma once
-// What is made from the declared commands and the table of keys, so that it cannot differ from them: the man page and
-// the completions of bash and zsh.
+// The man page and the completions of bash and zsh. They are made from the declared commands and the table of keys, so
+// that they cannot differ from these.
 #include <CLI/CLI.hpp>
 #include <string>
 

@@ -13,7 +13,7 @@
 namespace cli {
 namespace {
 
-/// What has changed since the results were made, in a sentence; empty where nothing has.
+/// A sentence on what has changed since the results were made; empty where nothing has.
 std::string stale_results(const uq::CalibrationReport& report, const Workspace& workspace) {
   std::vector<std::string> changed;
   try {

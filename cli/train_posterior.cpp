@@ -68,7 +68,7 @@ nlohmann::json shares_json(const data::Study& study, const Assessment& assessmen
   return all;
 }
 
-/// For another code's runs: the points, in a file.
+/// Lists the points for another code's runs in a file.
 data::ExitStatus list_points(const Common& common, const Workspace& workspace, const PosteriorTraining& options) {
   const StudyRows rows = study_rows(workspace);
   for (const std::string& note : rows.notes) say(common, "note: " + note);
@@ -94,7 +94,7 @@ data::ExitStatus list_points(const Common& common, const Workspace& workspace, c
   return data::ExitStatus::done;
 }
 
-/// What the campaign came to, in words and as JSON.
+/// Tells the outcome of the campaign, in words and as JSON.
 data::ExitStatus tell(const Common& common, const Workspace& workspace, const PosteriorCampaign& campaign,
                       const PosteriorTraining& options, const std::optional<BatchResult>& left_there,
                       bool interrupted) {

@@ -8,11 +8,11 @@
 namespace cli {
 
 struct PosteriorTraining {
-  int jobs = 1;                            ///< runs at the same time, and of a batch
+  int jobs = 1;                            ///< runs at the same time; also the number of runs of a batch
   int runs = 0;                            ///< most new runs; 0: as many as it takes
   std::optional<double> seconds;           ///< wall time
-  double share = 0.1;                      ///< of the posterior variance that may stay the surrogate's
-  std::optional<SlurmOptions> slurm = {};  ///< the batches are made there
+  double share = 0.1;                      ///< share of the posterior variance that may stay the surrogate's
+  std::optional<SlurmOptions> slurm = {};  ///< where set, Slurm makes the batches
 };
 
 /// Parses "2h", "90 min". Throws InputError (64).

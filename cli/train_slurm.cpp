@@ -52,7 +52,7 @@ void add_slurm_options(CLI::App& command, SlurmChoice& choice) {
                       "with --slurm: runs that a task makes one after the other (default: about ten minutes of them, "
                       "but at least eight tasks)")
           ->check(CLI::Range(1, 100000));
-  // What the scripts of the jobs call.
+  // The options that the scripts of the jobs give.
   command.add_option("--task-list", choice.task_list)->group("")->needs(per_task);
   command.add_option("--task", choice.task)->group("");
 }

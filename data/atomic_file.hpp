@@ -18,12 +18,13 @@ enum class Changed {
 /// Throws InputError (73) when it cannot, or when the file that is there is not demcal's to replace.
 void write_atomically(const std::string& path, std::string_view content, Changed changed = Changed::replace);
 
-/// The same for a file that `write` writes and closes under a temporary name (HDF5, netCDF). What `write` throws leaves
-/// no file behind and is passed on, with `path` for the temporary name in its messages.
+/// Has `write` write and close a file (HDF5, netCDF) under a temporary name, and puts it in the place of `path` as
+/// above. What `write` throws leaves no file behind and is passed on, with `path` for the temporary name in its
+/// messages.
 void write_atomically(const std::string& path, const std::function<void(const std::string& temporary)>& write);
 
-/// Writes a file as it is, neither whole nor marked: for what `write` above writes under its temporary name. Throws
-/// InputError (73).
+/// Writes a file as it is, without the guarantee of a whole file and without a mark: for use within the `write` above,
+/// under its temporary name. Throws InputError (73).
 void write_bytes(const std::string& path, std::string_view bytes);
 
 /// Throws as write_atomically would where the file that is there must not be replaced.
@@ -33,10 +34,10 @@ void require_replaceable(const std::string& path, Changed changed = Changed::rep
 /// read.
 std::string read_file(const std::string& path);
 
-/// Throws as read_file where there is no file that can be read.
+/// Throws as read_file does where the path holds no file that can be read.
 void require_file(const std::string& path);
 
-/// How a path is named in messages: from the working folder when it lies inside it.
+/// The path as messages name it: relative to the working folder when it lies inside that folder.
 std::string shown_path(const std::string& path);
 
 }  // namespace data

@@ -18,7 +18,7 @@ struct Axis {
   double high = 1.0;  ///< SI, above low
   Scale scale = Scale::linear;
 
-  /// u of a value.
+  /// The place u of a value on the unit interval.
   double to_unit(double value) const {
     if (scale == Scale::log) return std::log(value / low) / std::log(high / low);
     return (value - low) / (high - low);

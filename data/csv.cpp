@@ -14,7 +14,7 @@
 namespace data {
 
 std::optional<std::size_t> Csv::find(std::string_view column, Capitals capitals) const {
-  // Of names of one letter, a capital may be another quantity.
+  // In a name of one letter, a capital may mean another quantity.
   const bool any = capitals == Capitals::any && column.size() > 1;
   for (const bool lower : {false, true}) {
     if (lower && !any) break;

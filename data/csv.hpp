@@ -29,24 +29,24 @@ struct Csv {
   std::string file;                   ///< as named in messages
   std::vector<std::string> comments;  ///< above the first row, without '#' and the blank after it
   std::vector<std::string> columns;   ///< without their units
-  std::vector<std::string> headings;  ///< as they stand there
+  std::vector<std::string> headings;  ///< the columns' names as the heading writes them
   std::vector<std::string> units;     ///< "" where none is given
   int header_line = 0;
   std::vector<CsvRow> rows;
-  std::vector<std::size_t> sections;  ///< of the rows, the first one below each further heading
+  std::vector<std::size_t> sections;  ///< index of the first row below each further heading
   std::string no_time;                ///< why there is no column of times, where the file's form has one
   std::vector<std::string>
       took;  ///< how the table was read, where it is not plain CSV or not as demcal wrote it: "separated by semicolons"
 
-  /// By name, with or without its unit; with Capitals::any, where none is spelled so, "Speed" for speed. Throws
-  /// InputError (65) where two columns have the name and differ.
+  /// Finds a column by its name, with or without its unit. With Capitals::any, where no column is spelled so, "Speed"
+  /// is found for speed. Throws InputError (65) where two columns have the name and differ.
   enum class Capitals { as_written, any };
   std::optional<std::size_t> find(std::string_view column, Capitals capitals = Capitals::as_written) const;
   /// Whether two columns hold the same in every row.
   bool same_values(std::size_t one, std::size_t other) const;
-  /// Whatever its capitals. Throws InputError (65) naming the columns that are there.
+  /// The column of this name, whatever its capitals. Throws InputError (65) naming the columns that are there.
   std::size_t column(std::string_view name) const;
-  /// Of a row's field. Throws InputError (65) with line and column name; NaN where there is no value.
+  /// The number in a field of a row; NaN where there is no value. Throws InputError (65) with line and column name.
   double number(const CsvRow& row, std::size_t column) const;
   std::string place(const CsvRow& row, std::size_t column) const;  ///< "bench.csv:3: speed"
   /// The unit of a column's numbers: the table's own where it gives one, else `wanted`. Throws InputError (65) where
@@ -61,7 +61,7 @@ struct Csv {
 Csv read_csv(const std::string& path);
 Csv parse_csv(const std::string& text, const std::string& file);
 
-/// A field as it is written: quoted where it must be.
+/// The text as a field of a CSV file, quoted where it must be.
 std::string csv_field(std::string_view text);
 
 /// The shortest decimal that reads back to the same double.

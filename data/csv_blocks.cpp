@@ -74,7 +74,7 @@ bool names_units(const Texts& headings) {
                      [](const std::string& heading) { return !read_heading(heading).unit.empty(); });
 }
 
-/// What the columns hold in a row.
+/// The kinds of values that the columns hold in a row.
 class Kinds {
  public:
   explicit Kinds(const CsvRecord& record) {
@@ -235,8 +235,8 @@ class BlockFinder {
     }
   }
 
-  /// Below the last block's rows comments, empty lines, titles, notes of any words behind an empty line, and statistics of the
-  /// rows may stand. What may be a damaged row stays.
+  /// Below the last block's rows comments, empty lines, titles, notes of any words behind an empty line, and statistics
+  /// of the rows may stand. What may be a damaged row stays.
   void end_last() {
     CsvBlock& block = blocks_.back();
     const auto is_title = [&](const CsvRecord& record) {
@@ -281,8 +281,8 @@ class BlockFinder {
   const std::vector<CsvRecord>& records_;
   char separator_;
   std::vector<CsvBlock> blocks_;
-  std::optional<Kinds> kinds_;  ///< of the last block's first row
-  std::size_t last_row_ = 0;    ///< of the last block, with numbers where its first one has them
+  std::optional<Kinds> kinds_;  ///< kinds of values in the last block's first row
+  std::size_t last_row_ = 0;    ///< last row of the last block that has numbers where the first row has them
 };
 
 }  // namespace

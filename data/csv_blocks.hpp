@@ -1,6 +1,6 @@
 #pragma once
-// The blocks of a table: a heading and the rows below it. A logger that appends to its file writes one a session, the
-// software of an instrument one a hold.
+// The blocks of a table, each a heading and the rows below it. A logger that appends to its file writes one block a
+// session, the software of an instrument one a hold.
 #include <string>
 #include <vector>
 
@@ -10,14 +10,14 @@ namespace data {
 
 struct CsvBlock {
   std::vector<std::string> headings;
-  std::vector<std::string> units;       ///< of a row below the heading, without brackets; empty where there is none
-  bool in_comment = false;              ///< the heading
-  int line = 0, units_line = 0;         ///< in the file; 0: no row of units
-  std::size_t heading = 0;              ///< of the records; in a comment: its first row
-  std::size_t first = 0, end = 0;       ///< of the records: its rows, and lines among them
-  std::size_t rows = 0;                 ///< with as many fields as the heading
-  std::size_t footers = 0;              ///< lines of words below its rows, of the last block
-  std::vector<std::string> statistics;  ///< what the lines of statistics there call themselves: "Average"
+  std::vector<std::string> units;       ///< from a row below the heading, without brackets; empty: no such row
+  bool in_comment = false;              ///< the heading stands in a comment
+  int line = 0, units_line = 0;         ///< lines of heading and units in the file; units_line 0: no row of units
+  std::size_t heading = 0;              ///< index of its record; of a heading in a comment, the first row
+  std::size_t first = 0, end = 0;       ///< the block's records: its rows, and lines among them
+  std::size_t rows = 0;                 ///< rows with as many fields as the heading
+  std::size_t footers = 0;              ///< lines of words below the rows of the last block
+  std::vector<std::string> statistics;  ///< names that the lines of statistics below those rows bear: "Average"
 };
 
 /// Every heading with its rows, in the order of the file. A line of words is a heading where a row with as many fields
@@ -29,7 +29,7 @@ std::vector<CsvBlock> find_blocks(const std::vector<CsvRecord>& records, char se
 /// Whether two headings name the same columns, in one order; units do not count, nor do upper and lower case.
 bool same_columns(const std::vector<std::string>& one, const std::vector<std::string>& other);
 
-/// A line with a number in it, or without any value; and one with words alone.
+/// Whether the line is a row (a number in it, or no value at all), and whether it is made of words alone.
 bool is_row(const CsvRecord& record);
 bool is_words(const CsvRecord& record);
 
@@ -39,7 +39,7 @@ bool is_measurement(const CsvRecord& record);
 
 bool holds_number(const CsvRecord& record);
 
-/// What a line calls itself that begins with the name of a statistic: "Average", "Std. dev.:"; empty: no such name.
+/// The first field of a line that begins with the name of a statistic ("Average", "Std. dev.:"); empty where none does.
 std::string statistic_of(const CsvRecord& record);
 
 /// The number of fields up to the last one that is not empty.

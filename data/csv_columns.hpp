@@ -11,7 +11,7 @@ namespace data {
 /// Finds names and units of the columns out of headings, rows of units and comments.
 void read_columns(Csv& csv);
 
-/// From the unit of a block's column to that of the table's.
+/// The change from the unit of a block's column to that of the table's.
 struct UnitChange {
   Unit from, to;
 };

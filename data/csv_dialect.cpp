@@ -29,7 +29,7 @@ bool numeric(const std::string& field, char separator) {
 /// How well a separator fits.
 struct Fit {
   bool has_heading = false;  ///< a line without numbers has as many fields as the table
-  double share = 0.0;        ///< of the fields that are numbers, in lines with as many fields as most
+  double share = 0.0;        ///< share of fields that are numbers, in lines with as many fields as most
   double lines = 0.0;        ///< share of the lines with that many
   std::size_t fields = 1;
 };
@@ -125,7 +125,8 @@ std::string separator_name(char separator) {
 
 bool is_comment(std::string_view line, std::string_view& rest) {
   const std::string_view text = trimmed(line);
-  // A spreadsheet that quotes every cell begins our line of units with a quote; a '%' alone in the first cell is a unit.
+  // A spreadsheet that quotes every cell begins our line of units with a quote; a '%' alone in the first cell is a
+  // unit.
   const bool per_cent = text.size() > 1 && text[0] == '%' && text.find_first_of(",;\t|") != 1;
   const std::size_t signs = text.starts_with("//") || text.starts_with("\"# units: ") ? 2
                             : text.starts_with('#') || per_cent                       ? 1

@@ -9,11 +9,11 @@ namespace data {
 struct Dialect {
   char separator = ',';   ///< ',', ';', tab, '|' or, for blanks in any number, ' '
   std::size_t begin = 0;  ///< where the table's text begins, behind a line "sep=;"
-  int first_line = 1;     ///< of the text at `begin`
+  int first_line = 1;     ///< the line in the file at which `begin` lies
 };
 
-/// By what every line of a table has in common: of the separators that part a heading and the lines below it into
-/// equally many fields, the one whose fields are numbers most often. "sep=;" in the first line decides.
+/// Finds how the columns are parted. Of the separators that part a heading and the lines below it into equally many
+/// fields, the one is taken whose fields are numbers most often. "sep=;" in the first line decides.
 Dialect find_dialect(std::string_view text);
 
 /// "semicolons", for messages; nothing for the comma.

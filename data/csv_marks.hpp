@@ -6,8 +6,9 @@
 
 namespace data {
 
-/// By the numbers that can be read in one way alone. Between commas, a comma in quotes may stand in a text: it is a
-/// decimal mark only where no number has a point. Notes in `texts` the columns of remarks where only they disagree.
+/// Finds the mark by the numbers that can be read in one way alone. Between commas, a comma in quotes may stand in a
+/// text: it is a decimal mark only where no number has a point. Notes in `texts` the columns of remarks where only
+/// these columns disagree.
 DecimalMark find_mark(CsvTable& table);
 
 }  // namespace data

@@ -11,11 +11,11 @@ namespace data {
 struct CsvRecord {
   std::vector<std::string> fields;
   int line = 0;
-  bool comment = false;    ///< `fields` is one, the comment
-  bool gap_above = false;  ///< behind an empty line
+  bool comment = false;    ///< a comment; `fields` then holds its text alone
+  bool gap_above = false;  ///< an empty line stands above it
 };
 
-/// Throws InputError (65): a quote that does not end, text behind a closing quote.
+/// Cuts the text into records. Throws InputError (65): a quote that does not end, text behind a closing quote.
 std::vector<CsvRecord> read_records(std::string_view text, const Dialect& dialect, const std::string& file);
 
 }  // namespace data

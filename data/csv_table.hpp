@@ -1,6 +1,6 @@
 #pragma once
-// Which part of a text is the table: the block with the most rows (csv_blocks.hpp), and the others with the same columns.
-// What stands above them is a preamble; a second table is refused.
+// Which part of a text is the table: the block with the most rows (csv_blocks.hpp), and the others with the same
+// columns. What stands above them is a preamble; a second table is refused.
 #include <string>
 #include <vector>
 
@@ -11,7 +11,7 @@
 
 namespace data {
 
-/// What is found out of a table on the way.
+/// A table while it is read: what was found out of it so far.
 struct CsvTable {
   Csv csv;
   Dialect dialect;
@@ -21,7 +21,7 @@ struct CsvTable {
 
   bool is_text(std::size_t column) const { return column < texts.size() && texts[column]; }
   std::string line(const CsvRecord& record) const { return csv.file + ":" + std::to_string(record.line); }
-  /// Every line among the rows of the blocks that is no comment.
+  /// Visits every line among the rows of the blocks that is no comment.
   template <class Visit>
   void each_row(Visit visit) const {
     for (const CsvBlock& block : blocks)

@@ -1,5 +1,5 @@
 #pragma once
-// What somebody who mistyped a name may have meant.
+// The name that somebody who mistyped one may have meant.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -7,8 +7,8 @@
 
 namespace data {
 
-/// Smallest number of insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`,
-/// upper and lower case alike.
+/// Smallest number of insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b`. Upper and
+/// lower case count as the same.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The candidate nearest to `name`, if any is near enough to be meant.

@@ -17,31 +17,31 @@ enum class Severity {
 template <>
 inline constexpr std::array texts_of<Severity> = {"note", "warning", "refusal"};
 
-/// The same kind for the same oddity.
+/// What is odd. The same oddity has the same kind, whoever finds it.
 enum class FindingKind {
   copied_rows,    ///< the same row more than once
   failed_runs,    ///< a status column or zeros say so
-  rows_left_out,  ///< because the study says so
+  rows_left_out,  ///< rows left out because the study says so
   unread_columns,
-  seed_column,                ///< another code's
+  seed_column,                ///< a column of another code's seeds
   placeholder,                ///< the template's example still stands for a measurement
   contradicted_case,          ///< the study contradicts its data
-  unit,                       ///< another one is suspected
+  unit,                       ///< a unit other than the stated one is suspected
   exchanged_columns,          ///< headers that stand over each other's numbers
   outside_the_range,          ///< rows outside of an input's range
-  range_not_covered,          ///< by the runs
-  inputs_that_move_together,  ///< in all runs
-  zero_standard_error,        ///< of a run
-  no_logarithm,               ///< of an output that is 0 or less
+  range_not_covered,          ///< a range that the runs do not cover
+  inputs_that_move_together,  ///< inputs that move together in all runs
+  zero_standard_error,        ///< a run with a standard error of zero
+  no_logarithm,               ///< no logarithm exists of an output that is 0 or less
   no_response,                ///< an output that does not vary
   copied_observations,        ///< the same readings more than once
-  standard_errors,            ///< of readings, too small or too large to be meant
-  prior_not_stated,           ///< of a parameter whose range spans decades
+  standard_errors,            ///< standard errors of readings, too small or too large to be meant
+  prior_not_stated,           ///< no prior is stated for a parameter whose range spans decades
   errors_apart,               ///< common errors of several sets that may be one meter's
-  error_left_out,             ///< that a file states and the study does not
+  error_left_out,             ///< an error that a file states and the study does not
   saturated,                  ///< several rows with one extreme value
   not_measured,               ///< an output that some rows of a file lack, or all
-  run_table,                  ///< in the place of a measurement
+  run_table,                  ///< a run table in the place of a measurement
 };
 template <>
 inline constexpr std::array texts_of<FindingKind> = {"copied rows",
@@ -77,7 +77,7 @@ struct Finding {
   std::vector<std::string> places;  ///< every row that it is about, where there are several
 };
 
-/// One about rows, at their places; what and remedy are still to be said.
+/// A finding about rows, at their places. Its `what` and `remedy` are still to be filled.
 Finding about_rows(FindingKind kind, Severity severity, const std::vector<std::string>& places);
 
 /// "PLACE: WHAT (REMEDY)".

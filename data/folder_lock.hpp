@@ -1,6 +1,6 @@
 #pragma once
-// One process at a time does a job in a results folder. The lock is the kernel's on a file (flock), so it goes with its
-// holder however that ends; the file says who holds it.
+// A lock that lets one process at a time do a job in a results folder. It is the kernel's lock on a file (flock), so it
+// goes with its holder however the holder ends. The file says who holds it.
 #include <string>
 
 namespace data {

@@ -116,7 +116,7 @@ std::size_t product(const std::vector<std::size_t>& shape) {
 struct Hdf5Group::Handle {
   std::shared_ptr<Hdf5Id> file;  ///< keeps the file open as long as any group
   Hdf5Id id;
-  std::string path;    ///< of the file
+  std::string path;    ///< path of the file
   std::string inside;  ///< "/columns"
 
   std::string place(const std::string& name) const {

@@ -27,7 +27,7 @@ class Hdf5Group {
   Hdf5Group create_group(const std::string& name) const;
   Hdf5Group group(const std::string& name) const;
   bool has(const std::string& name) const;                ///< a group or dataset directly in this group
-  std::vector<std::string> names() const;                 ///< of groups and datasets, in order of creation
+  std::vector<std::string> names() const;                 ///< names of the groups and datasets, in order of creation
   std::string place(const std::string& name = "") const;  ///< "training.h5: /columns/torque"
 
   // Attributes of this group, or, with a dataset's name, of that dataset.

@@ -5,8 +5,8 @@
 
 namespace data {
 
-/// Jobs without an InterruptGuard end at once: with a line that says so and the status of an interruption (75). What they had
-/// saved by then is whole.
+/// Makes jobs without an InterruptGuard end at once, with a line that says so and the status of an interruption (75).
+/// What they had saved by then is whole.
 void exit_on_interrupt();
 
 /// Listens to SIGINT, SIGTERM and SIGHUP (unless it is ignored, as under nohup) while it lives; one at a time. Hand

@@ -102,7 +102,7 @@ std::vector<double> used_torques(const TorqueLog& log, const Plateau& plateau) {
 
 struct Level {
   double value = 0.0;
-  std::size_t count = 0, next = 0;  ///< of the extreme value, and of the one beside it
+  std::size_t count = 0, next = 0;  ///< samples at the extreme value, and at the value beside it
 };
 Level extreme(const std::map<double, std::size_t>& levels, bool largest) {
   const auto beside = [](auto at) { return std::next(at)->second; };

@@ -13,12 +13,13 @@ namespace data {
 /// took out, in words.
 std::vector<std::string> remove_no_values(TorqueLog& log);
 
-/// The torque [N m] at which the sensor was at its limit or stuck: every torque of the plateau, or more than `most` of
-/// them, the largest or smallest. A torque of two or three values is that of a coarse logger.
+/// The torque [N m] at which the sensor was at its limit or stuck: the value of every torque of the plateau, or the
+/// largest or smallest one where more than `most` of them have it. A torque of two or three values is that of a coarse
+/// logger.
 std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau, double most = 0.5);
 
-/// The time [s] from which a plateau has nearly no torque, below a tenth of what it had, so that what looks like a
-/// start-up is the measurement and the rest a sensor or a machine that failed; none: it keeps its torque.
+/// The time [s] from which a plateau has nearly no torque, below a tenth of what it had. What looks like a start-up is
+/// then the measurement, and the rest a sensor or a machine that failed. None where the plateau keeps its torque.
 std::optional<double> dies_at(const TorqueLog& log, const Plateau& plateau);
 
 /// What is doubtful in a plateau's torque, in words: clipped at a limit, coarse steps of the resolution, spikes, a

@@ -1,21 +1,21 @@
 #pragma once
-// The times of a log's samples, out of what its logger stamped.
+// The times of a log's samples, made from what its logger stamped.
 #include <cstddef>
 #include <string>
 #include <vector>
 
 namespace data {
 
-/// Sections of a log (`starts`: the first sample of each but the first) one behind the other, in place: where a section's time
-/// begins again, it follows the one before by that one's usual interval. Returns whether any did. Samples without a time are NaN.
+/// Puts the sections of a log one behind the other, in place (`starts`: the first sample of each section but the
+/// first). Where a section's time begins again, it follows the section before by that section's usual interval. Returns
+/// whether any did. Samples without a time are NaN.
 bool join_sections(std::vector<double>& times, const std::vector<std::size_t>& starts);
 
-/// Times made good in place: those of a clock that started again at midnight go on. Returns how many midnights there
-/// were. `of_day`: the stamps are times of day; else only seconds that fall from the end of a day to the start of one
-/// count.
+/// Lets the times of a clock that started again at midnight go on, in place. Returns how many midnights there were.
+/// `of_day`: the stamps are times of day; else only seconds that fall from the end of a day to the start of one count.
 std::size_t pass_midnight(std::vector<double>& times, bool of_day);
 
-/// Whether many samples share their stamp with others: it is coarser than the interval.
+/// Whether many samples share their stamp with others: the stamp is then coarser than the interval between samples.
 bool shares_stamps(const std::vector<double>& times);
 
 /// Whether some samples in order share their stamp with the one before: the clock is as coarse as the interval, or it

@@ -8,9 +8,10 @@ namespace data {
 
 enum class DecimalMark { point, comma };
 
-/// The number as a plain decimal ("-1234.5e-3", what std::from_chars reads), or nothing where the text is none. Taken
-/// besides plain numbers: a leading plus, a Unicode minus, Fortran's exponents (1.0D+00, 1.0-100), thousands parted by
-/// an apostrophe or a hard blank, and, where the number has both marks, by the mark that is not the decimal one.
+/// The number as a plain decimal ("-1234.5e-3", what std::from_chars reads), or nothing where the text is no number.
+/// Besides plain numbers it takes a leading plus, a Unicode minus, Fortran's exponents (1.0D+00, 1.0-100), thousands
+/// parted by an apostrophe or a hard blank, and, where the number has both marks, by the mark that is not the decimal
+/// one.
 std::optional<std::string> plain_number(std::string_view text, DecimalMark mark);
 
 /// Whether the text says that there is no value: empty, nan, N/A, -, ---.--, #N/A, #####, ?, NULL, 1.#QNAN, ****.
@@ -19,11 +20,11 @@ bool is_missing(std::string_view text);
 /// Whether the text says that a meter was beyond its range: OL, OVL, Over, +++++, inf.
 bool is_overload(std::string_view text);
 
-/// What a number with a comma or a point in it says of the decimal mark.
+/// What a number with a comma or a point in it says about the decimal mark.
 enum class Evidence {
   none,  ///< neither mark, or no number
   point,
-  comma,        ///< that one is the decimal mark
+  comma,        ///< the comma is the decimal mark
   maybe_point,  ///< 1.234
   maybe_comma,  ///< 1,234: thousands or decimals
 };
@@ -32,13 +33,13 @@ Evidence decimal_evidence(std::string_view text);
 /// "1 run", "2 runs".
 std::string counted(std::size_t count, std::string_view what);
 
-/// Without blanks, hard ones too, at both ends.
+/// The text without blanks, hard ones too, at both ends.
 std::string_view trimmed(std::string_view text);
 
-/// Letters of ASCII made small; all other bytes as they are.
+/// The text with ASCII letters in lower case; all other bytes are as they are.
 std::string lower_case(std::string_view text);
 
-/// Every `from` becomes `to`.
+/// Replaces every `from` in the text by `to`.
 void replace_all(std::string& text, std::string_view from, std::string_view to);
 
 }  // namespace data

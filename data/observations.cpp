@@ -31,7 +31,8 @@ struct OutputColumns {
   Unit unit, error_unit;
 };
 
-/// Those that the file has. An output whose column holds no value at all joins set.empty_outputs instead.
+/// The outputs that the file has columns of. An output whose column holds no value at all joins set.empty_outputs
+/// instead.
 std::vector<OutputColumns> output_columns(const Csv& csv, const Study& study, MissingErrors missing,
                                           ObservationSet& set) {
   std::vector<OutputColumns> found;

@@ -10,18 +10,19 @@
 
 namespace data {
 
-/// In the head of a file of observations, before what a study must state: the error of an idle torque, common to all rows.
+/// The words in the head of a file of observations before what a study must state: the error of an idle torque, which
+/// is common to all rows.
 inline constexpr std::string_view idle_error_mark = "its error is common to all of them: ";
 
-/// Indices into set.points of those at which the output of this column (an index into set.outputs) was measured.
+/// Indices into set.points of the points at which the output of this column (an index into set.outputs) was measured.
 std::vector<std::size_t> points_with(const ObservationSet& set, std::size_t column);
 
 /// Whether a file may lack the column OUTPUT_se of an output: its standard errors are NaN then, and copies are left in.
 enum class MissingErrors { refused, nan };
 
-/// Reads the points of `path`; `settings` (SI) gives the controls that it has no column of. Name, material and place
-/// are the caller's. Throws InputError: 66 missing; 65 missing column, no rows, a row without any output, text or nothing for a
-/// number, a standard error that is not above 0.
+/// Reads the points of `path`; `settings` (SI) gives the controls of which it has no column. Name, material and place
+/// are the caller's. Throws InputError: 66 missing; 65 missing column, no rows, a row without any output, text or
+/// nothing for a number, a standard error that is not above 0.
 ObservationSet read_observations(const std::string& path, const Study& study,
                                  const std::map<std::string, double>& settings = {},
                                  MissingErrors missing = MissingErrors::refused);
@@ -29,8 +30,8 @@ ObservationSet read_observations(const std::string& path, const Study& study,
 /// Takes rows that copy each other out of the points and notes them.
 void count_copies_once(ObservationSet& set, const Study& study);
 
-/// The noise that stands in the place of an output's standard errors (NuisanceKind::noise_sd), where all that reads the
-/// set has one, cases and predictions; else nullptr.
+/// The noise that stands in the place of an output's standard errors (NuisanceKind::noise_sd), where every case and
+/// prediction that reads the set has such a noise; else nullptr.
 const Nuisance* noise_instead(const Study& study, const ObservationSet& set, std::size_t output);
 
 }  // namespace data

@@ -77,7 +77,7 @@ bool cut_in_mark(std::string_view ending) {
   return false;
 }
 
-/// Of a file that has no whole mark.
+/// The origin of a file that has no whole mark.
 Origin without_mark(std::string_view beginning, std::string_view ending) {
   const bool ours = beginning.substr(0, hdf5_signature.size()) == hdf5_signature &&
                     beginning.find("demcal") != std::string_view::npos;

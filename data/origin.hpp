@@ -20,7 +20,7 @@ enum class Origin {
 
 /// What is at `path`; links are followed.
 Origin origin_of(const std::string& path);
-/// The same of a file's bytes.
+/// The origin of a file with these bytes.
 Origin origin_of_bytes(std::string_view bytes);
 
 /// The mark with zeros for a digest, to stand somewhere in the first 4096 or the last 256 bytes of a text.
@@ -32,7 +32,7 @@ std::string with_mark(std::string content, const std::string& path);
 
 /// Adds the mark to a finished HDF5 or netCDF file. Returns 0 or an errno.
 int append_mark(const std::string& path);
-/// Takes it off, when the file is to be changed by others than demcal.
+/// Takes the mark off, when the file is to be changed by others than demcal.
 void remove_mark(const std::string& path);
 
 /// Throws InputError (65) when the file is demcal's, but not as demcal wrote it; with `Strict::yes` also when it has no

@@ -26,7 +26,7 @@ std::optional<std::size_t> index_of(const Section& section, std::string_view key
   return {};
 }
 
-/// One value or a list of them.
+/// The values of a control: one value or a list.
 std::vector<double> values_of(const Section& settings, const Control& control) {
   std::vector<double> values;
   if (!settings.has(control.name)) return values;

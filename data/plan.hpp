@@ -12,8 +12,8 @@
 //   together = false                   # true: all its settings are one measurement with one cost
 //   readings = 1                       # of each setting, averaged
 //   error = "3 %"                      # of one reading; by default as the case's observations of that output have it
-//   meter = "torque-cell-1"            # of the observations, whose common error the readings have, too
-//   common_error = "1 %"               # or of a meter that has not measured yet, shared by all readings of the entry
+//   meter = "torque-cell-1"            # a meter of the observations, whose common error the readings have, too
+//   common_error = "1 %"               # of a meter that has not measured yet, shared by all readings of the entry
 //   cost = 1.0                         # of one measurement
 #include <optional>
 #include <string>
@@ -32,7 +32,7 @@ struct PlanEntry {
   bool together = false;
   int readings = 1;
   std::optional<Spread> error, common_error;
-  std::string meter;  ///< of the observations; empty: the one that has read the output, or a new one
+  std::string meter;  ///< a meter of the observations; empty: the one that has read the output, or a new one
   double cost = 1.0;
   std::string place;
 };
@@ -43,7 +43,7 @@ struct PlanSection {
   std::vector<PlanEntry> candidates;  ///< empty: the usual ones
 };
 
-/// Problems are recorded in `file`.
+/// Reads the section. Problems are recorded in `file`.
 PlanSection read_plan(const StudyFile& file, const Study& study);
 
 }  // namespace data

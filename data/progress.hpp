@@ -15,8 +15,8 @@ struct ProgressOptions {
   ProgressStyle style = ProgressStyle::automatic;  ///< automatic: a bar when stderr is a terminal, else lines
   bool counted = true;           ///< steps are things that a user counts; else shares of the whole, and no rate is told
   double redraw_interval = 0.2;  ///< s, between two drawings of the bar
-  std::function<void(const std::string&)> write = {};  ///< instead of stderr
-  std::function<double()> clock = {};                  ///< s, instead of the steady clock
+  std::function<void(const std::string&)> write = {};  ///< where lines go, instead of stderr
+  std::function<double()> clock = {};                  ///< time [s], instead of the steady clock's
 };
 
 /// One job of `total` steps. The destructor ends the bar's line.
@@ -28,11 +28,11 @@ class Progress {
   ~Progress();
 
   void advance(std::uint64_t steps = 1);
-  void set(std::uint64_t done);        ///< also backwards, on a resumed job
+  void set(std::uint64_t done);        ///< `done` may go backwards, on a resumed job
   void note(const std::string& line);  ///< a line of its own, above the bar
 
  private:
-  void draw(double now);  ///< holds mutex_
+  void draw(double now);  ///< the caller holds mutex_
   void clear_bar();
   std::string summary(double now) const;
 
@@ -48,7 +48,7 @@ class Progress {
 /// "42 s", "3 min 05 s", "2 h 10 min".
 std::string duration_text(double seconds);
 
-/// Of an estimate: "2.2 min", "5.3 h".
+/// The duration of an estimate: "2.2 min", "5.3 h".
 std::string rough_duration_text(double seconds);
 
 }  // namespace data

@@ -10,8 +10,8 @@
 
 namespace data {
 
-/// What a stream is drawn for; two purposes never share numbers under one seed. Each stands in the code at one place
-/// per index (a test sees to it), so no two uses draw the same numbers.
+/// What a stream is drawn for. Two purposes never share numbers under one seed. Each purpose stands in the code at one
+/// place per index (a test sees to it), so no two uses draw the same numbers.
 enum class Purpose : std::uint32_t {
   packing = 1,
   run = 2,
@@ -22,29 +22,29 @@ enum class Purpose : std::uint32_t {
   posterior_predictive = 7,  ///< replicate data
   prior_predictive = 8,      ///< are the data within the priors' reach?
   test = 9,
-  nuts = 10,               ///< its chains
+  nuts = 10,               ///< chains of the NUTS sampler
   cut = 11,                ///< chains of a cut posterior
   scouts = 12,             ///< reference draws in which maxima are looked for
   proposal = 13,           ///< adaptation of the mixture sampler's proposals
-  search_directions = 14,  ///< in which scouts are compared
+  search_directions = 14,  ///< directions in which scouts are compared
   predictive_curve = 15,
   discrepancy_band = 16,
   sobol = 17,                 ///< surrogates drawn for sensitivities
   contradiction = 18,         ///< starts of each observation set's own fit
-  rank_bands = 19,            ///< of simulation-based calibration
-  simulated_truth = 20,       ///< of simulation-based calibration
+  rank_bands = 19,            ///< bands of the ranks in simulation-based calibration
+  simulated_truth = 20,       ///< true values in simulation-based calibration
   case_seed = 21,             ///< child_seed of a case's sampler
   error_scan_seed = 22,       ///< child_seed of the samplers of an error scan
   comparison_seed = 23,       ///< child_seed of the sampler of a held model
   simulation_seed = 24,       ///< child_seed of a replicate's sampler
-  second_check = 26,          ///< of draws by NUTS
-  shuffled_points = 29,       ///< beside which a cloud of points is thin
-  repeated_data = 30,         ///< for the probabilities of words
+  second_check = 26,          ///< second check of the draws by NUTS
+  shuffled_points = 29,       ///< shuffled points, against which a cloud of points is thin
+  repeated_data = 30,         ///< repeated data for the probabilities of verdicts
   report_seed = 28,           ///< child_seed of what a case's report draws
-  thinned_runs = 31,          ///< those of many that a surrogate learns from
-  planned_noise = 32,         ///< of readings that a plan thinks of
-  planned_words = 33,         ///< readings for which a plan asks the words
-  planned_prior = 34,         ///< truths of a plan before any measurement
+  thinned_runs = 31,          ///< which of many runs a surrogate learns from
+  planned_noise = 32,         ///< noise of the readings that a plan considers
+  planned_words = 33,         ///< readings for which a plan asks the verdicts
+  planned_prior = 34,         ///< true values of a plan before any measurement
   unused_data = 35,           ///< data drawn beside those that a case has not used
   simulation_case_seed = 27,  ///< child_seed of a case's simulation-based calibration
 };
@@ -85,7 +85,7 @@ class RandomStream {
   double uniform() { return (static_cast<double>((*this)() >> 11) + 0.5) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
-  /// Standard normal by Box and Muller; both of a pair are used.
+  /// Standard normal by Box and Muller; both numbers of a pair are used.
   double normal() {
     if (has_spare_) {
       has_spare_ = false;

@@ -15,7 +15,7 @@ struct Column {
   Unit unit;
 };
 
-/// Why a row is not learnt from; nothing: it is.
+/// Why a row is not learnt from; Because::nothing where it is.
 struct LeftOut {
   enum class Because {
     nothing,
@@ -36,9 +36,9 @@ struct RunRow {
   std::vector<double> inputs;           ///< SI: parameters, then controls, in the table's column order
   std::vector<double> outputs;          ///< SI; NaN: the run has no such output
   std::vector<double> standard_errors;  ///< SI, of the outputs' means
-  std::uint64_t seed = 0;               ///< of the run's random streams
+  std::uint64_t seed = 0;               ///< seed of the run's random streams
   std::string settings;                 ///< hash of every setting that is not an input; "" for another code's runs
-  std::string isa;                      ///< instruction set that made it
+  std::string isa;                      ///< instruction set of the program that made it
   std::string origin;                   ///< program and version, or file and line
   double cpu_seconds = 0.0;
   std::string state = {};  ///< "steady", or why the means are not those of the steady flow; "" where nobody said
@@ -47,7 +47,7 @@ struct RunRow {
   std::string place = {};  ///< "runs.csv:31": where the row stands, by which the user names it; not stored
   LeftOut left_out = {};   ///< not stored
 };
-/// Whether the row says of itself that it is not of the steady flow.
+/// Whether the row says that its means are not those of the steady flow.
 bool is_unsteady(const RunRow& row);
 
 struct RunTable {
@@ -63,15 +63,16 @@ RunTable empty_table(const Study& study);
 /// Identity of a row: material, inputs (to 12 digits), seed and settings.
 std::string row_key(const RunRow& row);
 
-/// Rows of `first`, then those of `second` whose key `first` does not have. Rows of one table are never merged with
-/// each other: two of the same point and seed are replicates of a code that writes no seed of its own.
+/// Rows of `first`, then the rows of `second` whose key `first` does not have. Rows of one table are never merged with
+/// each other: two with the same point and seed are replicates of a code that writes no seed of its own.
 RunTable merge(const RunTable& first, const RunTable& second);
 
-/// After an output's name in RunRow::unreliable: its mean is that of the flow, and its error at least what it states.
+/// The mark after an output's name in RunRow::unreliable which says that its mean is that of the flow, and its error at
+/// least what it states.
 inline constexpr const char* brief_mark = ":short";
 
-/// Makes the outputs NaN whose means the rows call unreliable, and, unless the surrogates estimate what the stated errors
-/// lack (`scatter_estimated`), those of runs too short to know their errors; says how many of each.
+/// Makes the outputs NaN whose means the rows call unreliable. Unless the surrogates estimate what the stated errors
+/// lack (`scatter_estimated`), outputs of runs too short to know their errors become NaN, too. Says how many of each.
 std::vector<std::string> drop_unreliable(RunTable& table, bool scatter_estimated);
 
 /// Reads .h5 or .csv with the study's columns, in any column order. CSV rows with NaN or an empty cell among the
@@ -88,13 +89,13 @@ struct TableRead {
 };
 TableRead read_table(const std::string& path, const Study& study);
 
-/// Rows that are learnt from.
+/// Number of rows that are learnt from.
 std::size_t used_rows(const RunTable& table);
 
 /// Lines of a written CSV before its first row.
 inline constexpr int run_table_head_lines = 4;
 
-/// Atomic writes (temporary file, fsync, rename). Throw InputError (73).
+/// Writes the table, whole or not at all (temporary file, fsync, rename). Throws InputError (73).
 void write_table_hdf5(const std::string& path, const RunTable& table, const Study& study);
 void write_table_csv(const std::string& path, const RunTable& table, const Study& study);
 

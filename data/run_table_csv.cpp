@@ -59,8 +59,8 @@ struct Columns {
   std::vector<std::size_t> inputs, outputs;
   std::vector<std::optional<std::size_t>> errors;  ///< none: nobody stated them, and 0 stands for it
   std::optional<std::size_t> material, seed, settings, isa, origin, cpu_seconds, state, unreliable;
-  std::vector<std::size_t> status;  ///< that say how a run ended
-  std::vector<std::size_t> unread;  ///< that nobody asks for
+  std::vector<std::size_t> status;  ///< columns that say how a run ended
+  std::vector<std::size_t> unread;  ///< columns that nobody asks for
 };
 
 /// Another code's column `state` says something else.
@@ -119,7 +119,7 @@ Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) 
   return at;
 }
 
-/// What an unread column holds: "fill (from 200 to 300)", "note (text)".
+/// The contents of an unread column in words: "fill (from 200 to 300)", "note (text)".
 std::string contents(const Csv& csv, std::size_t column) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const CsvRow& row : csv.rows) {
@@ -191,7 +191,7 @@ void tell_failures(TableRead& result) {
   }
 }
 
-/// What a status column says of the row, or a column by which its user chooses rows.
+/// Whether a status column, or a column by which the user chooses rows, leaves the row out.
 LeftOut left_out_by_its_columns(const Csv& csv, const CsvRow& row, const Columns& at) {
   for (const std::size_t column : at.status) {
     if (!says_failed(csv.columns[column], row.fields[column])) continue;
@@ -217,7 +217,7 @@ std::string read_material(const Csv& csv, const CsvRow& row, const std::optional
                            fmt::format("the study has '{}'", fmt::join(names, "', '"))});
 }
 
-/// What is said of single rows. Rows of which the same is said share a line where they are many.
+/// Notes about single rows. Rows with the same note share a line where they are many.
 class RowNotes {
  public:
   explicit RowNotes(const Csv& csv) : csv_(csv) {}

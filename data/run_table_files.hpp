@@ -7,7 +7,7 @@
 
 namespace data {
 
-/// Columns of a CSV that say how a run ended ("status", "converged"), and the words of failure in them.
+/// Whether a column of a CSV says how a run ended ("status", "converged"), and whether its field has a word of failure.
 bool is_status_column(std::string_view name);
 bool is_user_column(std::string_view name);  ///< "use", "include", "keep": the user's own choice of rows
 bool says_failed(std::string_view column, std::string_view field);
@@ -15,7 +15,7 @@ bool says_failed(std::string_view column, std::string_view field);
 /// Whether a label of [training] leave_out ("31", "runs.csv:31") names the row at `place` ("runs.csv:31").
 bool names_row(const std::string& label, const std::string& place);
 
-/// Marks the rows that are not learnt from (data/run_table_marks.cpp) and adds what there is to say of them.
+/// Marks the rows that are not learnt from (data/run_table_marks.cpp) and adds the findings about them.
 void mark_rows(TableRead& read, const std::string& path, const Study& study);
 
 TableRead read_table_hdf5(const std::string& path, const Study& study);

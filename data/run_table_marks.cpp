@@ -87,7 +87,7 @@ void leave_out_zeros(TableRead& read) {
   }
 }
 
-/// What the runs of an output that are not `value` give; SI.
+/// The values of an output in the runs where it is not `value`; SI.
 struct OtherRuns {
   std::size_t count = 0;
   double least = HUGE_VAL, largest = 0.0;  ///< magnitudes
@@ -125,8 +125,8 @@ bool are_apart(const RunTable& table, const std::vector<RunRow*>& rows) {
   return false;
 }
 
-/// Runs that wrote one number in the place of a result: far beyond all others (1e30, 9999), or exactly 0 where all others lie
-/// well away from it.
+/// Runs that wrote one number in the place of a result: far beyond all others (1e30, 9999), or exactly 0 where all
+/// others lie well away from it.
 void leave_out_stand_ins(TableRead& read) {
   constexpr std::size_t several = 3;                       // equal to the last digit, at different inputs
   constexpr double far = 10.0, absurd = 1e6, away = 0.05;  // of the largest of the others

@@ -83,7 +83,7 @@ double check_range(const Node& node, std::string_view key, double value, const R
 
 struct Expected {
   Range range;
-  const Unit* default_unit = nullptr;  ///< of a bare number
+  const Unit* default_unit = nullptr;  ///< unit of a bare number
   bool difference = false;             ///< units count without their offset
 };
 
@@ -313,7 +313,8 @@ std::vector<double> Section::quantities(std::string_view key, std::string_view s
     return values;
   }
   for (const toml::node& element : *array) {
-    // What is wrong with one value is recorded; one stands in its place, so that nobody says that there are too few.
+    // A problem of one value is recorded. A stand-in takes its place, so that nobody says that there are too few
+    // values.
     values.push_back(
         read_quantity(*node_, key, element, si_unit, {range, default_unit}).value_or(missing_value(range, {})));
   }

@@ -1,9 +1,10 @@
 // The slowest cosine modes of a series x_1 ... x_n say how well its mean is known, and whether it drifts.
 //
 //   c_j = sqrt(2)/n sum_k x_k cos(j pi (k - 1/2)/n),  P_j = n c_j^2,  j = 1, 2, ...
-// Of a stationary series the c_j are for large n independent normal numbers of variance V/n each, V = sd^2 tau the
-// variance of its sum per sample; so is the mean's error (R. D. Foley, D. Goldsman, "Confidence intervals using
-// orthonormally weighted standardized time series", ACM Trans. Model. Comput. Simul. 9 (1999) 297).
+// For large n, the c_j of a stationary series are independent normal numbers of variance V/n each. V = sd^2 tau is the
+// variance of the series' sum per sample. The mean's error is another such number (R. D. Foley, D. Goldsman,
+// "Confidence intervals using orthonormally weighted standardized time series", ACM Trans. Model. Comput. Simul. 9
+// (1999) 297).
 //
 // Error. V = (P_1 + ... + P_8)/8, the spectrum at frequency zero from the lowest frequencies as in P. Heidelberger,
 // P. D. Welch, Commun. ACM 24 (1981) 233. (mean - truth)/sqrt(V/n) follows Student's t with 8 degrees of freedom. The
@@ -26,12 +27,12 @@
 // is that of the series without its slowest two modes (data/time_series.hpp), so that a drift does not pass for
 // correlation.
 //
-// Known or not. Where the correlation is not short beside the series that tau comes out too small: of series of 7 tau it
-// left 8 modes in 60 of 100, whose means scattered by 1.5 errors. So the error also counts as not known where the
+// Known or not. Where the correlation is not short beside the series that tau comes out too small: of series of 7 tau
+// it left 8 modes in 60 of 100, whose means scattered by 1.5 errors. So the error also counts as not known where the
 // spectrum of the modes 3 to 66 has not become flat by mode 8: with the Lorentzian that fits them best,
 //   minimum over tau of  sum_j (ln S_j + P_j/S_j),  S_j = V/(1 + (tau^2 - 1) sin^2(pi j/(2 n))),
 // n < 16 tau (P. Whittle, J. R. Stat. Soc. B 15 (1953) 125; of an autoregressive series of order 1 the law is exact).
-// Of series of 7 tau that leaves 10 in 100, of 10 tau 20, of 16 tau 60, of 25 tau 93.
+// With this rule the error is known in 10 of 100 series of 7 tau, in 20 of 10 tau, in 60 of 16 tau, in 93 of 25 tau.
 #include "data/steadiness.hpp"
 
 #include <algorithm>
@@ -101,7 +102,7 @@ double fitted_time(std::span<const double> power, double n) {
 
 Steadiness steadiness(std::span<const double> series, const SteadinessOptions& options) {
   Steadiness result;
-  // What the usual estimate says, without its own truncation, where there is too little for this one.
+  // The usual estimate, without its own truncation, holds where there is too little for this one.
   result.mean = mean_with_error(series, {.start_up_fraction_max = 0.0});
   if (series.size() < 2 * options.drift_modes || !std::isfinite(result.mean.standard_error)) {
     result.mean.reliable = false;

@@ -30,7 +30,8 @@ std::string beside(const Study& study, const std::string& file) {
   return (fs::path(study.folder) / file).lexically_normal().string();
 }
 
-/// What mixtures are made of is simulated within them, and has no rows of its own.
+/// Names of the materials that mixtures are made of. These are simulated within the mixtures, and have no rows of their
+/// own.
 std::set<std::string> ingredients(const Section& materials) {
   std::set<std::string> names;
   for (const auto& [unused, section] : materials.children())
@@ -88,7 +89,7 @@ std::string material_of(const Section& section, const Study& study) {
 
 namespace {
 
-/// What is wrong with the observation files, with the exit status of the first problem; and each set's settings.
+/// Problems of the observation files, with the exit status of the first one; and each set's settings.
 struct ObservationFiles {
   ExitStatus status = ExitStatus::done;
   std::vector<Problem> problems;
@@ -137,7 +138,7 @@ ObservationFiles read_observation_sets(const Section& root, Study& study) {
   return found;
 }
 
-/// One meter has one error: sets that name the same one must agree on it.
+/// Checks that sets which name the same meter agree on its error: one meter has one error.
 void check_meters(const Section& root, const Study& study) {
   std::size_t index = 0;
   for (const Section& section : root.array("observe")) {

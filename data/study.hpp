@@ -1,6 +1,6 @@
 #pragma once
-// What a study says about parameters, controls, outputs, observations and cases. The sections [rig], [materials.*]
-// beyond `fixed` and `runs`, [contact] and [run] belong to the DEM (dem/reading/read_case.cpp).
+// What a study says about parameters, controls, outputs, observations and cases. The DEM's sections are read by
+// dem/reading/read_case.cpp: [rig], [contact], [run], and what [materials.*] holds beside `fixed` and `runs`.
 // All numbers are SI; a Unit beside them is for display only.
 #include <cmath>
 #include <cstdint>
@@ -70,14 +70,15 @@ struct Spread {
 /// How the error of a control enters a case.
 enum class SettingErrorAs {
   covariance,  ///< first order, in the covariance; set anew at each value of the control
-  shared,      ///< so, but one error of all points, whatever their values: a tachometer's
+  shared,      ///< in the covariance, but one error of all points, whatever their values: a tachometer's
   unknown      ///< sampled as an unknown
 };
 
 template <>
 inline constexpr std::array texts_of<SettingErrorAs> = {"covariance", "shared", "unknown"};
 
-/// How well a control is known. Points of a set at one value of it (a fill, repeats at a speed) share its error.
+/// How well a control is known. Points of a set at one value of the control (a fill, repeats at a speed) share its
+/// error.
 struct SettingError {
   std::size_t control = 0;  ///< index into Study::controls
   Spread spread;
@@ -93,7 +94,7 @@ struct Control {
   double low = 0.0;   ///< SI
   double high = 1.0;  ///< SI
   Scale scale = Scale::linear;
-  std::optional<SettingError> uncertainty;  ///< of every observation set that does not state its own
+  std::optional<SettingError> uncertainty;  ///< error in every observation set that does not state its own
   std::string place;
   Axis axis() const { return {low, high, scale}; }
 };
@@ -108,7 +109,7 @@ struct Output {
 struct Material {
   std::string name;
   std::map<std::string, double> fixed;  ///< parameters its training runs do not vary, SI
-  std::optional<int> runs;              ///< instead of [training] runs
+  std::optional<int> runs;              ///< number of runs, instead of [training] runs
   std::string powder;                   ///< materials of one powder are its levels of coarse graining; may be empty
   std::string place;
 };
@@ -132,7 +133,7 @@ struct Training {
   std::string place;
 };
 
-/// One measured point: outputs at given controls. Not every output need have been measured there.
+/// One measured point: outputs at given controls. Some outputs may not have been measured there.
 struct Observation {
   std::vector<double> controls;         ///< SI, in the order of Study::controls
   std::vector<double> values;           ///< SI, in the order of ObservationSet::outputs; NaN: not measured
@@ -143,7 +144,7 @@ struct Observation {
   bool has(std::size_t column) const { return !std::isnan(values[column]); }
 };
 
-/// A row of an observation file that is another one again, to the last digit (data/copies.hpp); it is counted once.
+/// A row of an observation file that copies another row to the last digit (data/copies.hpp); it is counted once.
 struct ObservationCopy {
   int line = 0, of = 0;
 };
@@ -152,13 +153,13 @@ struct ObservationCopy {
 struct CommonError {
   std::size_t output = 0;  ///< index into Study::outputs
   Spread spread;
-  bool apart = false;  ///< from its meter's: integrated out by itself, where nothing else is read by the meter
+  bool apart = false;  ///< apart from its meter's: integrated out by itself, where the meter reads nothing else
 };
 
-/// The errors of two outputs' readings at one setting go together, as those of two numbers read off one picture.
+/// A correlation of the errors of two outputs read at one setting, such as two numbers read off one picture.
 struct ErrorCorrelation {
   std::size_t output = 0, other_output = 0;  ///< indices into Study::outputs
-  std::string other_set = {};                ///< that holds the other output's readings
+  std::string other_set = {};                ///< set that holds the other output's readings
   double value = 0.0;                        ///< correlation coefficient
   std::string place = {};
 };
@@ -171,8 +172,8 @@ struct ObservationSet {
   std::vector<Observation> points;   ///< without copies
   std::vector<ObservationCopy> copies = {};
   std::vector<std::size_t> empty_outputs = {};      ///< indices into Study::outputs, of columns without any value
-  std::vector<std::string> parameter_columns = {};  ///< of the study's parameters, those that the file has columns of
-  std::string meter = {};  ///< sets that name the same one have its common errors together; empty: each its own
+  std::vector<std::string> parameter_columns = {};  ///< names of the study's parameters of which the file has columns
+  std::string meter = {};  ///< sets that name one meter share its common errors; empty: each set has its own
   std::vector<CommonError> common_errors;
   std::vector<ErrorCorrelation> correlations = {};
   std::vector<SettingError> setting_errors;
@@ -186,14 +187,13 @@ struct ObservationSet {
   std::optional<std::size_t> column_of(std::size_t output) const;
 };
 
-/// What beside the parameters is unknown of a measurement, and how it acts on the prediction m of what is read:
-///   reading = scale * gain * m + offset + discrepancy + noise
+/// An unknown of a measurement beside the parameters, and how it acts on the model's prediction m of what is read:
 enum class NuisanceKind {
   offset,          ///< added to every reading of an output: an idle torque
   gain,            ///< multiplies every reading of an output
   noise_scale,     ///< multiplies the stated standard errors
-  noise_sd,        ///< stands in their place, the same at all points
-  scale,           ///< of the machine to the slice
+  noise_sd,        ///< stands in the place of the standard errors, the same at all points
+  scale,           ///< ratio of the machine's reading to the slice's
   setting,         ///< a control's true value in one observation set
   discrepancy_sd,  ///< of a Gaussian process over the controls: share of the root mean square of the measured values
   discrepancy_length,  ///< its correlation length, in ranges of the controls
@@ -201,7 +201,7 @@ enum class NuisanceKind {
 
 struct Nuisance {
   NuisanceKind kind = NuisanceKind::offset;
-  std::optional<std::size_t> output;  ///< that it acts on, index into Study::outputs; none: all of the case
+  std::optional<std::size_t> output;  ///< index into Study::outputs of the output it acts on; none: all of the case
   Parameter parameter;                ///< name, unit, range and prior
 };
 
@@ -214,17 +214,17 @@ inline constexpr std::array texts_of<Sampler> = {"mixture", "nuts"};
 struct CalibrationCase {
   std::string name;
   std::vector<std::string> observe;  ///< names of observation sets; none: nothing is measured yet
-  std::string material;              ///< of a case that observes nothing: whose runs it is planned on
+  std::string material;              ///< material whose runs a case that observes nothing is planned on
   std::vector<std::string> free;
   std::map<std::string, double> fixed;  ///< SI
-  std::map<std::string, double> held;   ///< SI: the case is compared with itself with these free parameters held
-  std::map<std::string, Prior> priors;  ///< instead of the parameters' own
+  std::map<std::string, double> held;   ///< SI: free parameters held at these values in a second case, to compare
+  std::map<std::string, Prior> priors;  ///< priors that replace the parameters' own
   std::vector<Nuisance> nuisances;
   Sampler sampler = Sampler::mixture;
   std::string place;
 };
 
-/// Observation sets that a case does not use, held against what it predicts of them.
+/// Observation sets that a case does not use, to be compared with what the case predicts of them.
 struct UnusedData {
   std::string name;
   std::size_t case_index = 0;  ///< into Study::cases
@@ -232,7 +232,7 @@ struct UnusedData {
   std::string place;
 };
 
-/// What the machine's torque is to the slice's: a number, or unknown with a prior.
+/// Ratio of the machine's torque to the slice's: a number, or unknown with a prior.
 struct RigScale {
   double value = 1.0;
   std::optional<Nuisance> unknown;
@@ -244,7 +244,7 @@ struct Study {
   std::vector<std::string> notes;  ///< choices that the source does not give; the report shows them beside the verdicts
   std::uint64_t seed = 1;
   std::string file;    ///< absolute path of study.toml
-  std::string folder;  ///< that holds it
+  std::string folder;  ///< the folder that holds study.toml
   std::vector<Parameter> parameters;
   std::vector<Control> controls;
   std::vector<Output> outputs;
@@ -270,7 +270,7 @@ struct Input {
   Axis axis;
 };
 
-/// Of a run, in the order of RunRow::inputs: parameters, then controls.
+/// The inputs of a run, in the order of RunRow::inputs: parameters, then controls.
 std::vector<Input> inputs_of(const Study& study);
 
 /// Reads the sections above and the observation files. Problems are recorded in `file` (file.finish() throws them) so
@@ -278,8 +278,8 @@ std::vector<Input> inputs_of(const Study& study);
 /// all that was found so far: 66 or 65, or 78 when the study has problems of its own.
 Study read_study(const StudyFile& file);
 
-/// Throws InputError (78) when the study has no observations or no cases, or a case observes nothing. Training and a plan
-/// on the prior need none of them, calibration does.
+/// Throws InputError (78) when the study has no observations or no cases, or a case observes nothing. Training and a
+/// plan on the prior need none of them, calibration does.
 void require_cases(const Study& study);
 
 /// Observed points whose controls lie outside the controls' ranges, where a surrogate extrapolates.

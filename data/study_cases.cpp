@@ -1,5 +1,5 @@
-// [[calibrate]] and [[predict]]: what each case names must exist, and together `free`, `fixed` and what the observed materials fix
-// themselves must give every parameter exactly one role.
+// [[calibrate]] and [[predict]]: what each case names must exist, and together `free`, `fixed` and what the observed
+// materials fix themselves must give every parameter exactly one role.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -80,7 +80,7 @@ void check_roles(const Section& section, const CalibrationCase& item, const Stud
   }
 }
 
-/// What the case is compared with must be the case with fewer free parameters, inside their ranges.
+/// Checks that the case is compared with itself with fewer free parameters, held inside their ranges.
 void check_comparison(const Section& section, const CalibrationCase& item, const Study& study) {
   for (const auto& [name, value] : item.held) {
     const Parameter& parameter = study.parameters[*study.parameter_index(name)];
@@ -98,7 +98,7 @@ void check_comparison(const Section& section, const CalibrationCase& item, const
     section.problem("compare", "leaves no parameter free", "leave at least one out");
 }
 
-/// What a nuisance acts on must be measured, and its name must not be a parameter's.
+/// Checks that what a nuisance acts on is measured, and that its name is not a parameter's.
 void check_nuisances(const Section& section, const CalibrationCase& item, const Study& study) {
   for (const Nuisance& nuisance : item.nuisances) {
     const std::string& name = nuisance.parameter.name;
@@ -174,7 +174,7 @@ std::set<std::string> informing(const CalibrationCase& item, const Study& study)
   return sets;
 }
 
-/// What is predicted must not have been used, and must be read by what the case knows.
+/// Checks that predicted data have not been used, and that the case knows what they are read by.
 void check_unused_data(const Section& section, const UnusedData& wanted, const Study& study) {
   const CalibrationCase& item = study.cases[wanted.case_index];
   const std::set<std::string> used = informing(item, study);

@@ -14,7 +14,7 @@ namespace {
 
 using Node = Section::Node;
 
-/// What an override has brought, as deep as it goes: a problem in it names the override.
+/// Marks all keys that an override has brought, at any depth: a problem in one names the override.
 void mark_overridden(StudyFile::State& state, const toml::table* table, const std::string& key,
                      const std::string& text) {
   state.overridden[{table, key}] = text;

@@ -49,9 +49,9 @@ class StudyFile;
 /// bound nearest to sense, or empty text) is returned so that reading goes on.
 class Section {
  public:
-  bool exists() const;                                 ///< the table is in the file
-  bool has(std::string_view key) const;                ///< makes the key known, but not used
-  ValueKind kind(std::string_view key) const;          ///< makes the key known, but not used
+  bool exists() const;                                 ///< whether the table is in the file
+  bool has(std::string_view key) const;                ///< whether the key is there; makes the key known, but not used
+  ValueKind kind(std::string_view key) const;          ///< kind of the key's value; makes the key known, but not used
   std::string place(std::string_view key = "") const;  ///< "study.toml:12: contact.friction"
   std::string name() const;                            ///< dotted: "parameters.friction"
 
@@ -61,7 +61,8 @@ class Section {
   /// unless `default_unit` is given (a section with a `unit`), or the dimension is none ("1").
   double quantity(std::string_view key, std::string_view si_unit, Range range, std::optional<double> fallback = {},
                   const Unit* default_unit = nullptr) const;
-  /// The same of an error, a shift or another difference: "2 degC" are 2 K. So reads `quantity` too where its
+  /// Reads an error, a shift or another difference in the same way: "2 degC" are 2 K. `quantity` too reads its value so
+  /// where its `default_unit` is of differences.
   /// `default_unit` is of differences.
   double difference(std::string_view key, std::string_view si_unit, Range range, std::optional<double> fallback = {},
                     const Unit* default_unit = nullptr) const;
@@ -105,13 +106,13 @@ class StudyFile {
   static StudyFile open(const std::string& path, const std::vector<std::string>& overrides = {});
 
   Section root() const;
-  std::string path() const;    ///< of the file
-  std::string folder() const;  ///< that holds it; relative paths in the study start here
+  std::string path() const;    ///< path of the file
+  std::string folder() const;  ///< folder of the file; relative paths in the study start here
 
-  /// Every key that was asked for so far, whether it is there or not, by its dotted name. The reference of keys
-  /// (study_keys.hpp) is held against it.
+  /// Every key that was asked for so far, whether it is there or not, by its dotted name. A test compares the reference
+  /// of keys (study_keys.hpp) with this list.
   const std::map<std::string, AskedKey>& asked() const;
-  /// Every key that was looked for, to be read only when it is there.
+  /// Every key that is read only when it is there, and was looked for.
   const std::set<std::string>& looked_for() const;
 
   /// The problems recorded so far, in the order of the file.

@@ -21,7 +21,7 @@ struct StudyKey {
   std::string_view example;  ///< TOML
 };
 
-/// In the order of a study file.
+/// All keys, in the order of a study file.
 const std::vector<StudyKey>& study_keys();
 
 /// The entries that a user may mean by "friction", "contact.friction", "[observe]", "materials.sand.density" or
@@ -37,7 +37,7 @@ std::vector<std::string> study_sections();
 /// An entry as text for the terminal: several lines.
 std::string describe(const StudyKey& key);
 
-/// docs/keys.md.
+/// The text of docs/keys.md.
 std::string study_keys_page();
 
 }  // namespace data

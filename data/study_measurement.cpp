@@ -1,4 +1,4 @@
-// What is known of a measurement beside its numbers: the meter's offset, gain, noise and common error, settings known
+// The knowledge of a measurement beside its numbers: the meter's offset, gain, noise and common error, settings known
 // only within an uncertainty, the machine's scale, and the model's discrepancy.
 //
 // Default priors, where a study only asks for an unknown:

@@ -1,6 +1,7 @@
 #pragma once
-// Inside of the study reader, shared by section.cpp and study_file.cpp only: per table, which keys were asked for
-// (known), which of them were there (used), and which tables were opened; a key that is there but not used is an error.
+// The inside of the study reader, shared by section.cpp and study_file.cpp only. It notes for each table which keys
+// were asked for (known), which of these were there (used), and which tables were opened. A key that is there but not
+// used is an error.
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -14,7 +15,7 @@
 
 namespace data {
 
-/// Of a value, in its file; 0 for one that no file holds.
+/// The line of a value in its file; 0 for a value that no file holds.
 inline std::size_t line_of(const toml::node& node) { return node.source().begin.line; }
 
 struct StudyFile::State {
@@ -44,7 +45,7 @@ struct Section::Node {
   std::shared_ptr<StudyFile::State> state;
   const toml::table* table = nullptr;  ///< null: not in the file
   std::string name;
-  std::size_t line = 0;  ///< of the table, or of the nearest table above it that is in the file
+  std::size_t line = 0;  ///< line of the table, or of the nearest table above it that is in the file
 
   std::string dotted(std::string_view key) const {
     if (key.empty()) return name;
@@ -82,7 +83,8 @@ struct Section::Node {
     return node;
   }
 
-  /// Some keys are read in several ways: a number, or a table. Text that is read first is a look at what stands there.
+  /// Notes how a key is read. Some keys are read in several ways: a number, or a table. Text that is read first is a
+  /// look at what stands there.
   void note(std::string_view key, const AskedKey& how) const {
     const auto [known, is_new] = state->asked.emplace(dotted(key), how);
     std::string& type = known->second.type;
@@ -93,7 +95,7 @@ struct Section::Node {
       type += " or " + how.type;
   }
 
-  /// `ask` for a value that must be there.
+  /// Asks for a value that must be there: a missing one is a problem.
   const toml::node* demand(std::string_view key, std::string_view example) const {
     const toml::node* node = ask(key);
     if (node == nullptr) problem(key, "is missing", fmt::format("add a line like {} = {}", key, example));

@@ -28,21 +28,22 @@ Prior read_prior(const Section& section, const Parameter& parameter, PriorOf own
 /// `{ NAME = VALUE }` for parameters, bare numbers in the parameter's unit, SI.
 std::map<std::string, double> read_fixed(const Section& section, const Study& study);
 
-/// [rig] scale, and of each [[observe]]: what is known of its meter and its settings (study_measurement.cpp).
+/// Reads [rig] scale. The functions below read what is known of the meter and the settings of an [[observe]]
+/// (study_measurement.cpp).
 void read_rig_scale(const Section& root, Study& study);
 /// What a number without a unit is.
 enum class BareNumber { share, value };
-/// "2 %", or a value with its unit, which a bare number may have from `section_unit`.
+/// Reads "2 %", or a value with its unit; `section_unit` is the unit of a bare number.
 Spread read_spread(const Section& section, std::string_view key, const Unit& unit, BareNumber bare,
                    const Unit* section_unit = nullptr);
 std::optional<SettingError> read_uncertainty(const Section& section, std::string_view key, const Control& control,
                                              const Unit* section_unit);
 void read_measurement(const Section& root, const Section& section, const Study& study, ObservationSet& set);
-/// [[observe.correlation]] of every set, once all sets are there.
+/// Reads [[observe.correlation]] of every set, once all sets are there.
 void read_correlations(const Section& root, Study& study);
-/// Values of controls that an observation file has no column of: settings = { fill = 2400 }.
+/// Reads the values of controls of which an observation file has no column: settings = { fill = 2400 }.
 std::map<std::string, double> read_settings(const Section& section, const Study& study);
-/// offset, gain, noise and discrepancy of a case.
+/// Reads offset, gain, noise and discrepancy of a case.
 std::vector<Nuisance> read_nuisances(const Section& section, const Study& study);
 
 /// The material that an [[observe]], or a case without one, is about: the key `material`, or the study's only one.

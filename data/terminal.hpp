@@ -1,7 +1,7 @@
 #pragma once
-// What goes to the terminal. Texts of files, names and keys among them, are data: a control character in one is shown
-// as its code and does nothing. A terminal that is closed, a full disk behind a redirection or a reader that left
-// cannot stop the job.
+// Output to the terminal. Texts of files, names and keys among them, are data: a control character in one is shown as
+// its code and does nothing. A terminal that is closed, a full disk behind a redirection or a reader that left cannot
+// stop the job.
 #include <string>
 #include <string_view>
 
@@ -11,21 +11,22 @@ namespace data {
 /// that turns the direction of writing shown as its code: "\x1b", "\u202e".
 std::string printable(std::string_view text);
 
-/// A line for the user on standard error, made printable. What cannot be written is lost without a word.
+/// Writes a line for the user on standard error, made printable. What cannot be written is lost without a word.
 void tell(std::string_view line);
 
-/// The result on standard output, a line. Throws InputError (73) when it cannot be written.
+/// Writes the result on standard output, a line. Throws InputError (73) when it cannot be written.
 void print_result(std::string_view text);
 
-/// What a person asked for on standard output, made printable, a line. A reader that left and a stream that is closed
-/// are no failures, as what it tells is kept in files; a full disk is one: throws InputError (73).
+/// Writes what a person asked for on standard output, a line, made printable. A reader that left and a stream that is
+/// closed are no failures, as the same is kept in files; a full disk is one: throws InputError (73).
 void print_answer(std::string_view text);
 
 /// Whether the two streams end in different places, so that a line on one is not seen beside the other's.
 bool answers_go_elsewhere();
 
-/// At the program's start: standard streams that are closed are held by something harmless, so that no file takes
-/// their place; a reader that leaves (SIGPIPE) or a limit on a file's size (SIGXFSZ) is an error, not the end.
+/// Guards the standard streams; call it at the program's start. Streams that are closed are held by something harmless,
+/// so that no file takes their place. A reader that leaves (SIGPIPE) or a limit on a file's size (SIGXFSZ) becomes an
+/// error and does not end the program.
 void guard_streams();
 
 }  // namespace data

@@ -21,9 +21,10 @@ struct DecodedText {
   std::string took;  ///< "UTF-16 (little endian)", "Latin-1"; empty for plain UTF-8
 };
 
-/// By the byte-order mark; without one, UTF-16 by the zeros of its ASCII characters, else UTF-8 where it is valid, else
-/// Shift-JIS where all of it is and holds kana or kanji, else Latin-1 (as Windows-1252 extends it). Throws InputError
-/// (65) for UTF-32, for UTF-16 that is cut off within a character, and for what is no text (`name` in the message).
+/// Finds the encoding by the byte-order mark. Without a mark it is UTF-16 by the zeros of its ASCII characters, else
+/// UTF-8 where the bytes are valid, else Shift-JIS where all of them are and hold kana or kanji, else Latin-1 (as
+/// Windows-1252 extends it). Throws InputError (65) for UTF-32, for UTF-16 that is cut off within a character, and for
+/// what is no text (`name` in the message).
 DecodedText decode_text(std::string_view bytes, const std::string& name);
 
 }  // namespace data

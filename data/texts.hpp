@@ -24,7 +24,7 @@ constexpr const char* to_text(Enum value) {
   return texts_of<Enum>[static_cast<std::size_t>(value)];
 }
 
-/// Nothing where no value has this text.
+/// The value that has this text; nothing where none has.
 template <HasTexts Enum>
 constexpr std::optional<Enum> from_text(std::string_view text) {
   for (std::size_t i = 0; i < texts_of<Enum>.size(); ++i)

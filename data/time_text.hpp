@@ -15,10 +15,10 @@ struct ClockTime {
   double seconds = 0.0;  ///< since midnight; with a date, since 1 January 1970
   bool dated = false;
   bool day_or_month = false;             ///< a date like 03/05/2024, whose day may be either; left out of `seconds`
-  DateOrder order = DateOrder::unknown;  ///< that 31/05/2024 or 05/31/2024 shows
+  DateOrder order = DateOrder::unknown;  ///< the order that a date like 31/05/2024 or 05/31/2024 shows
   bool two_parts = false;  ///< 14:02 without a date: hours and minutes, or minutes and seconds; read as the first
 };
-/// `order`: that of 03/05/2024, where other dates beside it show it.
+/// Reads a stamp. `order`: the order of dates like 03/05/2024, where other dates beside it show one.
 std::optional<ClockTime> read_time(std::string_view text, DateOrder order = DateOrder::unknown);
 
 }  // namespace data

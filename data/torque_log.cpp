@@ -1,7 +1,7 @@
 // Plateaus. A sample belongs to the running plateau while its speed lies within the tolerance of the plateau's mean so
-// far. A few samples further away (`lone` of them, or a twentieth of a second) are a logger's dropouts. They stay in the
-// torque series, whose even spacing the autocorrelation needs. More in a row end the plateau. A gap in time, where a
-// logger lost samples, ends it where another plateau could have been in it: from the shortest one's length on.
+// far. A few samples further away (`lone` of them, or a twentieth of a second) are a logger's dropouts. They stay in
+// the torque series, whose even spacing the autocorrelation needs. More in a row end the plateau. A gap in time, where
+// a logger lost samples, ends it where another plateau could have been in it: from the shortest one's length on.
 #include "data/torque_log.hpp"
 
 #include <algorithm>
@@ -75,8 +75,8 @@ void mark_ramps(const TorqueLog& log, std::vector<Plateau>& plateaus, double tol
   for (std::size_t k = plateaus.size(); k-- > 1;) goes_on(k, k - 1);
 }
 
-/// The step in which the tachometer counts, or 0: every difference between speeds of the log is a multiple of it. A column of
-/// wanted speeds has no more values than holds; a tachometer has others in the ramps between them.
+/// The step in which the tachometer counts, or 0: every difference between speeds of the log is a multiple of it. A
+/// column of wanted speeds has no more values than holds; a tachometer has others in the ramps between them.
 double tachometer_step(const TorqueLog& log, std::size_t holds) {
   constexpr std::size_t most = 1000;  // values; more are no steps
   std::set<double> values;
@@ -205,8 +205,8 @@ void join_swings(const TorqueLog& log, std::vector<Plateau>& plateaus, const Pla
   plateaus = std::move(joined);
 }
 
-/// Whether the autocorrelation swings to the other side once it has come to zero, as that of a hum does. It is looked at
-/// through some thousand products a lag and some dozens of lags a doubling, so that long logs take no time.
+/// Whether the autocorrelation swings to the other side once it has come to zero, as that of a hum does. It is looked
+/// at through some thousand products a lag and some dozens of lags a doubling, so that long logs take no time.
 bool swings_back(std::span<const double> series) {
   constexpr double clearly = -0.1, products = 3989.0;
   const std::size_t n = series.size(), most = n / 10;
@@ -257,7 +257,7 @@ double standstill_speed(const TorqueLog& log) {
   const auto fast = sizes.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(sizes.size() - 1));
   std::nth_element(sizes.begin(), fast, sizes.end());
   const double fastest = *fast;
-  // What the tachometer scatters by where the machine hardly moves, from one sample to the next.
+  // The tachometer's scatter where the machine hardly moves, from one sample to the next.
   std::vector<double> steps;
   for (std::size_t i = 1; i < log.speed.size(); ++i)
     if (std::max(std::abs(log.speed[i]), std::abs(log.speed[i - 1])) <= 0.01 * fastest)
@@ -302,7 +302,8 @@ std::vector<Plateau> find_stretches(const TorqueLog& log, const PlateauOptions& 
       const Plateau plateau = reduce(log, first, last - first + 1, mean, options);
       if (plateau.used_from <= last) plateaus.push_back(plateau);
     }
-    // A hold may begin within a ramp. Its front is found to a sixty-fourth of the ramp's piece, and long logs in no time.
+    // A hold may begin within a ramp. Its front is found to a sixty-fourth of the ramp's piece, and long logs in no
+    // time.
     first = !turning || long_enough ? last + 1 : first + std::max<std::size_t>(1, (last - first) / 64);
   }
   join_swings(log, plateaus, options);

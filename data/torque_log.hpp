@@ -16,9 +16,9 @@
 
 namespace data {
 
-/// Where a log keeps a quantity. A header may carry the unit: "Torque [N m]", "time (s)", "speed / rpm".
+/// The column in which a log keeps a quantity. A header may carry the unit: "Torque [N m]", "time (s)", "speed / rpm".
 struct LogColumn {
-  std::string name;  ///< without the unit; upper and lower case are the same
+  std::string name;  ///< name without the unit; upper and lower case count as the same
   std::string unit;  ///< "" : the header's, or, where that has none, `usual`
   std::string usual;
   std::vector<std::string> also;  ///< other names, looked for where there is no `name`
@@ -37,8 +37,8 @@ struct LogColumns {
                   .usual = "rpm",
                   .also = {"speed", "rotational speed", "rotation speed", "velocity", "angular velocity", "drehzahl",
                            "vitesse", "omega", "n"}};
-  std::optional<double> constant_speed;  ///< rad/s, of a log that has no column for it
-  std::optional<double> rate;            ///< 1/s: the samples follow each other so, whatever their stamps say
+  std::optional<double> constant_speed;  ///< rad/s, speed of a log that has no column for it
+  std::optional<double> rate;            ///< samples per second (1/s), whatever their stamps say
 };
 
 /// Samples in SI, in the order of time.
@@ -55,45 +55,45 @@ struct TorqueLog {
   double interval = 0.0;              ///< s, median between samples
   double uneven_share = 0.0;          ///< share of the intervals that differ from the median by more than a fifth
 
-  /// Whether means are over time, each sample until the next one, and not over samples.
+  /// Whether means are taken over time, each sample counting until the next one, and not over samples.
   bool uneven() const { return uneven_share > 0.05 && interval > 0.0; }
 };
 
 /// Reads a log. Times are numbers with a unit, times of day or dates with times; those that start again at midnight go
 /// on, and samples that share a stamp are spread evenly (data/log_times.hpp). Times of any clock count from the first.
-/// Numbers without a unit are seconds where they can be; that stands in `notes`. Throws InputError: 66 missing; 65 missing
-/// column, unknown unit, a time that runs backwards, no samples.
+/// Numbers without a unit are seconds where they can be; that stands in `notes`. Throws InputError: 66 missing; 65
+/// missing column, unknown unit, a time that runs backwards, no samples.
 TorqueLog read_torque_log(const std::string& path, const LogColumns& columns = {});
 
 struct PlateauOptions {
-  double tolerance = 0.02;   ///< of the speed: how far a sample may lie from its plateau's speed
-  double shortest = 5.0;     ///< s; shorter stretches are ramps
+  double tolerance = 0.02;   ///< share of the plateau's speed by which a sample may differ from it
+  double shortest = 5.0;     ///< s, shortest plateau; shorter stretches are ramps
   double dead_time = 0.0;    ///< s dropped at the front of each plateau, before start-up is looked for
   double from = -INFINITY;   ///< s, the part of the log that is used
   double to = INFINITY;      ///< s
-  bool spikes_count = true;  ///< in mean and error (SeriesOptions)
+  bool spikes_count = true;  ///< spikes count in mean and error (SeriesOptions)
 };
 
 struct Plateau {
   std::size_t first = 0, count = 0;    ///< samples of constant speed
   std::size_t used_from = 0;           ///< the first sample after dead time and start-up
   bool ramp = false;                   ///< the speed changes all the time, slowly: no plateau
-  double speed = 0.0, speed_sd = 0.0;  ///< rad/s, of the samples used
-  double off_speed = 0.0;              ///< share of these that lie off it by more than the tolerance
-  double speed_step = 0.0;             ///< rad/s, of the tachometer; its rounding is in speed_sd
+  double speed = 0.0, speed_sd = 0.0;  ///< rad/s, mean and standard deviation over the samples used
+  double off_speed = 0.0;              ///< share of the samples used that lie off the speed by more than the tolerance
+  double speed_step = 0.0;             ///< rad/s, step of the tachometer; its rounding is in speed_sd
   SeriesMean torque;                   ///< N m
 
-  /// Uncorrelated samples that would tell as much; an estimate, at most the samples used.
+  /// Number of uncorrelated samples that would tell as much: an estimate, at most the samples used.
   double independent_samples() const {
     return std::min(torque.effective_samples, static_cast<double>(first + count - used_from));
   }
 };
 
-/// At this speed and below the machine stands still [rad/s]: what cannot be told from the tachometer's scatter there,
-/// between a five hundredth and a hundredth of the log's largest.
+/// The speed [rad/s] at which and below which the machine counts as standing still: five times the tachometer's scatter
+/// there, but no less than a five hundredth and no more than a hundredth of the log's largest speed.
 double standstill_speed(const TorqueLog& log);
 
-/// The plateaus in the order of time; standstill is none.
+/// The plateaus in the order of time. A standstill is no plateau.
 std::vector<Plateau> find_plateaus(const TorqueLog& log, const PlateauOptions& options = {});
 
 /// The plateaus, and among them the pieces of slow ramps.
@@ -110,8 +110,8 @@ struct MeanTorque {
 /// frequency, Sokal's window closes on the hum, and the error of what is slower is lost (a factor of 3 to 11).
 SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count = true);
 
-/// The idle torque at a speed, from the plateaus of a log of the empty machine: the mean, weighted by the errors, of
-/// those within `tolerance` of the speed; none where there is no such plateau.
+/// The idle torque at a speed, from the plateaus of a log of the empty machine: the mean, weighted by the errors, over
+/// the plateaus within `tolerance` of the speed; none where there is no such plateau.
 std::optional<MeanTorque> idle_at(const std::vector<Plateau>& idle, double speed, double tolerance);
 
 }  // namespace data

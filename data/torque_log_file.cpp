@@ -64,7 +64,7 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::stri
       remedy);
 }
 
-/// What a unit of speed amounts to in rpm, where UDUNITS-2 reads it as so many of them: 60 for Hz.
+/// The size of a unit of speed in rpm, where UDUNITS-2 reads it as a multiple of rpm: 60 for Hz.
 std::optional<double> multiple_of_rpm(const Unit& unit) {
   if (!unit.symbol.ends_with(" rpm")) return {};
   return std::strtod(unit.symbol.c_str(), nullptr);
@@ -92,7 +92,7 @@ Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
               fmt::format("a unit like '{}'; --{}-unit overrides the header", dimension, option));
 }
 
-/// What one in a column amounts to in the unit that find_unit gave: Hz are shown in rpm.
+/// The size of 1 in a column, in the unit that find_unit gave: Hz are shown in rpm.
 double per_shown_unit(const Csv& csv, std::size_t column, const LogColumn& wanted) {
   const std::string& symbol = wanted.unit.empty() ? csv.units[column] : wanted.unit;
   const auto unit = unit_meant(symbol, "rpm");

@@ -20,7 +20,7 @@ namespace {
 struct Parsed {
   double scale = 1.0;
   double origin = 0.0;
-  std::map<std::string, int> powers;  ///< of the base units, the dimension
+  std::map<std::string, int> powers;  ///< powers of the base units: the dimension
 };
 
 ut_status visit_basic(const ut_unit* unit, void* out) {

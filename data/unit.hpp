@@ -1,5 +1,5 @@
 #pragma once
-// Units by UDUNITS-2. Interiors are SI only; a Unit converts at the border.
+// Units by UDUNITS-2. Inside the program all numbers are SI; a Unit converts where they enter and leave it.
 #include <string>
 #include <string_view>
 
@@ -12,7 +12,7 @@ struct Unit {
   double factor = 1.0;
   double offset = 0.0;
   std::string si_symbol = "1";  ///< the SI unit that it is mapped to, in base units: "kg m2 s-2"
-  bool of_differences = false;  ///< of errors and shifts: 2 degC are 2 K, and offset is 0
+  bool of_differences = false;  ///< the unit is of errors and shifts: 2 degC are 2 K, and offset is 0
   Unit differences() const {
     Unit unit = *this;
     unit.offset = 0.0;
@@ -24,16 +24,16 @@ struct Unit {
   /// Converts a decimal text in long double, so that all readers get the same bits. Characters after the number are
   /// ignored. Text without a number gives 0, so the caller checks first.
   double to_si(std::string_view digits) const;
-  /// The value with so many significant digits in this unit, in SI.
+  /// The value rounded to this many significant digits in this unit, in SI.
   double rounded(double si, int digits) const;
   /// The decimal with the fewest digits that to_si(text) takes back to the same double.
   std::string digits(double si) const;
 };
 
-/// Whether a number of this unit stands alone.
+/// Whether a number of this unit is written without a unit.
 inline bool is_bare(std::string_view symbol) { return symbol.empty() || symbol == "1"; }
 
-/// What stands behind a number: " mN m", or nothing.
+/// The unit as it is written behind a number: " mN m", or nothing.
 inline std::string behind_number(std::string_view symbol) {
   return is_bare(symbol) ? std::string() : " " + std::string(symbol);
 }

@@ -12,7 +12,7 @@
 namespace data {
 namespace {
 
-/// One spelling for the signs of micro, product, power and the blank.
+/// The text with one spelling for the signs of micro, product, power and the blank.
 std::string normalised(std::string_view given) {
   std::string text(trimmed(given));
   for (const auto& [from, to] : std::initializer_list<std::pair<std::string_view, std::string_view>>{
@@ -49,8 +49,8 @@ std::string short_words(const std::string& text) {
 }
 
 /// "mNm" -> "mN m", "kgfcm" -> "kgf cm", "in-lb" -> "lbf in": a force and a length in any order, with any sign or none
-/// between them. A mass stands for its weight; grams do so beside mm and cm alone, as "gm" may be grams. "NM" is no other
-/// unit than Nm.
+/// between them. A mass stands for its weight; grams do so beside mm and cm alone, as "gm" may be grams. "NM" is no
+/// other unit than Nm.
 std::string torque_spelling(const std::string& text) {
   static constexpr std::array forces{"kgf", "gf", "kp", "ozf", "lbf", "lb", "oz", "kg", "dyn", "N", "g"};
   static constexpr std::array lengths{"mm", "cm", "m", "in", "ft"};
@@ -120,7 +120,7 @@ bool is_form_of_times(std::string_view text) {
          lower_case(text).find_first_not_of("hmsdyf:.,/- tz") == std::string::npos;
 }
 
-/// What instruments write for a number without unit.
+/// Whether the text is what instruments write for a number without unit.
 bool is_word_for_none(const std::string& text) {
   const std::string word = lower_case(text);
   return word == "dimensionless" || word == "unitless" || word == "dimless";

@@ -23,8 +23,8 @@ using Eigen::Index;
 /// Where the starts lie: an ordinary process of standardised data.
 struct StartBox {
   Range length_scale{0.15, 4.0};     ///< unit cube
-  Range signal_variance{0.3, 10.0};  ///< of z
-  Range nugget_variance{1e-6, 0.1};  ///< of z
+  Range signal_variance{0.3, 10.0};  ///< as a variance of z
+  Range nugget_variance{1e-6, 0.1};  ///< as a variance of z
 };
 
 std::vector<Eigen::VectorXd> make_starts(int d, const FitOptions& options) {

@@ -17,14 +17,16 @@ namespace surrogate {
 
 enum class Estimate { maximum_likelihood, maximum_a_posteriori };
 
-/// Plugged in at the best setting, or integrated over (marginal.hpp; predictions cost up to 33 times as much), or
-/// integrated over where there are fewer than `enough_points` distinct points per input that changes.
+/// How hyper-parameters enter predictions: plugged in at the best setting, or integrated over (marginal.hpp;
+/// predictions cost up to 33 times as much), or integrated over only where there are fewer than `enough_points`
+/// distinct points per input that changes.
 enum class HyperUncertainty { plug_in, integrated, integrated_if_few };
 
-/// Below so many, settings plugged in give errors too small by 1.1 to 1.3 (COVERAGE.md).
+/// Number of distinct points per input below which settings plugged in give errors too small by 1.1 to 1.3
+/// (COVERAGE.md).
 constexpr int enough_points = 5;
 
-/// Where no run speaks for an input: the process alone, or with what gaps.hpp adds.
+/// What is predicted where no run speaks for an input: the process alone, or the process with what gaps.hpp adds.
 enum class BetweenRuns { trusted, doubted };
 
 /// Normal density of the logarithm of a hyper-parameter.
@@ -59,16 +61,17 @@ struct FitOptions {
   Estimate estimate = Estimate::maximum_a_posteriori;
   HyperPriors priors;
   HyperBounds bounds;
-  int iterations = 60;      ///< of Newton's method, per start
+  int iterations = 60;      ///< iterations of Newton's method, per start
   double tolerance = 1e-5;  ///< stop when the next step would raise the log likelihood by less
   HyperUncertainty hyper_uncertainty = HyperUncertainty::plug_in;
   BetweenRuns between_runs = BetweenRuns::trusted;
   int hyper_points = 1000;      ///< hyper-parameters are fitted to at most so many points, a random subset of all; the
                                 ///< process is conditioned on all of them
-  Eigen::VectorXd first_start;  ///< instead of the heuristic start, logs as in StartOutcome; empty: heuristic
+  Eigen::VectorXd first_start;  ///< replaces the heuristic start, logs as in StartOutcome; empty: heuristic
 };
 
-/// Throws data::InputError (65) for data that cannot train a process; a fit that does not converge is in diagnostics().
+/// Fits a process. Throws data::InputError (65) for data that cannot train one; a fit that does not converge is in
+/// diagnostics().
 GaussianProcess fit(const TrainingSet& training, const FitOptions& options = {});
 
 }  // namespace surrogate

@@ -27,7 +27,8 @@ struct Prediction {
   Eigen::MatrixXd covariance;  ///< unit^2 of y, m x m
 };
 
-/// With derivatives with respect to a common shift of one coordinate of all m points, for each coordinate asked for.
+/// A prediction with its derivatives with respect to a common shift of one coordinate of all m points, for each
+/// coordinate asked for.
 struct PredictionGradient {
   Prediction value;
   std::vector<Eigen::VectorXd> mean_gradient;        ///< unit of y per unit-cube length
@@ -40,7 +41,7 @@ struct MarginalPrediction {
   Eigen::VectorXd variance;  ///< unit^2 of y
 };
 
-/// What each run would have been predicted to be by the others. Runs at the same point are left out together.
+/// Predictions of each run from the others. Runs at the same point are left out together.
 /// O. Dubrule, Math. Geology 15:687 (1983): mean m_i - a_i / P_ii, variance 1 / P_ii.
 struct LeaveOneOut {
   Eigen::VectorXd mean;             ///< unit of y
@@ -62,7 +63,7 @@ struct StartOutcome {
   Eigen::VectorXd start;  ///< logs of length scales, signal variance, nugget variance (of the standardised output)
   Eigen::VectorXd end;
   double objective = 0.0;      ///< log likelihood (plus log prior) at the end
-  double gradient_norm = 0.0;  ///< of the objective at the end, over the parameters that are not on a bound
+  double gradient_norm = 0.0;  ///< norm of its gradient there, over the parameters that are not on a bound
   int evaluations = 0;
   bool converged = false;
   int points = 0;       ///< distinct points of the likelihood that was maximised: all, or a subset where the start was
@@ -75,14 +76,14 @@ struct BoundHit {
   bool upper = false;
   double value = 0.0;     ///< the bound: length in the unit cube, or sd in units of the output's sd
   bool harmless = false;  ///< a nugget at its floor or an input without influence: the model means what it says
-  int input = -1;         ///< of a length scale, among the active ones
-  double effect = 0.0;    ///< of that input: range of the mean along it, in units of the output's sd
+  int input = -1;         ///< the length scale's input, among the active ones
+  double effect = 0.0;    ///< range of the mean along that input, in units of the output's sd
 };
 
 /// How the fit went; nothing in it is an exception.
 struct FitDiagnostics {
   bool converged = false;
-  double jitter = 0.0;  ///< largest relative to the output's variance; 0: none was needed
+  double jitter = 0.0;  ///< largest jitter relative to the output's variance; 0: none was needed
   std::vector<BoundHit> bound_hits;
   std::vector<StartOutcome> starts;
   int agreeing_starts = 0;  ///< how many starts' `agrees` is true
@@ -125,12 +126,13 @@ class GaussianProcess {
                              PredictionWorkspace& workspace, PredictionGradient& result) const;
   /// Mean and variance at many points, in blocks.
   MarginalPrediction predict_marginal(const Eigen::MatrixXd& points) const;
-  /// Points stacked in groups of `group` rows; one Prediction per group. Faster than one call per group.
+  /// Predicts points stacked in groups of `group` rows, one Prediction per group. This is faster than one call per
+  /// group.
   std::vector<Prediction> predict_batch(const Eigen::MatrixXd& points, int group) const;
 
   LeaveOneOut leave_one_out() const;
-  double log_marginal_likelihood() const;    ///< of y, in the units of y; of the best setting
-  HyperParameters hyper_parameters() const;  ///< of the best setting
+  double log_marginal_likelihood() const;    ///< log likelihood of y, in the units of y, at the best setting
+  HyperParameters hyper_parameters() const;  ///< hyper-parameters of the best setting
   /// The same hyper-parameters with one more run (O(n^2)); the training range grows with it.
   GaussianProcess with_run(const Eigen::VectorXd& x, double y, double noise_variance) const;
   std::vector<OutsideRange> outside_training_range(const Eigen::MatrixXd& points) const;
@@ -141,9 +143,9 @@ class GaussianProcess {
   MeanBasis mean() const { return mean_; }
   bool nugget() const { return nugget_; }
   const Standardised& data() const { return *data_; }
-  /// The mode first, which is reported.
+  /// All settings of the hyper-parameters; the mode, which is reported, comes first.
   const std::vector<Conditioned>& parts() const { return *parts_; }
-  /// Those that predictions average over: all parts but a mode that only stands for them.
+  /// The settings that predictions average over: all but a mode that is only reported and has no weight.
   std::span<const Conditioned> averaged() const {
     return std::span(*parts_).subspan(parts_->size() > 1 && parts_->front().weight == 0.0 ? 1 : 0);
   }

@@ -65,7 +65,7 @@ int hold_out(Validation& validation, const HeldOutData& data, const std::vector<
   validation.coverage_held_out = coverage(validation.held_out_standardised);
   validation.q2_held_out = q2(training.y, validation.held_out_mean);
 
-  // What the noise leaves to be explained.
+  // Q2 of the function is taken of the variance that the noise leaves to be explained.
   const double noise = training.noise_variance.mean() + data.scatter_variance;
   const double variance = (training.y.array() - training.y.mean()).square().mean();
   const double error = (training.y - validation.held_out_mean).squaredNorm() / static_cast<double>(n);

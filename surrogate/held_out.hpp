@@ -1,16 +1,16 @@
 #pragma once
-// Runs predicted by a model that was fitted without them, and what their errors say (validation.hpp), whatever the
-// model.
+// Predictions of runs by a model that was fitted without them, and what their errors say (validation.hpp). Any kind of
+// model will do.
 #include <functional>
 
 #include "surrogate/validation.hpp"
 
 namespace surrogate {
 
-/// What a model fitted to the kept runs says of the others.
+/// The prediction of the left-out runs by a model fitted to the kept ones.
 struct HeldOutPrediction {
-  Prediction prediction;  ///< of the runs: function, nugget and known noise
-  int coefficients = 0;   ///< of the model's mean
+  Prediction prediction;  ///< prediction of the runs: function, nugget and known noise
+  int coefficients = 0;   ///< coefficients of the model's mean
   bool converged = false;
 };
 using HeldOutModel = std::function<HeldOutPrediction(const std::vector<int>& kept, const std::vector<int>& left)>;
@@ -20,7 +20,7 @@ std::vector<std::vector<int>> deal(const std::vector<int>& point_of_run, int fol
 
 struct HeldOutData {
   const TrainingSet& training;  ///< on the model's own scale, noise variances given
-  double scatter_variance;      ///< run-to-run, counted as noise that no surrogate can predict
+  double scatter_variance;      ///< run-to-run scatter, counted as noise that no surrogate can predict
 };
 
 /// Fills the held-out numbers of `validation` from the folds; returns how many runs were predicted.

@@ -1,11 +1,11 @@
 #pragma once
-// Predictions together with their covariance to points that never change, as a two-level process asks for at its dear
-// runs. What concerns the fixed points alone is worked out once.
+// Predictions together with their covariance to points that never change, such as the expensive runs of a two-level
+// process. What concerns the fixed points alone is worked out once.
 #include "surrogate/gaussian_process.hpp"
 
 namespace surrogate {
 
-/// At M points in groups of g.
+/// The prediction at M points in groups of g.
 struct JointPrediction {
   Eigen::VectorXd mean;        ///< unit of y, M
   Eigen::MatrixXd covariance;  ///< unit^2 of y, g x M: the groups' own covariances side by side
@@ -18,15 +18,15 @@ class FixedPoints {
   /// moments are not those of a normal law.
   FixedPoints(GaussianProcess process, const Eigen::MatrixXd& fixed);
 
-  /// At points stacked in groups of `group` rows. The moments are those of GaussianProcess::predict at fixed points and
-  /// group together.
+  /// Predicts points stacked in groups of `group` rows. The moments are those that GaussianProcess::predict gives for
+  /// the fixed points and a group together.
   void predict(const Eigen::MatrixXd& points, int group, PredictionWorkspace& workspace, JointPrediction& result) const;
 
  private:
-  /// Of one of the settings that predictions average over.
+  /// Precomputed values for one of the settings that predictions average over.
   struct Part {
     Eigen::MatrixXd scaled, whitened, projected;  // as PredictionWorkspace has them
-    Eigen::VectorXd deviation;                    // of its mean from the first part's, in units of z
+    Eigen::VectorXd deviation;                    // deviation of its mean from the first part's, in units of z
   };
 
   GaussianProcess process_;

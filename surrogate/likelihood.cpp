@@ -120,7 +120,7 @@ Factorised Likelihood::factorise(const ScaledParameters& parameters) {
   return result;
 }
 
-/// What follows from the inverse factor and the pooled data.
+/// Fills all that follows from the inverse factor and the pooled data.
 void Likelihood::complete(Factorised& result) const {
   MeanFit mean = fit_mean(result.inverse_factor, basis_, precision_, result.pooled.mean);
   result.ok = mean.ok;

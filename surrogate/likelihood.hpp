@@ -22,7 +22,8 @@
 
 namespace surrogate {
 
-/// A process with zero mean is one of g(y) itself; any other basis has a constant and may be shifted.
+/// Where z is zero for a mean function. A process with zero mean is one of g(y) itself; any other basis has a constant
+/// and may be shifted.
 inline Centre centre_of(MeanBasis mean) { return mean == MeanBasis::zero ? Centre::zero : Centre::data_mean; }
 
 /// Hyper-parameters of z over the active inputs, as variances and lengths (not logarithms).
@@ -32,7 +33,7 @@ struct ScaledParameters {
   double nugget_variance = 0.0;   ///< variance of z; run-to-run scatter beyond the known noise
 };
 
-/// u of the file's head; the nugget is left out where there is none.
+/// The logarithms u of the file's head; the nugget is left out where there is none.
 Eigen::VectorXd to_logs(const ScaledParameters& parameters, bool nugget);
 ScaledParameters from_logs(const Eigen::VectorXd& u, bool nugget);
 

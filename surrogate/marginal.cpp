@@ -37,7 +37,7 @@ class StudentT {
     constant_ = gsl_sf_lngamma(0.5 * (degrees + m)) - gsl_sf_lngamma(0.5 * degrees) -
                 0.5 * m * std::log(degrees * std::numbers::pi) - factor_.diagonal().array().log().sum();
   }
-  /// From a point of the unit cube with one coordinate more than u.
+  /// A draw made from a point of the unit cube, which has one coordinate more than u.
   VectorXd draw(const VectorXd& cube) const {
     const Index m = centre_.size();
     VectorXd normal(m);

@@ -21,20 +21,20 @@
 
 namespace surrogate {
 
-/// What is integrated over.
+/// The density that is integrated over.
 struct HyperPosterior {
   std::function<double(const Eigen::VectorXd& u)>
       log_density;                              ///< any constant left out; -infinity where there is none
   Eigen::VectorXd low, high;                    ///< box of u
   Eigen::VectorXd prior_mean, prior_precision;  ///< of u; precision 0: flat
   Eigen::VectorXd mode;
-  Eigen::MatrixXd covariance;  ///< of the normal approximation at the mode
+  Eigen::MatrixXd covariance;  ///< covariance of the normal approximation at the mode
 };
 
 struct IntegrationOptions {
-  int draws = 512;  ///< per stage
+  int draws = 512;  ///< draws per stage
   int stages = 3;
-  int nodes = 32;  ///< at most, that predictions use
+  int nodes = 32;  ///< nodes that predictions use, at most
   std::uint64_t seed = 0;
 };
 
@@ -43,15 +43,17 @@ struct HyperNode {
   double weight = 0.0;
 };
 
-/// The mode first, with weight 0 (it is the setting that is reported); weights add up to one.
+/// The nodes that predictions average over. The mode comes first, with weight 0 (it is the setting that is reported);
+/// weights add up to one.
 std::vector<HyperNode> integration_nodes(const HyperPosterior& posterior, const IntegrationOptions& options);
 
 /// The posterior of a fit's objective about its maximum.
 HyperPosterior hyper_posterior(const Objective& objective, const Eigen::VectorXd& mode);
 
-/// Draws and nodes for a number of distinct points: where they are many the posterior is narrow, and each draw dear. With
-/// 1,000 of the runs of data/drum-table six nodes predict as sixteen do. Beside 64 nodes of 768 draws, by seeds and
-/// outputs, means differ by 0.04 to 0.10 of an sd (sixteen: 0.02 to 0.15), sds by 2 to 8 % (1 to 12 %): the draws decide.
+/// The options for a number of distinct points. Where points are many the posterior is narrow, and each draw expensive.
+/// With 1,000 of the runs of data/drum-table six nodes predict as sixteen do. Compared with 64 nodes of 768 draws, over
+/// seeds and outputs, means differ by 0.04 to 0.10 of an sd (sixteen nodes: 0.02 to 0.15), sds by 2 to 8 % (1 to 12 %):
+/// the draws decide.
 IntegrationOptions integration_options(Eigen::Index points, std::uint64_t seed);
 
 }  // namespace surrogate

@@ -15,10 +15,10 @@ struct Objective {
 
 Objective make_objective(Likelihood& likelihood, const FitOptions& options);
 LikelihoodGradient evaluate(const Objective& objective, const Eigen::VectorXd& u);
-/// The value alone, at half the cost; -infinity where the covariance cannot be factorised.
+/// The objective's value without its gradient, at half the cost; -infinity where the covariance cannot be factorised.
 double evaluate_value(const Objective& objective, const Eigen::VectorXd& u);
 
-/// Damped Newton on the average information, then L-BFGS if that did not converge.
+/// Maximises by damped Newton steps on the average information, then by L-BFGS if they did not converge.
 StartOutcome maximise(const Objective& objective, const Eigen::VectorXd& start, const FitOptions& options);
 StartOutcome maximise_lbfgs(const Objective& objective, const Eigen::VectorXd& start, const FitOptions& options);
 

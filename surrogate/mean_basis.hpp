@@ -38,7 +38,7 @@ inline int basis_size(MeanBasis basis, int d) {
   return 0;
 }
 
-/// Prior precision of each coefficient, in units of the output's standard deviation; 0: flat.
+/// Prior precision of each coefficient, in units of the output's standard deviation; 0 where the prior is flat.
 inline Eigen::VectorXd basis_precision(MeanBasis basis, int d) {
   Eigen::VectorXd precision = Eigen::VectorXd::Zero(basis_size(basis, d));
   if (basis == MeanBasis::trend) precision.tail(precision.size() - 1).setConstant(1.0 / (trend_sd * trend_sd));

@@ -18,14 +18,14 @@ struct PointRange {
 void latent(const Conditioned& part, const GaussianProcess& process, PointRange points, PredictionWorkspace& workspace,
             Prediction& result);
 
-/// From z to y.
+/// Takes a prediction of z to one of y.
 void rescale(const Standardised& data, Prediction& result);
 
 /// r^2 (kernel.hpp) between the rows of a and b, which are divided by the length scales: rows of a by rows of b.
 void square_distances(const Eigen::Ref<const Eigen::MatrixXd>& a, const Eigen::Ref<const Eigen::MatrixXd>& b,
                       Eigen::MatrixXd& squares);
 
-/// Points of a batch are whole groups; so many groups share a matrix product.
+/// Checks that the points of a batch are whole groups, and says how many groups share a matrix product.
 void check_groups(const Eigen::MatrixXd& points, int group);
 Eigen::Index groups_at_once(int group);
 

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-/// From z to y, with the gradients.
+/// Takes a prediction of z, with its gradients, to one of y.
 void rescale(const Standardised& data, PredictionGradient& result) {
   const double unit = data.unit;
   for (Eigen::VectorXd& gradient : result.mean_gradient) gradient *= unit;

@@ -24,23 +24,23 @@ namespace surrogate {
 enum class OutputScale { linear, log };
 using data::to_text;
 
-/// Where z is zero.
+/// The value of g(y) at which z is zero.
 enum class Centre { data_mean, zero };
 
 struct TrainingSet {
   Eigen::MatrixXd x;                    ///< n x d, each input scaled to the unit cube by its training range
   Eigen::VectorXd y;                    ///< n, any unit
   Eigen::VectorXd noise_variance;       ///< n, unit^2 of y: known variance of each run's mean; empty: none
-  std::vector<std::string> names = {};  ///< d, of the inputs, for messages; empty: "input 1", ...
+  std::vector<std::string> names = {};  ///< d, names of the inputs for messages; empty: "input 1", ...
 
   std::string name_of(Eigen::Index input) const;
 };
 
 /// A stretch of one input without runs, in which the function may leave the fit (gaps.hpp).
 struct InputGap {
-  int input = 0;                 ///< among the active ones
+  int input = 0;                 ///< index among the active inputs
   double low = 0.0, high = 0.0;  ///< unit cube; -infinity, infinity: nothing beyond the outermost run
-  double sd = 0.0;               ///< of z, of the departure far from runs
+  double sd = 0.0;               ///< sd of z, of the departure far from runs
 };
 
 struct Standardised {

@@ -9,11 +9,11 @@
 // noise and nugget on top, b with a flat prior: co-kriging with every run of both levels in it, whether or not the high
 // runs' points are among the low ones (the recursive form is that of L. Le Gratiet & J. Garnier, Int. J. Uncertainty
 // Quantification 4:365 (2014)). rho, q, s and the nugget have the priors below and, since a handful of runs leaves them
-// vague, are integrated over (marginal.hpp). q is one factor on all length scales, since a handful of runs cannot tell d
-// of them. They start from the low level's, but not from more than the range of an input: where the model is smooth, its
-// scales are several ranges long, and a discrepancy as smooth as that is a plane, so that what two inputs do together
-// would count as scatter of the runs (COVERAGE.md). Deviation: the low level's hyper-parameters are not fitted again to
-// the high runs.
+// vague, are integrated over (marginal.hpp). q is one factor on all length scales, since a handful of runs cannot tell
+// d of them. They start from the low level's, but not from more than the range of an input: where the model is smooth,
+// its scales are several ranges long, and a discrepancy as smooth as that is a plane, so that what two inputs do
+// together would count as scatter of the runs (COVERAGE.md). Deviation: the low level's hyper-parameters are not fitted
+// again to the high runs.
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,9 +24,9 @@
 
 namespace surrogate {
 
-/// Of the fit of the high level. Priors, with r the ratio of the two levels' spreads over the high runs and t the
-/// spread of the high runs: rho/r ~ N(1, 1), log q ~ N(0, 1), log s/t ~ N(log 0.3, 1.5), log(nugget sd/t) ~
-/// N(log 0.03, 1.5).
+/// Options of the high level's fit. Its priors, with r the ratio of the two levels' spreads over the high runs and t
+/// the spread of the high runs: rho/r ~ N(1, 1), log q ~ N(0, 1), log s/t ~ N(log 0.3, 1.5), log(nugget sd/t) ~ N(log
+/// 0.03, 1.5).
 struct TwoLevelOptions {
   MeanBasis discrepancy_mean = MeanBasis::constant;  ///< h: zero or constant
   bool nugget = true;                                ///< run-to-run scatter of the high runs beyond their known noise
@@ -43,7 +43,7 @@ struct TwoLevelParameters {
   double nugget_sd = 0.0;       ///< unit of the high output
 };
 
-/// What the high level was fitted to, and the outcome.
+/// The runs that the high level was fitted to, and the outcome.
 struct HighLevel {
   TrainingSet runs;
   MeanBasis discrepancy_mean = MeanBasis::constant;
@@ -56,18 +56,18 @@ class TwoLevelProcess {
   /// Throws data::InputError (65) where the covariance of the high runs cannot be factorised.
   TwoLevelProcess(GaussianProcess low, HighLevel high);
 
-  Prediction predict(const Eigen::MatrixXd& points) const;  ///< of the high level, latent
+  Prediction predict(const Eigen::MatrixXd& points) const;  ///< prediction of the high level's latent function
   Eigen::VectorXd predict_mean(const Eigen::MatrixXd& points) const { return predict(points).mean; }
   /// Points stacked in groups of `group` rows.
   std::vector<Prediction> predict_batch(const Eigen::MatrixXd& points, int group) const;
-  /// With derivatives with respect to a common shift of each coordinate, by central differences of predict (step 1e-4
-  /// of the unit cube).
+  /// Predicts with derivatives with respect to a common shift of each coordinate, by central differences of predict
+  /// (step 1e-4 of the unit cube).
   PredictionGradient predict_with_gradient(const Eigen::MatrixXd& points, std::span<const int> coordinates) const;
 
   const GaussianProcess& low() const { return low_; }
   const HighLevel& high() const { return high_; }
-  const TwoLevelParameters& parameters() const { return high_.settings.front(); }  ///< of the best setting
-  double mean_rho() const;                                                         ///< over the settings
+  const TwoLevelParameters& parameters() const { return high_.settings.front(); }  ///< parameters of the best setting
+  double mean_rho() const;                                                         ///< mean of rho over the settings
 
  private:
   struct Part {
@@ -75,7 +75,7 @@ class TwoLevelProcess {
     Eigen::VectorXd weights, coefficients;
   };
   struct Workspace;
-  /// Of the groups of one block, from results[0] on.
+  /// Predicts the groups of one block, from results[0] on.
   void predict_block(const Eigen::MatrixXd& points, int group, Workspace& workspace,
                      std::span<Prediction> results) const;
 
@@ -91,8 +91,8 @@ class TwoLevelProcess {
 /// level's inputs, a low level on the log scale.
 TwoLevelProcess fit_two_level(const GaussianProcess& low, const TrainingSet& high, const TwoLevelOptions& options = {});
 
-/// The high level judged as validate() judges one process: by runs held out (each in turn, in twenty folds where they
-/// are more), rho and the discrepancy fitted again without them.
+/// Judges the high level as validate() judges one process: by runs held out (each in turn, or in twenty folds where
+/// they are more), with rho and the discrepancy fitted again without them.
 Validation validate(const TwoLevelProcess& process, const TwoLevelOptions& options,
                     const ValidationOptions& validation_options = {});
 

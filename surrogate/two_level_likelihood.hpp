@@ -16,7 +16,7 @@ Eigen::MatrixXd scaled_points(const Eigen::MatrixXd& points, const Eigen::Vector
 void discrepancy_correlations(Kernel kernel, const Eigen::MatrixXd& squares, double length_factor,
                               Eigen::MatrixXd& scratch, Eigen::MatrixXd& value);
 
-/// The high runs and what the low level says of them.
+/// The high runs and the low level's predictions of them.
 struct HighProblem {
   Kernel kernel;
   const TrainingSet& runs;

@@ -24,7 +24,7 @@
 
 namespace surrogate {
 
-/// Where good ends and caution ends. All are printed in the report.
+/// The thresholds at which "good" ends and "caution" ends. All are printed in the report.
 struct ValidationThresholds {
   double q2_good = 0.9;                ///< Q2 of the function, held out, at least
   double q2_unusable = 0.5;            ///< below this the surrogate says little about the model
@@ -36,7 +36,7 @@ struct ValidationThresholds {
 
 struct ValidationOptions {
   int folds = 5;
-  std::uint64_t seed = 0;  ///< of the dealing into folds
+  std::uint64_t seed = 0;  ///< seed of the dealing into folds
   int suggestions = 3;     ///< points to run next
   ValidationThresholds thresholds;
 };
@@ -63,10 +63,10 @@ struct HeldOutFold {
 /// Whole levels of one input left out (levels.hpp).
 struct LevelCheck {
   std::string input;        ///< by name
-  int levels = 0;           ///< values that the input takes
+  int levels = 0;           ///< number of values that the input takes
   int predicted = 0;        ///< runs of inner levels that were predicted from the other levels; 0: there are none
-  double q2 = 0.0;          ///< of these
-  double coverage95 = 0.0;  ///< of these
+  double q2 = 0.0;          ///< Q2 of these runs
+  double coverage95 = 0.0;  ///< share of these runs inside their 95 % intervals
 };
 
 /// Two inputs that no run moves together (levels.hpp), by name.
@@ -74,17 +74,18 @@ struct ApartPair {
   std::string first, second;
 };
 
-/// Stated errors against what the runs scatter by (noise_check.hpp).
+/// The runs' stated errors compared with their scatter (noise_check.hpp).
 struct NoiseCheck {
   double scatter_ratio = 0.0;   ///< nugget sd over the stated errors' root mean square
   double log_ratio = 0.0;       ///< 2 log of the likelihood ratio of nugget and none
-  double residual_ratio = 1.0;  ///< of the residuals' squares, in units of the stated errors, to what they should be
-  double residual_z = 0.0;      ///< their difference in its own sd
-  double noise_share = 0.0;     ///< tr(D P) / points: the part of what single runs tell that is their noise
+  double residual_ratio = 1.0;  ///< residuals' squares in units of the stated errors, over their expected value
+  double residual_z = 0.0;      ///< difference of the two in its own sd
+  double noise_share = 0.0;     ///< tr(D P) / points: share of single runs' information that is noise
   bool replicated = false;      ///< five or more replicates show that the nugget is scatter, not structure
 
   bool understated() const { return scatter_ratio > 0.7 && log_ratio > 7.0; }
-  /// Where the noise is small, the residuals say how smooth the output is, and not how large the noise.
+  /// Whether the errors are stated too large. Where the noise is small, the residuals say how smooth the output is and
+  /// not how large the noise is.
   bool overstated() const { return residual_z < -2.5 && residual_ratio < 0.6 && noise_share > 0.5; }
 };
 
@@ -104,8 +105,8 @@ struct Validation {
   int large_pivoted_errors = 0;
   SurrogateVerdict verdict = SurrogateVerdict::unusable;
   std::string finding, consequence, remedy;
-  int more_runs = 0;               ///< suggested, from the learning curve; 0: none needed
-  Eigen::MatrixXd next_points;     ///< where: unit cube, one per row
+  int more_runs = 0;               ///< runs suggested by the learning curve; 0: none needed
+  Eigen::MatrixXd next_points;     ///< where to make them: unit cube, one per row
   std::vector<std::string> notes;  ///< bounds, jitter, convergence of the fit itself
 };
 
@@ -128,7 +129,7 @@ std::vector<std::string> fit_notes(const FitDiagnostics& diagnostics);
 /// Points of the unit cube (inside the training box) where the function is least known, each given those before it.
 Eigen::MatrixXd least_known_points(const GaussianProcess& process, int count, std::uint64_t seed);
 
-/// Never throws for a poor surrogate: that is its verdict.
+/// Validates a process. A poor surrogate never makes it throw: the verdict says so.
 Validation validate(const TrainingSet& training, const FitOptions& fit_options, const GaussianProcess& process,
                     const ValidationOptions& options = {});
 

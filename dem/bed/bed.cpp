@@ -54,7 +54,7 @@ bool is(const BodyLabel& body, const std::string& name) {
   return name == "wall" || name == body.material || name == body.name;
 }
 
-/// What the case's pairs say together of a contact.
+/// All that the case's pairs state about a contact; later pairs win.
 PairContact own(const Case& c, const auto& concerns) {
   PairContact all;
   for (const PairContact& p : c.pairs) {
@@ -65,7 +65,7 @@ PairContact own(const Case& c, const auto& concerns) {
   return all;
 }
 
-/// What both kinds of contact have in common.
+/// Common properties of contacts with spheres and with walls.
 struct Meets {
   Elastic first, second;
   double radius;        ///< m, reduced, of mean spheres
@@ -93,7 +93,7 @@ PairCoefficients coefficients(const Case& c, const PairContact& its, const Meets
   p.rolling_friction = choose(its.rolling_friction, k.wall_rolling_friction, k.rolling_friction);
   p.twisting_friction = its.twisting_friction.value_or(k.twisting_friction);
   p.rolling_damping = k.rolling_damping;
-  // Of the Hertz law the tangent at an overlap of 1 % of the radius.
+  // For the Hertz law the normal stiffness is the tangent at an overlap of 1 % of the radius.
   const double normal = hertzian ? 2.0 * p.young_modulus * std::sqrt(m.radius * 0.01 * m.grain_radius) : p.stiffness;
   p.rolling_stiffness = k.rolling_stiffness_ratio * normal;
 

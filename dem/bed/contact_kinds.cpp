@@ -76,7 +76,7 @@ void shorten_linear(ContactKind& kind, const Encounter& lightest) {
             "the spring-dashpot");
 }
 
-/// Of the sphere of this material with the shortest.
+/// The Rayleigh time of the sphere of this material that has the shortest one.
 double rayleigh_time(const Case& c, const Material& m) {
   const double nu = m.poisson_ratio.value_or(c.contact.poisson_ratio);
   const double shear = m.young_modulus.value_or(c.contact.young_modulus) / (2.0 * (1.0 + nu));

@@ -61,7 +61,7 @@ std::string contact_line(const ContactKind& kind, const std::string& second) {
       kind.first, second, kind.pull_off, kind.bond, kind.law.damping_ratio, kind.duration, kind.rest_overlap);
 }
 
-/// One line each, bodies that a material meets alike in one.
+/// Adds one line for each kind of contact. Bodies that a material meets in the same way share a line.
 void add_contacts(const Derived& d, std::vector<std::string>& lines) {
   for (std::size_t k = 0; k < d.kinds.size();) {
     std::string names = d.kinds[k].second;

@@ -6,7 +6,7 @@
 
 namespace dem {
 
-/// The whole case; the bodies rest for `rest_steps`.
+/// Makes the engine's setup of a whole case. The bodies rest for `rest_steps`.
 Setup make_setup(const Case& c, const Derived& d, BuiltRig rig, std::uint64_t rest_steps, int threads);
 
 }  // namespace dem

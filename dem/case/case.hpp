@@ -13,7 +13,7 @@
 
 namespace dem {
 
-enum class EndPlates { turning, resting, none };  ///< with the shell, beside it, or a drum that repeats along its axis
+enum class EndPlates { turning, resting, none };  ///< with the shell; beside it; the drum repeats along its axis
 
 /// A horizontal drum without lifters, its axis along y (dem/rig/drum.hpp).
 struct Drum {
@@ -24,12 +24,12 @@ struct Drum {
   double volume() const { return std::numbers::pi * radius * radius * length; }  ///< m3
 };
 
-/// What a machine of two augers has beside the slice's cross-section (dem/rig/machine.hpp).
+/// Dimensions of a machine of two augers beside the slice's cross-section (dem/rig/machine.hpp).
 struct Machine {
   double length = 330e-3;           ///< m, between the end walls
-  double opening = 30e-3;           ///< m along the axes, of the partition at each end
-  double partition = 1e-3;          ///< m, its thickness
-  double partition_height = 12e-3;  ///< m above the axes
+  double opening = 30e-3;           ///< m along the axes, opening of the partition at each end
+  double partition = 1e-3;          ///< m, thickness of the partition
+  double partition_height = 12e-3;  ///< m above the axes, upper edge of the partition
   double sill = -3.5e-3;            ///< m above the axes, lower edge of the openings
 };
 
@@ -51,7 +51,7 @@ struct Rig {
   std::optional<double> level;                   ///< bed / room (level_volume); when set, the number follows from it
   double angular_velocity = 15.707963267948966;  ///< rad/s about +x (150 rpm), of a drum about -y, or the meshes' axes
 
-  double clearance() const { return trough_radius - blade_radius; }  ///< m, of blade and trough
+  double clearance() const { return trough_radius - blade_radius; }  ///< m, between blade and trough
 };
 
 /// A share of a material's mass that is in spheres of one diameter.
@@ -60,7 +60,8 @@ struct SizeShare {
   double mass_fraction = 0.0;
 };
 
-/// Diameters of which the logarithm is normal, by mass, none outside [low, high] (dem/case/grains.hpp).
+/// Log-normal sizes: the logarithm of the diameter is normal by mass, and none lies outside [low, high]
+/// (dem/case/grains.hpp).
 struct LogNormalSizes {
   double geometric_sd = 1.2;     ///< exp of the standard deviation of the logarithm
   double low = 0.0, high = 0.0;  ///< m
@@ -69,7 +70,7 @@ struct LogNormalSizes {
 struct Material {
   std::string name = "grain";
   double density = 6090.0;                             ///< kg/m3
-  double diameter = 0.8e-3;                            ///< m; of log-normal sizes the median by mass
+  double diameter = 0.8e-3;                            ///< m; the median by mass of log-normal sizes
   double coarse_graining = 1.0;                        ///< l: diameter here / diameter of the original grain
   std::vector<SizeShare> sizes;                        ///< instead of one diameter
   std::optional<LogNormalSizes> log_normal;            ///< log-normal sizes, instead of one diameter
@@ -83,26 +84,26 @@ struct Component {
 };
 
 enum class LengthScale { diameter, radius };          ///< what L of eq. (1) is
-enum class WallAttraction { as_grains, derjaguin };   ///< eq. (1) as between grains, or twice that (sphere on plane)
+enum class WallAttraction { as_grains, derjaguin };   ///< as_grains: eq. (1); derjaguin: twice that (sphere on plane)
 enum class HamakerOf { simulation, original };        ///< whether `hamaker` is H* or H = H*/l^n
-enum class FrictionCap { net, repulsion, thornton };  ///< options (a), (b), (c) of the Coulomb limit
+enum class FrictionCap { net, repulsion, thornton };  ///< load of the Coulomb limit: options (a), (b), (c)
 enum class DashpotTension { allowed, clamped };       ///< whether elastic + damping force may pull
 
-enum class Cohesion { van_der_waals, dmt };  ///< what attracts beside the normal law; `jkr` brings its own
+enum class Cohesion { van_der_waals, dmt };  ///< attraction beside the normal law; `jkr` brings its own
 
-/// The contact law (dem/contact/contact_law.hpp). What a wall has of its own follows the grains' when not set.
+/// The contact law (dem/contact/contact_law.hpp). A coefficient of a wall that is not set follows that of the grains.
 struct Contact {
   NormalLaw normal = NormalLaw::linear;
   std::optional<TangentialLaw> tangential;  ///< follows normal: linear, or mindlin with hertz and jkr
   ResistanceLaw resistance = ResistanceLaw::none;
   double stiffness = 100.0;                  ///< N/m, linear, grain-grain
   std::optional<double> wall_stiffness;      ///< N/m
-  double young_modulus = 5e6;                ///< Pa, of a grain: hertz and jkr
+  double young_modulus = 5e6;                ///< Pa, of a grain; read by hertz and jkr
   double poisson_ratio = 0.25;               ///< of grains and walls
   std::optional<double> wall_young_modulus;  ///< Pa; may be infinite
-  double restitution = 0.7;                  ///< of a head-on collision without attraction, tension allowed
+  double restitution = 0.7;                  ///< in a head-on collision without attraction, tension allowed
   std::optional<double> wall_restitution;
-  std::optional<double> restitution_at;  ///< m/s, then it is that of a collision at this speed, attraction included
+  std::optional<double> restitution_at;  ///< m/s; when set, restitution holds at this speed, attraction included
   double tangential_ratio = 2.0 / 7.0;   ///< kt / k, linear
   double tangential_damping = 0.5;       ///< tangential dashpot / normal dashpot
   double friction = 0.4;                 ///< Coulomb coefficient, grain-grain
@@ -133,7 +134,7 @@ struct Contact {
   }
 };
 
-/// What contacts between two materials have of their own; the rest is the contact law's. The names are those of
+/// Coefficients of the contacts between two materials; what is not set is the contact law's. The names are those of
 /// materials in the bed, of a body or its material, or "wall" for every body.
 struct PairContact {
   std::string first, second;
@@ -147,10 +148,10 @@ struct PairContact {
 struct RunControl {
   double gravity = 9.81;            ///< m/s2 along -z
   double steps_per_contact = 30.0;  ///< shortest contact duration / time step
-  std::optional<double> time_step;  ///< s, instead; at most a fifteenth of that duration
-  double overlap_limit = 0.1;       ///< of a radius; a deeper contact ends the run, half as deep is counted
-  double skin = 0.12;               ///< of the neighbour list, in diameters
-  double settle = 0.08;             ///< s, filling comes to rest before the tool turns
+  std::optional<double> time_step;  ///< s, when set; at most a fifteenth of that duration
+  double overlap_limit = 0.1;       ///< share of a radius; a deeper contact ends the run, one half as deep is counted
+  double skin = 0.12;               ///< skin of the neighbour list, in diameters
+  double settle = 0.08;             ///< s, time in which the filling comes to rest before the tool turns
   double start_up = 0.2;            ///< s of turning dropped at least, before means are taken, and
   double start_up_turns = 2.0;      ///< turns at least (dem/STEADY.md)
   double sample_interval = 0.2e-3;  ///< s between samples; each is the mean over the steps since the last
@@ -159,7 +160,7 @@ struct RunControl {
   double shortest = 1.0;            ///< s of measured turning at least, and
   double shortest_turns = 2.0;      ///< turns at least
   double longest = 6.0;             ///< s of turning at most, start-up included
-  std::vector<std::string> known;   ///< outputs beside the torque whose errors it goes on for until they are known
+  std::vector<std::string> known;   ///< outputs beside the torque: the run goes on until their errors are known
 };
 
 struct Case {
@@ -173,7 +174,7 @@ struct Case {
 
 }  // namespace dem
 
-// As the study's keys and the settings of a run spell them.
+// The texts as the study's keys and the settings of a run spell them.
 template <>
 inline constexpr std::array data::texts_of<dem::EndPlates> = {"turning", "resting", "none"};
 template <>

@@ -1,6 +1,6 @@
 #pragma once
-// The coefficients of the contact laws. One row says all of a coefficient but what a law makes of it (dem/bed/bed.cpp):
-// by the rows studies are read, targets bound, and settings written and checked.
+// The coefficients of the contact laws. One row says all of a coefficient but what a law makes of it (dem/bed/bed.cpp).
+// By the rows studies are read, targets are bound, and settings are written and checked.
 #include <optional>
 #include <span>
 #include <string>
@@ -14,7 +14,7 @@ namespace dem {
 enum class Brings { no_force, a_force };
 
 struct Coefficient {
-  const char* key;         ///< of [contact]
+  const char* key;         ///< key in [contact]
   const char* unit;        ///< SI
   double low, high;        ///< SI, values that a simulation can take
   const char* meaning;     ///< one line
@@ -24,7 +24,7 @@ struct Coefficient {
   Brings brings = Brings::no_force;
 
   double value(const Contact& k) const { return own != nullptr ? (k.*own).value_or(k.*field) : k.*field; }
-  /// What is given for it: of one that follows another, while it is not set, 0.
+  /// The value that is given; 0 for a coefficient that follows another while it is not set.
   double given(const Contact& k) const { return own != nullptr ? (k.*own).value_or(0.0) : k.*field; }
   void set(Contact& k, double si) const {
     if (own != nullptr)
@@ -34,13 +34,14 @@ struct Coefficient {
   }
 };
 
-/// The order is that in which settings_text writes them; what is new comes last.
+/// All coefficients, in the order in which settings_text writes them; what is new comes last.
 std::span<const Coefficient> coefficients();
 
-/// Those that stand before bed and rig in settings_text: it was written so first, and runs are known by it.
+/// How many of them stand before bed and rig in settings_text. The text was first written so, and runs are known by it.
 inline constexpr std::size_t first_coefficients = 11;
 
-/// Why the laws chosen do not read it; empty where they do. Throws std::out_of_range where there is none of this key.
+/// Why the laws chosen do not read a coefficient; empty where they do. Throws std::out_of_range where none has this
+/// key.
 std::string unread(const Contact& k, std::string_view key);
 
 /// The coefficients that a pair of materials may have of its own, by key.

@@ -13,7 +13,7 @@ double trough_below(double radius, double z) {
   return z <= 0.0 ? disc_below(radius, z) : 0.5 * pi * radius * radius + 2.0 * radius * z;
 }
 
-/// Of shaft and blade.
+/// Areas of shaft and blade below z.
 double shaft_below(const Rig& rig, double z) { return disc_below(rig.shaft_radius, z); }
 double blade_below(const Rig& rig, double z) {
   return rig.blade_thickness / rig.pitch * (disc_below(rig.blade_radius, z) - disc_below(rig.shaft_radius, z));

@@ -24,7 +24,7 @@ double normal_between(double a, double b) {
 
 /// The numbers of spheres below a diameter: normal in ln d, cut off.
 struct NumberLaw {
-  double center, spread;  ///< of ln(d / 1 m)
+  double center, spread;  ///< mean and standard deviation of ln(d / 1 m)
   double low, high;       ///< standardised
 };
 NumberLaw number_law(const Material& m) {

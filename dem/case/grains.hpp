@@ -19,17 +19,17 @@ namespace dem {
 /// Volume of spheres / volume of the bed that they settle to, for estimates. It lies between random loose packing,
 /// 0.555 (G. Onoda & E. Liniger, Phys. Rev. Lett. 64:2727 (1990)), and random close packing, 0.64.
 inline constexpr double packing_fraction = 0.6;
-/// The same of a bed so loose that no powder makes it: a tool that misses this bed, too, meets none.
+/// The packing fraction of a bed looser than any powder makes. A tool that misses even this bed meets no powder.
 inline constexpr double loosest_bed = 0.5;
 
-/// The components of a bed; of one material it is that.
+/// The components of a bed; a bed of one material has one.
 std::vector<Component> components_of(const Case& c);
 std::vector<std::string> grain_names(const Case& c);
 
 /// Spheres of one component, of one size or of its log-normal distribution.
 struct GrainClass {
   std::size_t component = 0;
-  double diameter = 0.0;   ///< m; 0 where drawn
+  double diameter = 0.0;   ///< m; 0 where sizes are drawn
   double mean_mass = 0.0;  ///< kg
   std::size_t count = 0;
 };
@@ -37,7 +37,7 @@ struct GrainClass {
 struct BedSummary {
   std::vector<GrainClass> classes;
   std::size_t spheres = 0;
-  double mass = 0.0, volume = 0.0;       ///< kg, m3, of all spheres; expected where drawn
+  double mass = 0.0, volume = 0.0;       ///< kg, m3, of all spheres; expected values where sizes are drawn
   double smallest = 0.0, largest = 0.0;  ///< m, diameters
   bool equal = false;                    ///< one class of one size
 };
@@ -55,11 +55,11 @@ inline double reduced_value(double a, double b) { return a == b ? 0.5 * a : a * 
 struct Grains {
   std::vector<double> radius;           ///< m
   std::vector<double> density;          ///< kg/m3
-  std::vector<std::uint32_t> material;  ///< component; empty: all 0
+  std::vector<std::uint32_t> material;  ///< index of the component; empty: all 0
 };
 Grains draw_grains(const Case& c, std::uint64_t seed);
 
-/// What the first `count` spheres take [m3] and weigh [kg].
+/// The volume [m3] and the mass [kg] of the first `count` spheres.
 double solid_volume(const Grains& grains, std::size_t count);
 double solid_mass(const Grains& grains, std::size_t count);
 

@@ -15,10 +15,10 @@ namespace dem {
 /// One mesh of the rig.
 struct RigMesh {
   std::string name;
-  std::string material = "wall";  ///< by which [[contact.pair]] names it
-  TriangleMesh mesh;              ///< m, checked, one box length of it where the box is periodic
-  double tolerance = 0.0;         ///< m, of its welding
-  Motion motion;                  ///< with its own programme, or none; of one that rests, the axis of its torque
+  std::string material = "wall";  ///< the name by which [[contact.pair]] knows it
+  TriangleMesh mesh;              ///< m, checked; one box length of the mesh where the box is periodic
+  double tolerance = 0.0;         ///< m, tolerance of the mesh's welding
+  Motion motion;                  ///< with a programme of its own, or none; a mesh at rest has the axis of its torque
   double speed_ratio = 0.0;       ///< constant speed / the rig's angular velocity, instead of a programme
 };
 
@@ -40,10 +40,10 @@ struct StlRig {
   Vec3 down{0.0, 0.0, -1.0};  ///< unit, direction of gravity
   FillRegion region;
   std::vector<Vec3> packing;          ///< m, where the spheres start; empty: the region is filled
-  std::vector<int> packing_line;      ///< of the packing, in its file
-  std::vector<Vec3> velocity;         ///< m/s, of the packing; empty: at rest
-  std::vector<std::uint8_t> frozen;   ///< of the packing, 1: keeps its velocity whatever the load; empty: none
-  std::vector<std::string> warnings;  ///< of the meshes' check
+  std::vector<int> packing_line;      ///< line of each sphere of the packing in its file
+  std::vector<Vec3> velocity;         ///< m/s, of the packing's spheres; empty: at rest
+  std::vector<std::uint8_t> frozen;   ///< per sphere packed, 1: keeps its velocity whatever the load; empty: none
+  std::vector<std::string> warnings;  ///< warnings of the meshes' check
   std::string content;                ///< hash of meshes and packing
 };
 
@@ -56,7 +56,7 @@ bool same_line(const Motion& one, const Motion& other, double tolerance);
 /// The mesh's motion at this speed of the rig [rad/s].
 Motion motion_of(const RigMesh& mesh, double angular_velocity);
 
-/// The highest speed of any point of the meshes, at this speed of the rig, at most [m/s].
+/// An upper bound of the speed [m/s] of any point of the meshes, at this speed of the rig [rad/s].
 double mesh_speed(const StlRig& rig, double angular_velocity);
 
 }  // namespace dem

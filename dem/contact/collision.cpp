@@ -172,7 +172,7 @@ class Solver {
 
   double* y() { return N_VGetArrayPointer(y_); }
   double time() const { return time_; }
-  /// One internal step, or to roots: 1 or -1 for those met rising or falling.
+  /// Makes one internal step, or a shorter one up to roots. Returns 1 or -1 for roots met rising or falling.
   std::array<int, roots> advance() {
     std::array<int, roots> crossed{};
     const int flag = CVode(cvode_, patience, y_, &time_, CV_ONE_STEP);

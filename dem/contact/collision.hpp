@@ -1,7 +1,7 @@
 #pragma once
 // One collision of two spheres, or of a sphere and a plane, under any composed law, as an ordinary differential
-// equation solved by CVODE to its tolerance: the reference that does not know the simulation's time step, and the way
-// from a wanted restitution to a damping where attraction leaves no closed form.
+// equation solved by CVODE to its tolerance. It is the reference that does not know the simulation's time step, and it
+// finds the damping for a wanted restitution where attraction leaves no closed form.
 //
 //   x' = v, v' = F / m*, w_i' = M_i / I_i, I = 2/5 m r^2; x, v relative, F and M of dem/contact/contact_law.hpp
 //   h' = (what the law remembers of h after a short step e - h) / e, e = 1e-6 of the collision's time scale: the spring
@@ -58,11 +58,11 @@ struct WantedRestitution {
 
 struct FoundDamping {
   std::optional<double> damping_ratio;  ///< none: no damping gives as much, since the attraction alone takes more
-  Collision collision;                  ///< with it; where none does, with zero damping
+  Collision collision;                  ///< the collision with this damping; where there is none, with zero damping
 };
 
-/// The damping ratio zeta of this pair (of `bed`, whose own is not read) that gives the wanted restitution head on,
-/// within 1e-8. The pair's radii and masses are those of the encounter; its velocities are not read.
+/// The damping ratio zeta of this pair that gives the wanted restitution head on, within 1e-8. The damping ratio in
+/// `bed` is not read. Radii and masses of the pair are those of the encounter; its velocities are not read.
 FoundDamping damping_for(const WantedRestitution& wanted, const BedCoefficients& bed, Encounter encounter);
 
 }  // namespace dem

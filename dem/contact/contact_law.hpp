@@ -10,8 +10,8 @@
 // m_i).
 //
 // The force on the sphere is (N - A) n + T: the normal law's repulsion N less the attraction A, and the tangential
-// force T. What a contact dissipates in a step is the work done against T, the couples and the normal dashpot, less what
-// the springs store more than before. Whatever is cut, scaled or projected is in it.
+// force T. What a contact dissipates in a step is the work done against T, the couples and the normal dashpot, less
+// what the springs store more than before. Whatever is cut, scaled or projected is in it.
 #include <concepts>
 
 #include "dem/contact/parts/attraction.hpp"
@@ -53,7 +53,7 @@ struct ContactLaw {
 
   static constexpr int history_rows = ResistancePart::remembers ? 2 : 1;
 
-  /// m, beyond touching, for spheres up to this reduced radius.
+  /// How far [m] beyond touching the law reaches, for spheres up to this reduced radius.
   double range(double largest_radius) const { return larger(normal.range(largest_radius), attraction.range()); }
 
   /// The law of pairs of one reduced mass [kg] and radius [m] (C double), or of one each per lane.
@@ -87,14 +87,14 @@ struct ContactLaw {
       return r;
     }
 
-    /// J, of the springs beside the normal one.
+    /// Energy [J] in the springs beside the normal one.
     template <class T>
     T stored(const History<T>& h) const {
       return tangential.energy(h.slip, h.radius) + resistance.energy(h.roll, h.twist);
     }
-    /// J, lost with a contact that is no more.
+    /// Energy [J] that is lost with a contact that is no more.
     double given_up(const History<double>& h) const { return normal.released(h.radius) + stored(h); }
-    /// J, elastic, and of the attraction (which is negative).
+    /// Energy [J] of the elastic force and of the attraction (whose part is negative).
     double elastic_energy(double overlap, const History<double>& h) const {
       return normal.energy(overlap, h.radius) + stored(h);
     }
@@ -104,7 +104,7 @@ struct ContactLaw {
   At<double> at(double mass, double radius) const {
     return make_at<double>([this](auto) { return this; }, mass, radius);
   }
-  /// `laws(k)` is the law of lane k.
+  /// The laws of all lanes together. `laws(k)` is the law of lane k.
   template <class LawOfLane>
   static At<Lane> at_lanes(LawOfLane laws, Lane mass, Lane radius) {
     return make_at<Lane>(laws, mass, radius);

@@ -17,7 +17,7 @@ inline constexpr std::size_t max_bodies = 8;
 /// Load of the powder on a body.
 struct BodyLoad {
   Vec3 force;   ///< N
-  Vec3 torque;  ///< N m about the motion's point, where it is now; arms from there to the contact point
+  Vec3 torque;  ///< N m about the present place of the motion's point; arms go from there to the contact point
 };
 
 /// Sums over one step's contacts.
@@ -25,11 +25,11 @@ struct StepSums {
   std::array<BodyLoad, max_bodies> body;
   double virial = 0.0;         ///< J, sum over sphere contacts of push * distance of the centres
   double dissipated = 0.0;     ///< J in this step, by dashpots, sliding and contacts that break
-  double tool_work = 0.0;      ///< J in this step, of the bodies on the spheres
+  double tool_work = 0.0;      ///< J in this step, work of the bodies on the spheres
   std::uint64_t contacts = 0;  ///< pairs of spheres that touch
   std::uint64_t wall_contacts = 0;
   std::uint64_t deep = 0;    ///< contacts whose overlap is more than Surroundings::deep
-  double max_overlap = 0.0;  ///< of a radius
+  double max_overlap = 0.0;  ///< largest overlap, as a share of a radius
 };
 
 /// A body as this step sees it.
@@ -45,16 +45,16 @@ struct Surroundings {
   std::span<const Frame> frames;
   double time_step;        ///< s
   double range;            ///< m
-  double deep;             ///< of a radius: overlaps beyond it are counted
+  double deep;             ///< share of a radius; deeper overlaps are counted
   double steps_per_metre;  ///< at least so many until two spheres are nearer to each other by a metre
 };
 
-/// J, at the present positions.
+/// Energies [J] at the present positions.
 struct ContactEnergy {
   double elastic = 0.0, attraction = 0.0;
 };
 
-/// Who meets in a contact that is looked at alone, and so by which law.
+/// Who meets in a contact that is looked at alone; this decides its law.
 enum class Partner { sphere, body };
 struct Who {
   Partner partner = Partner::sphere;
@@ -66,20 +66,20 @@ struct Who {
 class ForcePass {
  public:
   virtual ~ForcePass() = default;
-  /// m, how far beyond touching the laws reach for spheres up to this radius.
+  /// How far [m] beyond touching the laws reach for spheres up to this radius.
   virtual double range(double largest_radius) const = 0;
   virtual int history_rows() const = 0;
   /// Adds the loads of the chunk's pairs and wall contacts.
   virtual void chunk(State& state, const Surroundings& around, std::size_t chunk, StepSums& sums) const = 0;
   virtual ContactEnergy energy(const State& state, const Surroundings& around) const = 0;
-  /// One contact by itself.
+  /// The reaction of one contact by itself.
   virtual Reaction<double> react(const Who& who, const Meeting<double>& meeting, const History<double>& before,
                                  double time_step) const = 0;
-  /// m, how far apart a contact, once made, still holds.
+  /// The gap [m] up to which a contact, once made, still holds.
   virtual double holds(const Who& who) const = 0;
 };
 
-/// The laws of a bed: between materials, and of each material with each body's surface.
+/// The laws of a bed, between two materials and between a material and a body's surface.
 template <class Law>
 struct LawTables {
   std::vector<Law> grain;  ///< materials x materials, symmetric

@@ -1,7 +1,7 @@
 #pragma once
-// Several contacts at once: lanes of the widest registers of the instruction set that it is compiled for, and the few
-// operations that the laws need, alike for one double and for lanes. Every operation is elementwise and exactly
-// rounded, so a contact's force does not depend on the width nor on its neighbours in the lanes.
+// Several contacts at once: lanes of the widest registers of the instruction set that is compiled for, and the few
+// operations that the laws need, both for one double and for lanes. Every operation is elementwise and exactly rounded,
+// so a contact's force depends neither on the width nor on its neighbours in the lanes.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -66,7 +66,7 @@ inline Four& four(double& first) { return reinterpret_cast<Four&>(first); }
 
 /// A vector, and 0.
 DEMCAL_INLINE Four four(const Vec3& a) { return Four{a.x, a.y, a.z, 0.0}; }
-/// Its first three.
+/// The first three numbers of the four.
 DEMCAL_INLINE Vec3 three(const Four& a) { return {a[0], a[1], a[2]}; }
 
 /// A row of four doubles per lane, transposed.
@@ -124,7 +124,7 @@ DEMCAL_INLINE void scatter(const Vector3<L>& v, const L& w, Four* out) {
   }
 }
 
-/// `sum` and what the lanes hold, of the contacts first, first + 1, ...
+/// `sum` plus the lanes' values, which belong to the contacts first, first + 1, ...
 template <class L>
 DEMCAL_INLINE Four added(Four sum, const L& lane, std::size_t first) {
   if constexpr (L::size() % 4 == 0) {
@@ -137,10 +137,11 @@ DEMCAL_INLINE Four added(Four sum, const L& lane, std::size_t first) {
 }
 }  // namespace detail
 
-/// A sum over contacts, as that of every fourth, so that it has the same bits however many lanes there are.
+/// A sum over contacts. It is kept as four sums, each over every fourth contact, so that it has the same bits however
+/// many lanes there are.
 class Tally {
  public:
-  /// Of the contacts first, first + 1, ..., counted from anywhere by whole lanes.
+  /// Adds the values of the contacts first, first + 1, ..., counted from anywhere by whole lanes.
   DEMCAL_INLINE void add(const Lane& values, std::size_t first) { sum_ = detail::added(sum_, values, first); }
   void add_to(double& total, double factor = 1.0) const {
     for (int k = 0; k < 4; ++k) total += factor * sum_[k];
@@ -150,13 +151,13 @@ class Tally {
   Four sum_{};
 };
 
-/// `row(k)` gives lane k's four doubles.
+/// The lanes' rows, transposed. `row(k)` gives lane k's four doubles.
 template <class Row>
 DEMCAL_INLINE LaneRows transposed(Row&& row) {
   return detail::gather<Lane>(row);
 }
 
-/// Lane k's four doubles of `rows` into out[k].
+/// Writes lane k's four doubles of `rows` into out[k].
 DEMCAL_INLINE void untransposed(const LaneRows& rows, Four* out) { detail::scatter<Lane>(rows.v, rows.w, out); }
 
 }  // namespace dem

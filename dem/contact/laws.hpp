@@ -1,5 +1,6 @@
 #pragma once
-// The choice of parts, and the force pass composed of them (dem/contact/forces/) for the instruction set in use (isa.hpp).
+// The choice of parts, and the force pass composed of them (dem/contact/forces/) for the instruction set in use
+// (isa.hpp).
 #include <memory>
 #include <vector>
 
@@ -48,7 +49,8 @@ struct BedCoefficients {
   double equal_mass = 0.0, equal_radius = 0.0;  ///< kg, m of every sphere; 0 where spheres differ
 };
 
-/// Throws std::invalid_argument for parts that do not go together.
+/// The force pass composed of the parts that the bed chooses. Throws std::invalid_argument for parts that do not go
+/// together.
 std::shared_ptr<const ForcePass> make_force_pass(const BedCoefficients& bed);
 
 }  // namespace dem

@@ -48,18 +48,18 @@ struct Pair {
   std::uint32_t i = 0, j = 0;
 };
 
-/// Fills the last word of a chunk's pairs; never looked at.
+/// Whether the pair only fills the last word of a chunk's pairs; such a pair is never looked at.
 inline bool is_padding(Pair p) { return p.i == p.j; }
 
-/// A free list of history rows. A contact takes a place of `width` rows when it begins, and gives the place back when it ends. Each
-/// chunk has a pool of its own, so that threads need no lock.
+/// A free list of history rows. A contact takes a place of `width` rows when it begins, and gives the place back when
+/// it ends. Each chunk has a pool of its own, so that threads need no lock.
 template <class Row>
 struct Pool {
   std::uint32_t width = 1;
   std::vector<Row> rows;
   std::vector<std::uint32_t> free;  ///< places given back
 
-  /// A place whose rows are as new.
+  /// Takes a place, its rows reset.
   std::uint32_t take() {
     if (!free.empty()) {
       const std::uint32_t place = free.back();
@@ -77,14 +77,14 @@ struct Pool {
 /// One contact of a sphere with a body, kept in the body's frame so that it turns with the tool.
 struct WallMemory {
   Vec3 normal;
-  VectorRow slip, roll;  ///< as the rows of a pair's history
+  VectorRow slip, roll;  ///< in the form of the rows of a pair's history
 };
 /// A sphere near a body: the features it may touch until the next rebuild, and its contacts there.
 struct WallSlot {
   std::uint32_t particle = 0, body = 0;
   std::uint32_t feature_first = 0, feature_count = 0;  ///< into State::features
   std::uint32_t touching = 0;
-  std::uint32_t place[max_touches] = {};  ///< of each contact, in the chunk's wall_memory
+  std::uint32_t place[max_touches] = {};  ///< place of each contact in the chunk's wall_memory
 };
 
 /// A ghost row is its owner's, shifted.
@@ -93,29 +93,30 @@ struct Ghost {
   Vec3 shift;  ///< m
 };
 
-/// Pairs out of range are skipped for several steps: until their spheres could meet, and for due_steps - 1 steps at
-/// most.
+/// The most steps between two looks at a pair out of range: such pairs are skipped until their spheres could meet, and
+/// for due_steps - 1 steps at most.
 inline constexpr std::uint32_t due_steps = 8;
 
-/// Where in State::due the pairs of a word to look at in a step are: a word's steps side by side, in one cache line.
+/// Place in State::due of the pairs of a word that are to be looked at in a step. A word's steps stand side by side, in
+/// one cache line.
 inline std::size_t due_at(std::uint32_t word, std::uint64_t step) {
   return std::size_t{word} * due_steps + step % due_steps;
 }
 
-/// One bit a pair: the word it is in, and its place there.
+/// The bit of a pair within its word of 64 pairs.
 inline std::uint64_t bit_of(std::uint32_t slot) { return std::uint64_t{1} << (slot % 64); }
 
 struct State {
   std::uint64_t step = 0;
   std::uint64_t rebuilds = 0;
-  std::uint64_t rebuild_step = 0;  ///< of the last one
+  std::uint64_t rebuild_step = 0;  ///< step of the last rebuild
   double dissipated = 0.0;         ///< J, since the start
   // particles, then ghosts
   std::vector<PositionRow> position;
   std::vector<MotionRow> motion;  ///< at the time of `position`: what contacts see
   // particles
-  std::vector<HalfRow> half;    ///< half a step earlier: what is integrated
-  std::vector<LoadRow> load;    ///< without gravity; beyond the particles, the halos
+  std::vector<HalfRow> half;    ///< half a step earlier than `position`: what is integrated
+  std::vector<LoadRow> load;    ///< loads without gravity; the halos stand beyond the particles
   std::vector<Vec3> reference;  ///< m, position at the last rebuild
   std::vector<std::uint32_t> id;
   std::vector<Ghost> ghost;
@@ -126,16 +127,16 @@ struct State {
   std::vector<std::uint64_t> due;           ///< pairs to look at in each of the next `due_steps` steps (due_at)
   std::vector<std::uint32_t> history_at;    ///< place of a pair in range, in its chunk's history
   // chunks
-  std::vector<Pool<VectorRow>> history;                ///< of pairs in range: slip and contact radius; roll and twist
-  std::vector<Pool<WallMemory>> wall_memory;           ///< of contacts with bodies
+  std::vector<Pool<VectorRow>> history;                ///< of pairs in range: slip and contact radius, roll and twist
+  std::vector<Pool<WallMemory>> wall_memory;           ///< memory of contacts with bodies
   std::vector<std::uint32_t> chunk_first, chunk_pair;  ///< first particle and pair; one more
   std::vector<std::uint32_t> chunk_wall;               ///< first wall slot, at chunk * bodies + body; one more
   std::vector<std::uint32_t> halo_owner;               ///< particle of each halo entry
   std::vector<std::uint32_t> halo_part;  ///< first entry for chunk d in chunk c's halo, at c * chunks + d; one more
   // walls
   std::vector<WallSlot> wall;           ///< sorted by chunk, body, particle
-  std::vector<std::uint32_t> features;  ///< of each slot, nearest first
-  std::vector<float> feature_gap;       ///< m, from the sphere to the feature at the rebuild, at least
+  std::vector<std::uint32_t> features;  ///< features of each slot, nearest first
+  std::vector<float> feature_gap;       ///< m, least distance from the sphere to the feature at the rebuild
 
   std::size_t particles() const { return half.size(); }
   /// Calls visit(chunk, slot) for every pair in range.

@@ -52,7 +52,7 @@ float rounded_down(double a) { return std::nextafter(static_cast<float>(a), -std
 
 }  // namespace
 
-/// Of the chunk's particles with those after them, and with all ghosts.
+/// The pairs of the chunk's particles with the particles after them, and with all ghosts.
 std::vector<Pair> Simulation::pairs_of(std::size_t chunk) const {
   const State& s = state_;
   const auto ghosts = static_cast<std::uint32_t>(s.particles());
@@ -222,7 +222,7 @@ void Simulation::list_walls() {
     std::vector<WallSlot> slot;  ///< features counted from the chunk's first
     Pool<WallMemory> memory;
     std::vector<std::uint32_t> body;    ///< first slot of each body, one more
-    std::vector<NearFeature> features;  ///< of each slot, nearest first
+    std::vector<NearFeature> features;  ///< features of each slot, nearest first
   };
   std::vector<Found> found(chunks);
   team_.for_each(chunks, [&](std::size_t c) {

@@ -10,7 +10,7 @@ namespace dem {
 namespace {
 
 struct Deepest {
-  double overlap = 0.0;  ///< of a radius
+  double overlap = 0.0;  ///< overlap as a share of a radius
   std::string who;
   Vec3 at;                ///< m
   double approach = 0.0;  ///< m/s, positive while it deepens

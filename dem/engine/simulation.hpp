@@ -29,8 +29,8 @@ struct Body {
 };
 
 struct Spheres {
-  std::vector<double> radius;           ///< m, one for all or one each
-  std::vector<double> density;          ///< kg/m3, one for all or one each
+  std::vector<double> radius;           ///< m, one value for all spheres, or one for each
+  std::vector<double> density;          ///< kg/m3, one value for all spheres, or one for each
   std::vector<std::uint32_t> material;  ///< index into the laws' tables; empty: all 0
   std::vector<std::uint8_t> frozen;  ///< 1: keeps its velocity whatever the load, and its mass in contacts; empty: none
   std::vector<Vec3> position;        ///< m
@@ -38,14 +38,14 @@ struct Spheres {
   std::vector<Vec3> spin;            ///< rad/s, empty: none
 };
 
-/// Two channels side by side, as of a machine of two mixers. A plane parts them: at `middle` across. A rig without them
-/// has the length 0.
+/// Two channels side by side, such as those of a machine of two mixers. A plane at `middle` across parts them. A rig
+/// without channels has the length 0.
 struct Channels {
-  Vec3 along{1.0, 0.0, 0.0};              ///< unit, the way that the powder of the first is to flow
-  Vec3 across{0.0, 1.0, 0.0};             ///< unit, from the first to the second
+  Vec3 along{1.0, 0.0, 0.0};              ///< unit, direction in which the powder of the first channel is to flow
+  Vec3 across{0.0, 1.0, 0.0};             ///< unit, from the first channel to the second
   double middle = 0.0;                    ///< m along `across`
-  double from = 0.0, to = 0.0;            ///< m along `along`, where they are
-  double flow_from = 0.0, flow_to = 0.0;  ///< m, between the openings, where nothing goes from one to the other
+  double from = 0.0, to = 0.0;            ///< m along `along`, ends of the channels
+  double flow_from = 0.0, flow_to = 0.0;  ///< m, part between the openings, where nothing goes from one to the other
 
   bool exist() const { return to > from; }
   int of(Vec3 at) const { return dot(across, at) < middle ? 0 : 1; }
@@ -60,24 +60,24 @@ struct Setup {
   Vec3 gravity{0.0, 0.0, -9.81};                                   ///< m/s2
   double time_step = 0.0;                                          ///< s
   double skin = 0.0;                                               ///< m
-  double overlap_limit = std::numeric_limits<double>::infinity();  ///< of a radius; beyond it the run ends
-  std::uint64_t rest_steps = 0;                                    ///< before the bodies' motions begin
+  double overlap_limit = std::numeric_limits<double>::infinity();  ///< share of a radius; a deeper overlap ends the run
+  std::uint64_t rest_steps = 0;                                    ///< steps before the bodies' motions begin
   int threads = 1;
   Channels channels;
 };
 
-/// The run cannot go on: what, where, when and the likely cause.
+/// The run cannot go on: what happened, where, when and the likely cause.
 struct Fault : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// J at the time of the positions; potentials of gravity count from z = 0.
+/// Energies [J] at the time of the positions; potentials of gravity count from z = 0.
 struct Energy {
   double translation = 0.0, rotation = 0.0, gravity = 0.0, elastic = 0.0, attraction = 0.0;
   double total() const { return translation + rotation + gravity + elastic + attraction; }
 };
 
-/// What all spheres carried in the last step, at its half, where leapfrog has their velocities.
+/// Momentum, energy and flow of all spheres in the last step, at its half, where leapfrog has their velocities.
 struct Carried {
   Vec3 momentum;                 ///< kg m/s
   Vec3 moment;                   ///< kg m, sum of mass * position, at the step's end
@@ -89,14 +89,14 @@ struct Carried {
 struct Cells {
   Vec3 low, size;  ///< m, origin and edge lengths of one cell
   int n[3] = {1, 1, 1};
-  std::vector<std::uint32_t> first, ghost_first;  ///< row of each cell, one more; ghosts count from 0
+  std::vector<std::uint32_t> first, ghost_first;  ///< first row of each cell, and one more entry; ghosts count from 0
 
   std::size_t total() const { return static_cast<std::size_t>(n[0]) * n[1] * n[2]; }
   std::array<int, 3> around(Vec3 at) const;  ///< the cell at a point, or the nearest
-  std::uint32_t of(Vec3 at) const;           ///< the same, numbered
+  std::uint32_t of(Vec3 at) const;           ///< the number of that cell
 };
 
-/// Room for as many rows and a few more; a vector that grows by itself doubles.
+/// Reserves room for this many rows and a few more; a vector that grows by itself doubles.
 template <class Row>
 void make_room(std::vector<Row>& rows, std::size_t count) {
   if (rows.capacity() < count) rows.reserve(count + count / 512);
@@ -120,7 +120,7 @@ class Simulation {
   Vec3 momentum() const;  ///< kg m/s
   /// Velocities at the time of the positions, exact to the integrator's order.
   MotionRow motion(std::size_t particle) const;
-  double bytes_per_particle() const;  ///< of state and lists
+  double bytes_per_particle() const;  ///< bytes of state and lists
 
  private:
   void compute_forces();
@@ -155,28 +155,28 @@ class Simulation {
   Setup setup_;
   State state_;
   std::vector<Surface> surface_;
-  std::vector<Reach> body_reach_;   ///< of its surface and a sphere's radius
+  std::vector<Reach> body_reach_;   ///< reach of each body's surface and a sphere's radius
   double largest_radius_ = 0.0;     ///< m
-  double range_ = 0.0;              ///< m, of the laws beyond touching
+  double range_ = 0.0;              ///< m, how far the laws reach beyond touching
   double max_displacement2_ = 0.0;  ///< m2
-  double fastest_ = 0.0;            ///< m/s, of all spheres in the last step
-  double watched_speed_ = 0.0;      ///< m/s, that pairs out of range count on while they sleep
+  double fastest_ = 0.0;            ///< m/s, the fastest sphere in the last step
+  double watched_speed_ = 0.0;      ///< m/s, speed that pairs out of range count on while they sleep
   StepSums sums_;
   Carried carried_;
   std::vector<StepSums> chunk_sums_;
   struct ChunkStep {
     double displacement2 = 0.0;  ///< m2, since the rebuild
     double speed2 = 0.0;         ///< m2/s2
-    double late_power = 0.0;     ///< W, of the loads on v*(n) less that on v(n), which are known only after the forces
+    double late_power = 0.0;     ///< W, power of the loads on v*(n) less that on v(n), known only after the forces
     Carried carried;
   };
   std::vector<ChunkStep> chunk_steps_;
   Team team_;
 
-  // What a rebuild hands from step to step, given back at its end but for the ghosts.
+  // Memory that a rebuild uses from step to step, given back at its end but for the ghosts.
   Cells cells_;
   std::vector<Ghost> old_ghosts_;
-  std::vector<std::uint32_t> order_, place_;  ///< old row of each new one, and back
+  std::vector<std::uint32_t> order_, place_;  ///< old row of each new row, and the reverse
 };
 
 }  // namespace dem

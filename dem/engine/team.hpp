@@ -49,7 +49,7 @@ class Team {
   }
 
  private:
-  static constexpr int looks = 2000;  ///< at a number before sleeping until it changes: some tens of microseconds
+  static constexpr int looks = 2000;  ///< looks at a number before sleeping until it changes: some tens of microseconds
 
   void begin_pass() {
     passes_.fetch_add(1);
@@ -73,8 +73,8 @@ class Team {
   bool done_ = false;
   std::function<void(std::size_t)> work_;
   std::size_t items_ = 0;
-  alignas(64) std::atomic<std::size_t> next_ = 0;      ///< item
-  alignas(64) std::atomic<std::uint64_t> passes_ = 0;  ///< begun
+  alignas(64) std::atomic<std::size_t> next_ = 0;      ///< the next item
+  alignas(64) std::atomic<std::uint64_t> passes_ = 0;  ///< passes begun
   alignas(64) std::atomic<std::uint64_t> busy_ = 0;    ///< members that have not finished this pass, beside the caller
   std::vector<std::jthread> members_;
 };

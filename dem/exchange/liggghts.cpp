@@ -22,7 +22,7 @@ namespace {
 
 constexpr double steps_per_contact = 50.0;
 
-/// What `script` writes and `read_liggghts` counts by.
+/// The steps by which `script` writes and `read_liggghts` counts.
 struct Clock {
   double step = 0.0;    ///< s
   double sample = 1.0;  ///< steps
@@ -35,7 +35,7 @@ constexpr std::size_t most_types = 40;  // of spheres: tables of properties have
 
 /// A kind of sphere or a body.
 struct Type {
-  std::size_t material = 0;  ///< of the bed, or the body's index
+  std::size_t material = 0;  ///< material of the bed, or the body's index
   double mass = 0.0;         ///< kg, 0 of a body
 };
 
@@ -122,7 +122,7 @@ std::string properties(const Case& c, const Types& types, const BedCoefficients&
     pairs("kt", [](const PairCoefficients& p, double) { return p.tangential_stiffness; });
     pairs("gamman", rate);
     pairs("gammat", [&](const PairCoefficients& p, double mass) { return p.tangential_damping * rate(p, mass); });
-    // Not used by the law, but asked for.
+    // LIGGGHTS asks for these two values, though the law does not use them.
     each("youngsModulus", [](std::size_t) { return 5e6; });
     each("poissonsRatio", [](std::size_t) { return 0.3; });
   } else {
@@ -139,8 +139,8 @@ std::string properties(const Case& c, const Types& types, const BedCoefficients&
   return text;
 }
 
-/// The contact models as LIGGGHTS names them, for spheres and walls. Their settings follow; in a wall's command other words
-/// stand in between.
+/// The contact models as LIGGGHTS names them, for spheres and walls. Their settings follow; in a wall's command other
+/// words stand in between.
 std::string models(const Case& c) {
   std::string law = c.contact.normal == NormalLaw::linear ? "model hooke/stiffness" : "model hertz";
   law += " tangential history";

@@ -1,10 +1,11 @@
 #pragma once
-// What a run of a case will be, before it is made: how full the vessel is and where the bed's surface will lie, the
-// gaps in spheres, what moves how; and what would make the run nonsense: powder that nothing holds or that does not
-// fit, a tool that never meets it or that cuts the vessel (dem/forecast/room.hpp, dem/forecast/sweep.hpp; slice and drum in closed form).
+// The forecast of a run before it is made: how full the vessel is, where the bed's surface will lie, the gaps in
+// spheres, and what moves how. It also finds what would make the run nonsense: powder that nothing holds or that does
+// not fit, a tool that never meets it or that cuts the vessel (dem/forecast/room.hpp, dem/forecast/sweep.hpp; slice and
+// drum in closed form).
 //
-// A bed is taken as a levelled liquid of packing_fraction. A tool is only said to miss the bed when it misses one of
-// half solids, too, by more than a cell of the room's grid: heaps and waves are not asked about.
+// A bed is taken as a levelled liquid of packing_fraction. A tool is only said to miss the bed when it also misses a
+// bed of half solids by more than a cell of the room's grid: heaps and waves are not asked about.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,11 +16,11 @@
 
 namespace dem {
 
-/// Between two bodies that move against each other.
+/// A gap between two bodies that move against each other.
 struct NamedGap {
   std::string between;      ///< "paddle and vessel"
   double width = 0.0;       ///< m
-  double in_spheres = 0.0;  ///< of the largest
+  double in_spheres = 0.0;  ///< width in diameters of the largest sphere
 };
 
 struct Forecast {
@@ -32,8 +33,8 @@ struct Forecast {
   std::string full_at;            ///< what a fill of 1 reaches
   std::vector<NamedGap> gaps;     ///< narrower than four of the largest sphere, the narrowest first
   std::vector<std::string> bodies;      ///< one line each: size, triangles, how it moves
-  std::vector<data::Problem> problems;  ///< that make the run nonsense
-  std::vector<std::string> warnings;    ///< what a user should look at
+  std::vector<data::Problem> problems;  ///< problems that make the run nonsense
+  std::vector<std::string> warnings;    ///< remarks that a user should look at
 };
 
 /// Throws data::InputError (78) when the spheres do not fit.

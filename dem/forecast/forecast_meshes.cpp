@@ -162,7 +162,7 @@ void check_inside(const Case& c, const BuiltRig& rig, Forecast& f) {
   }
 }
 
-/// What the region leaves out.
+/// Warns where the region reaches beyond the box, as only the part inside is filled.
 void check_region(const Case& c, Forecast& f) {
   const StlRig& rig = *c.rig.stl;
   if (!rig.packing.empty()) return;

@@ -21,7 +21,7 @@ void cut_links(Room& room, const std::array<Vec3, 3>& corner, std::size_t a, dou
   const auto low = parts(room.low), cell = parts(room.cell);
   std::array<std::array<double, 3>, 3> p;
   for (std::size_t k = 0; k < 3; ++k) p[k] = parts(corner[k]);
-  // In units of cells, centres of rows at whole numbers.
+  // Coordinates are in units of cells, with centres of rows at whole numbers.
   const auto unit = [&](std::size_t k, std::size_t axis) { return (p[k][axis] - low[axis]) / cell[axis] - 0.5; };
   double x[3], y[3], z[3];
   for (std::size_t k = 0; k < 3; ++k) x[k] = unit(k, b), y[k] = unit(k, c), z[k] = unit(k, a);
@@ -216,7 +216,7 @@ Poured pour(const Room& room, std::size_t start, double volume) {
       of_layer += cell;
     }
     filled += cell;
-    // What has run over a rim is below the top: it does not count as held, unless it fills up to the top again.
+    // Powder that has run over a rim is below the top: it does not count as held, unless it fills up to the top again.
     if (at_top) bed.held = filled;
     if (flood.open()) break;
   }

@@ -1,11 +1,11 @@
 #pragma once
-// The room that a rig's bodies leave in its box at the start, as a grid of cells: for questions that no run is needed
-// for. Where does the powder come to rest, does anything hold it, how full is the vessel?
+// The room that a rig's bodies leave in its box at the start, as a grid of cells. It answers questions that need no
+// run: where the powder comes to rest, whether anything holds it, and how full the vessel is.
 //
-// Two neighbouring cells are joined unless a triangle lies between their centres, so no hole that a cell's line misses
-// and no wall thinner than a cell matters. A cell is narrow where no sphere's centre fits, within 0.9 of a radius of
-// a surface; the powder wets narrow cells beside wide ones, but flows through wide ones only. A gap narrower than a
-// sphere therefore keeps it in.
+// Two neighbouring cells are joined unless a triangle lies between their centres. A hole that no line between centres
+// passes and a wall thinner than a cell therefore do not matter. A cell is narrow where no sphere's centre fits, within
+// 0.9 of a radius of a surface; the powder wets narrow cells beside wide ones, but flows through wide ones only. A gap
+// narrower than a sphere therefore keeps the powder in.
 //
 // The powder is poured like a liquid: it runs down from where it starts, then fills the lowest place first (priority
 // flood, R. Barnes et al., Computers & Geosciences 62:117 (2014)). Its slope of repose is not asked about, so the
@@ -28,7 +28,7 @@ struct Room {
   std::vector<std::uint8_t> walled;  ///< per cell, bit 2 a + s: something lies between it and the next along axis a,
                                      ///< s = 0 towards low, 1 towards high; at the box's end before its face
   std::vector<std::uint8_t> narrow;  ///< per cell, 1: no sphere's centre fits
-  int rim = 1;                       ///< cells that a sphere in a wide cell reaches into narrow ones
+  int rim = 1;                       ///< number of cells that a sphere in a wide cell reaches into narrow ones
 
   std::size_t total() const { return walled.size(); }
   double volume() const { return cell.x * cell.y * cell.z; }  ///< m3, of a cell
@@ -41,7 +41,7 @@ struct Room {
   std::size_t beyond(std::size_t cell_number, int side) const;
 };
 
-/// Of a rig with its bodies where they start; `smallest` [m] is the smallest sphere's diameter.
+/// The room of a rig with its bodies where they start; `smallest` [m] is the smallest sphere's diameter.
 Room make_room(const BuiltRig& rig, double smallest);
 
 /// Powder come to rest.
@@ -49,10 +49,10 @@ struct Poured {
   std::vector<std::uint8_t> wet;  ///< per cell
   double surface = 0.0;           ///< m against gravity
   double held = 0.0;              ///< m3 that the vessel takes before it runs over
-  bool leaves = false;            ///< some of the powder runs out of the box
-  Vec3 leaves_at;                 ///< m, where
+  bool leaves = false;            ///< whether some of the powder runs out of the box
+  Vec3 leaves_at;                 ///< m, where it runs out
 };
-/// `volume` [m3] of a bed, poured at a cell.
+/// Pours a bed of `volume` [m3] at a cell.
 Poured pour(const Room& room, std::size_t start, double volume);
 
 /// Whether a sphere let go at a point falls straight out of the box: no wall is under it.

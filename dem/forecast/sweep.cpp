@@ -31,7 +31,7 @@ std::vector<Mark> marks_of(const TriangleMesh& mesh, std::size_t count) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Vec3 across = cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0));
     area.push_back(all += 0.5 * length(across));
-    // In a finer mesh the points on faces are close enough.
+    // Edges are left out in a finer mesh, where the points on faces are close enough.
     for (std::size_t k = 0; k < 3 && mesh.triangles.size() <= 20000; ++k)
       normals[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back(unit(across));
   }
@@ -116,7 +116,7 @@ bool in_box(const BuiltRig& rig, Vec3 p) {
          (rig.periodic[2] || (p.z >= rig.low.z && p.z <= rig.high.z));
 }
 
-/// One body's points beside another's surface.
+/// Follows one body's points beside another body's surface.
 class Follower {
  public:
   Follower(const Surface& surface, double reach) : surface_(surface), reach_(reach) {}
@@ -229,7 +229,7 @@ void follow(const BuiltRig& rig, const Pairing& of, const std::vector<Mark>& mar
   if (gap) found.gaps.push_back(*gap);
 }
 
-/// Of what two looks at a pair found, the worse.
+/// Keeps the worse of two findings about a pair of bodies.
 template <class Found, class Worse>
 void keep_worst(std::vector<Found>& all, std::size_t from, Worse worse) {
   while (all.size() > from + 1) {

@@ -1,12 +1,12 @@
 #pragma once
-// What moving bodies sweep, looked at without a run: whether they leave the box, cut each other, and where a gap
-// between them is narrower than a sphere.
+// The space that moving bodies sweep, looked at without a run: whether the bodies leave the box, whether they cut each
+// other, and where a gap between them is narrower than a sphere.
 //
 // Points on each body's surface (evenly by area, along its sharp edges, and its corners) are followed through one turn
-// of the slowest body, or through the programme, in the frame of the other body, so bodies that move together never
-// meet, and two tools that mesh do not cut each other because their sweeps overlap. A point that crosses the other's
-// surface, and goes deeper than a quarter of the largest sphere on both sides of it, has cut it. A shaft that passes
-// through a wall turns in its hole and crosses nothing.
+// of the slowest body, or through the programme, in the frame of the other body. Bodies that move together therefore
+// never meet, and two tools that mesh do not count as cutting each other merely because their sweeps overlap. A point
+// that crosses the other's surface, and goes deeper than a quarter of the largest sphere on both sides of it, has cut
+// it. A shaft that passes through a wall turns in its hole and crosses nothing.
 //
 // A gap is the least distance of a point from the other's surface, taken across the gap: where the surfaces face each
 // other within 45 degrees, not where one runs into the other.
@@ -47,7 +47,7 @@ struct Sweeps {
   std::vector<Excursion> excursions;  ///< of each body that moves
 };
 
-/// `largest` [m] is the largest sphere's diameter.
+/// Follows the bodies as they move. `largest` [m] is the largest sphere's diameter.
 Sweeps follow_bodies(const BuiltRig& rig, const RunControl& run, double largest);
 
 /// Points of a body's surface as it moves, in the box, for those who ask what it reaches [m].

@@ -1,5 +1,5 @@
 #pragma once
-// Whether a case can be simulated, and what follows from it.
+// The check whether a case can be simulated, and what follows from the case.
 #include <vector>
 
 #include "data/error.hpp"
@@ -10,7 +10,7 @@ namespace dem {
 /// Everything about a case that cannot be simulated.
 std::vector<data::Problem> problems(const Case& c);
 
-/// Throws data::InputError (78) with all problems of the case.
+/// Checks the case and works out what follows from it. Throws data::InputError (78) with all problems of the case.
 PreparedCase prepare(Case c);
 
 }  // namespace dem

@@ -1,4 +1,4 @@
-// What of a case cannot be simulated.
+// The problems of a case that cannot be simulated.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -109,7 +109,7 @@ void check_bed(const Case& c, Found& found) {
                      "cut the smallest off"});
 }
 
-/// What rests on a contact, and what pulls it together, must not press it flat.
+/// Checks that a contact is not pressed flat by the load that rests on it and the attraction.
 void check_overlap(const Case& c, const Derived& d, Found& found) {
   const ContactKind* worst = nullptr;
   for (const ContactKind& kind : d.kinds)

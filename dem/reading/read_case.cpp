@@ -18,7 +18,7 @@ namespace {
 using data::Range;
 using data::Section;
 
-/// What to say of a key that this case's laws do not read: other materials' may.
+/// What a key means that this case's laws do not read: a problem, or one for other materials, whose laws may read it.
 enum class Unread { is_a_problem, is_for_others };
 
 /// A key whose name, unit and range are those of the target "SECTION.KEY".
@@ -160,7 +160,7 @@ LogNormalSizes read_distribution(const Section& s, Material& m) {
   return l;
 }
 
-/// What a grain is, by itself.
+/// Reads the properties of a grain by itself.
 void read_grain(const Section& s, Material& m) {
   const auto number = [&](const char* key, double& field) {
     if (!s.has(key)) return;
@@ -179,7 +179,8 @@ void read_grain(const Section& s, Material& m) {
     s.problem("diameter", "stands beside sizes or a distribution", "keep one of them");
 }
 
-/// What a component's own [contact] says holds between its grains and, but for what differs there, at walls.
+/// Reads a component's own [contact]. It holds between the component's grains, and at walls except where those have a
+/// value of their own.
 void read_component_contact(const Section& s, const std::string& name, Case& c, Material& m) {
   PairContact grains, walls;
   grains.first = grains.second = walls.first = name;
@@ -264,7 +265,8 @@ struct Blamed {
   std::string key;
 };
 
-/// Of "rig.mesh.NAME", "rig.KEY", "contact.KEY", "contact.A-B.KEY", "run.KEY", "material.KEY", "material(s).NAME.KEY".
+/// The key to blame for a problem at "rig.mesh.NAME", "rig.KEY", "contact.KEY", "contact.A-B.KEY", "run.KEY",
+/// "material.KEY", "material(s).NAME.KEY".
 Blamed blamed_for(const Section& root, const std::string& material, const std::string& place) {
   const std::size_t dot = std::min(place.find('.'), place.size()), last = place.rfind('.');
   const std::string first = place.substr(0, dot), rest = dot < place.size() ? place.substr(dot + 1) : "";

@@ -1,6 +1,6 @@
 #pragma once
-// Reads one material's DEM case from a study: [rig], [materials.NAME], [contact] and [run]. data/study_keys_table.cpp lists
-// every key with its unit, range and default; rigs from meshes are read by dem/rig/read_stl_rig.hpp.
+// Reads one material's DEM case from a study: [rig], [materials.NAME], [contact] and [run]. data/study_keys_table.cpp
+// lists every key with its unit, range and default; rigs from meshes are read by dem/rig/read_stl_rig.hpp.
 #include <string_view>
 
 #include "data/study_file.hpp"
@@ -8,7 +8,7 @@
 
 namespace dem {
 
-/// Problems are recorded in the study; `material` "" reads a study without [materials].
+/// Reads the case. Problems are recorded in the study; `material` "" reads a study without [materials].
 Case read_case(const data::StudyFile& study, std::string_view material);
 
 }  // namespace dem

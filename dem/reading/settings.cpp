@@ -9,7 +9,8 @@
 namespace dem {
 namespace {
 
-/// Of the DEM's equations: raised where the same settings come to give other torques, so that runs are not mixed.
+/// Version of the DEM's equations. It is raised where the same settings come to give other torques, so that runs are
+/// not mixed.
 constexpr int model = 2;
 
 /// Corrections that change the torques of few cases; theirs alone are run anew.

@@ -56,7 +56,7 @@ std::string of_components(const Case& c, std::string_view key) {
   return c.components.empty() ? "" : fmt::format("is that of each component here: material.NAME.{}", key);
 }
 
-/// Of the bed, whatever the rig.
+/// The targets of the bed, whatever the rig.
 std::vector<Binding> of_bed() {
   return {
       {{"material.density", "kg/m3", 1.0, 1e5, "density of a grain"},
@@ -172,7 +172,8 @@ Binding of_pair(const Target& usual, std::string_view between, const PairKey& ke
   Target t = usual;
   t.name = fmt::format("contact.{}.{}", pair, key.key);
   t.meaning += fmt::format(", between {}", pair);
-  // What is not said of the pair follows the contact law's, at a wall the wall's, as the coefficients do (bed.cpp).
+  // A value that the pair does not state follows the contact law's, at a wall the wall's, as the coefficients do
+  // (bed.cpp).
   const auto get = [=, wall_key = fmt::format("contact.wall_{}", key.key)](const Case& c) {
     const std::optional<Names> names = split(c, pair);
     if (!names) return get_target(c, follows);

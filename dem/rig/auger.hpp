@@ -14,8 +14,8 @@
 
 namespace dem {
 
-inline constexpr int facets = 48;         ///< of the shaft, the blade's rim and the trough's half circle
-inline constexpr int rows_per_pitch = 4;  ///< of the triangles of what goes straight along the axis
+inline constexpr int facets = 48;         ///< sides of the shaft, the blade's rim and the trough's half circle
+inline constexpr int rows_per_pitch = 4;  ///< rows of triangles of straight parts along the axis
 
 /// Rows of points joined by triangles; `outside` is on the left of (along a row) x (to the next row).
 void add_sheet(TriangleMesh& mesh, const std::vector<std::vector<Vec3>>& rows);
@@ -27,12 +27,12 @@ struct Stretch {
   double from = 0.0, to = 0.0;  ///< m along x
 };
 
-/// Shaft and blade about the x axis. The blade's angle is 0 at x = 0; its ends lie at whole facets inside their stretch.
-/// An auger that repeats along x is open at the blade's ends.
+/// Shaft and blade about the x axis. The blade's angle is 0 at x = 0; its ends lie at whole facets inside their
+/// stretch. An auger that repeats along x is open at the blade's ends.
 enum class BladeEnds { open, closed };
 TriangleMesh auger_mesh(const Rig& rig, Stretch shaft, Stretch blade, BladeEnds ends);
 
-/// Of augers and trough.
+/// A length of augers and trough as a quantity of the rig.
 template <double Rig::*Field>
 constexpr RigQuantity auger_length(const char* key, double low, double high, const char* meaning) {
   return {key,
@@ -51,7 +51,7 @@ inline constexpr std::array auger_quantities{
     auger_length<&Rig::trough_radius>("trough_radius", 1e-6, 10.0, "radius of the trough"),
 };
 
-/// What of augers and troughs cannot be simulated.
+/// Problems of augers and troughs that cannot be simulated.
 std::vector<data::Problem> auger_problems(const Case& c);
 
 /// A trough fuller than this many times the room below the blade's top is refused: the mixer would turn deep under the

@@ -2,8 +2,8 @@
 //
 // The spheres start at given positions, or on a cubic lattice of 1.1 diameters with a jitter of 0.04 diameters: of the
 // sites in the fill region that keep clear of every mesh, the largest set of sites next to each other (so that nothing
-// is put inside a shaft or a blade), filled from the bottom, the last layer thinned at random. Where these sites are too
-// few, the spheres grow to a dense bed (dem/rig/grow.hpp).
+// is put inside a shaft or a blade), filled from the bottom, the last layer thinned at random. Where these sites are
+// too few, the spheres grow to a dense bed (dem/rig/grow.hpp).
 //
 // The torque is that about the measured mesh's axis: what its drive must supply, positive when the powder resists, or,
 // for a mesh that does not turn, the powder's moment on it. The flow is positive along that axis.
@@ -39,7 +39,7 @@ bool outside(const StlRig& rig, Vec3 p) {
   throw data::InputError(data::ExitStatus::bad_study, {std::move(place), std::move(what), std::move(remedy)});
 }
 
-/// Of a box, cells at least as wide as a sphere, so that spheres that touch lie in neighbouring ones.
+/// The cells of a box. They are at least as wide as a sphere, so that spheres that touch lie in neighbouring cells.
 class Cells {
  public:
   Cells(const StlRig& rig, double width) : low_(rig.low), size_(rig.high - rig.low), periodic_(rig.periodic) {
@@ -55,7 +55,7 @@ class Cells {
       cell[a] = static_cast<std::int64_t>(std::clamp(std::floor(at[a] / size[a] * count_[a]), 0.0, count_[a] - 1.0));
     return cell;
   }
-  /// Of the cell next to it; none beyond a closed face.
+  /// The key of the cell next to a cell; none beyond a closed face.
   std::optional<std::int64_t> key(Cell cell, const Cell& step) const {
     std::int64_t key = 0;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -128,12 +128,12 @@ void check_packing(const StlRig& rig, std::span<const Body> bodies, double radiu
   }
 }
 
-/// Of a box of these edges [m].
+/// The extent [m] of a box of these edges along an axis.
 double extent_along(Vec3 axis, Vec3 size) {
   return std::abs(axis.x) * size.x + std::abs(axis.y) * size.y + std::abs(axis.z) * size.z;
 }
 
-/// From one line to another, across them [m]; both about parallel axes.
+/// The offset [m] from one axis to another, across them; both axes are parallel.
 Vec3 offset_between(const Motion& first, const Motion& second) {
   const Vec3 apart = second.point - first.point;
   return apart - dot(apart, first.axis) * first.axis;
@@ -141,7 +141,7 @@ Vec3 offset_between(const Motion& first, const Motion& second) {
 
 bool parallel(Vec3 a, Vec3 b) { return length(cross(a, b)) < 1e-6; }
 
-/// None of a rig without meshes.
+/// The measured meshes; a rig without meshes has none.
 std::vector<std::size_t> measured_meshes(const StlRig& rig) {
   return rig.meshes.empty() ? std::vector<std::size_t>{} : rig.measured;
 }
@@ -162,7 +162,8 @@ bool one_axis(const Case& c) {
   return true;
 }
 
-/// Of two measured meshes that turn about parallel axes: the channels meet halfway, over the length of the box.
+/// The channels of two measured meshes that turn about parallel axes. They meet halfway between the axes, and are as
+/// long as the box.
 Channels channels(const Case& c) {
   const StlRig& rig = *c.rig.stl;
   if (rig.measured.size() != 2 || one_axis(c)) return {};

@@ -60,7 +60,7 @@ TriangleMesh end_plates_mesh(const Drum& drum) {
 DrumFill fill_of_drum(const Case& c) {
   const Drum& drum = *c.rig.drum;
   DrumFill fill{summarise_bed(c).volume / packing_fraction / drum.volume(), drum.radius};
-  // Of a unit disc, the share below z is (acos(-z) + z sqrt(1 - z^2)) / pi.
+  // The share of a unit disc below z is (acos(-z) + z sqrt(1 - z^2)) / pi.
   double low = -1.0, high = 1.0;
   for (int k = 0; k < 60 && fill.share < 1.0; ++k) {
     const double z = 0.5 * (low + high), below = (std::acos(-z) + z * std::sqrt(1.0 - z * z)) / pi;

@@ -2,13 +2,13 @@
 // The drum rig: a horizontal cylinder about the y axis that turns about -y, so that at a positive speed the side x > 0
 // rises. The powder is inside, between two end plates; or the drum has none and repeats along y.
 //
-// The shell is a polygon with its corners on the radius, of so many sides that their middles lie a fiftieth of the
-// smallest sphere's radius further in, between 48 and 720. Each end plate is a flat polygon that covers the circle.
+// The shell is a polygon with its corners on the radius. It has so many sides, between 48 and 720, that their middles
+// lie a fiftieth of the smallest sphere's radius further in. Each end plate is a flat polygon that covers the circle.
 //
-// The torque is that of all that turns, about the axis: of the shell, and of end plates that turn with it. It is
-// positive when the powder resists. In steady flow the weight's moment about the axis is held by shell and end plates
-// together: weight * centre_x = torque of the shell + torque of the end plates. End plates that rest brake the powder,
-// so their part is negative and the torque of the shell alone is larger than weight * centre_x.
+// The torque is that of all turning parts about the axis: the shell, and end plates that turn with it. It is positive
+// when the powder resists. In steady flow the weight's moment about the axis is held by shell and end plates together:
+// weight * centre_x = torque of the shell + torque of the end plates. End plates that rest brake the powder, so their
+// part is negative and the torque of the shell alone is larger than weight * centre_x.
 #include "dem/case/case.hpp"
 #include "dem/rig/rig.hpp"
 #include "dem/walls/mesh.hpp"
@@ -21,7 +21,7 @@ TriangleMesh shell_mesh(const Drum& drum, double smallest);
 /// Both end plates, at y = 0 and y = length.
 TriangleMesh end_plates_mesh(const Drum& drum);
 
-/// How full the drum will be, the powder taken as a liquid of spheres packed to packing_fraction.
+/// The fill of the drum, the powder taken as a liquid of spheres packed to packing_fraction.
 struct DrumFill {
   double share = 0.0;    ///< of the drum's volume
   double surface = 0.0;  ///< m above the axis, at rest

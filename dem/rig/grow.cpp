@@ -65,8 +65,8 @@ class Bed {
     make_levels();
   }
 
-  /// What each sphere is pushed by at this share of the radii; the deepest overlap, of the sum of radii, or of a radius
-  /// at walls.
+  /// Finds the push on each sphere at this share of the radii. Returns the deepest overlap, as a share of the sum of
+  /// radii, or of a radius at walls.
   double push(double size) {
     if (!(2.0 * moved_ < slack_)) list();
     push_.assign(at_.size(), {});

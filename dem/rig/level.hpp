@@ -1,5 +1,6 @@
 #pragma once
-// The level of a bed: its share of the room that the rig's kind says (dem/case/cross_section.hpp, level_volume), at rest.
+// The level of a bed at rest: its share of the room that the rig's kind names (dem/case/cross_section.hpp,
+// level_volume).
 #include <algorithm>
 
 #include "dem/case/cross_section.hpp"
@@ -8,7 +9,7 @@
 
 namespace dem {
 
-/// The level that is set, or what the fill comes to, of a rig too full 1.
+/// The level that is set, or else the level that the fill comes to, at most 1.
 inline double level_of(const Case& c) {
   const double room = level_volume(c.rig);
   if (c.rig.level || room <= 0.0) return c.rig.level.value_or(0.0);

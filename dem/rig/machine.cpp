@@ -37,7 +37,7 @@ Outline outline(const Rig& rig, double top) {
   const Vec3 sill = m.sill < 0.0 ? on_circle(pi + std::asin(-m.sill / r)) : Vec3{0.0, inner, m.sill};
   o.below = {{0.0, y + r, top}, {0.0, y + r, 0.0}};
   const auto add = [&](Vec3 p) {
-    // What is all but the sill's point is that point: no triangle is a sliver.
+    // A point very near to the sill's point is taken as that point, so that no triangle is a sliver.
     if (length(p - sill) < 1e-4 * r) return;
     (o.partition.empty() ? o.below : o.partition).push_back(p);
   };
@@ -60,7 +60,7 @@ Outline outline(const Rig& rig, double top) {
 Vec3 mirrored(Vec3 p) { return {p.x, -p.y, p.z}; }
 Vec3 at_x(Vec3 p, double x) { return {x, p.y, p.z}; }
 
-/// From one outer wall to the other, over the sill or over the partition.
+/// The points from one outer wall to the other, over the sill or over the partition.
 std::vector<Vec3> across(const Outline& o, bool partition) {
   std::vector<Vec3> half = o.below;
   if (partition) half.insert(half.end(), o.partition.begin() + 1, o.partition.end());

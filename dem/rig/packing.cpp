@@ -79,7 +79,7 @@ Lattice make_lattice(const Packable& w) {
   return l;
 }
 
-/// Of the free sites, the largest set in which each has a neighbour along an axis.
+/// The largest set of free sites in which each has a neighbour along an axis.
 std::vector<std::size_t> largest_part(const Lattice& l, const std::vector<char>& free) {
   std::vector<char> seen(free.size(), 0);
   std::vector<std::size_t> largest;
@@ -122,7 +122,7 @@ Parcels make_parcels(const Grains& grains, std::size_t count) {
     parcels.along.push_back(n);
     finest = std::max(finest, n);
   }
-  // From a site's centre to the far side of the sphere in the corner of its parcel.
+  // The distance from a site's centre to the far side of the sphere in the corner of its parcel.
   for (int n = 1; n <= finest; ++n) {
     const double corner = std::sqrt(3.0) * 0.5 * (n - 1) * room / n + 0.5 / n;
     parcels.clearance = std::max(parcels.clearance, (corner + site_jitter + margin) * largest);

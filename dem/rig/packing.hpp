@@ -1,9 +1,10 @@
 #pragma once
-// Where spheres start: on the sites of a lattice, in a region with bodies in it (dem/case/stl_rig.hpp says how) or in the
-// slice (dem/rig/slice.cpp). Where the lattice has too few sites they grow to a dense bed instead (dem/rig/grow.hpp).
+// Where spheres start: on the sites of a lattice, in a region with bodies in it (dem/case/stl_rig.hpp says how) or in
+// the slice (dem/rig/slice.cpp). Where the lattice has too few sites they grow to a dense bed instead
+// (dem/rig/grow.hpp).
 //
-// The lattice is that of the largest spheres; a site takes one of them, or a parcel of n^3 smaller ones, n times
-// smaller at least (n up to 8), on a cubic lattice of their own, so that fine powder does not start as a cloud.
+// The lattice is that of the largest spheres. A site takes one of them, or a parcel of n^3 smaller spheres, at least n
+// times smaller (n up to 8), on a cubic lattice of their own, so that fine powder does not start as a cloud.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -21,20 +22,20 @@ struct Packable {
   std::array<bool, 3> periodic;
   Vec3 down;               ///< unit
   double diameter = 0.0;   ///< m, of the largest sphere
-  double clearance = 0.0;  ///< m, of a site's centre from bodies and from the box's closed faces
+  double clearance = 0.0;  ///< m, least distance of a site's centre from bodies and from the box's closed faces
 };
 
-/// Of the lattice's sites, and of how far each is moved at random, in diameters of the largest sphere.
+/// Spacing of the lattice's sites and the largest random shift of each, in diameters of the largest sphere.
 inline constexpr double site_spacing = 1.1, site_jitter = 0.04;
 
 /// What each site holds: the first sphere of each parcel, one more, and n of n^3.
 struct Parcels {
   std::vector<std::size_t> first;
   std::vector<int> along;
-  double clearance = 0.0;  ///< m, that a site's centre needs, its jitter included
+  double clearance = 0.0;  ///< m, clearance that a site's centre needs, its jitter included
   std::size_t sites() const { return along.size(); }
 };
-/// Of spheres given largest first.
+/// Divides the first `count` spheres, which are sorted largest first, among parcels.
 Parcels make_parcels(const Grains& grains, std::size_t count);
 /// The spheres at the sites, which hold the parcels in their order.
 std::vector<Vec3> place(const Parcels& parcels, const std::vector<Vec3>& sites, double largest);

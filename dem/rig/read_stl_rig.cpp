@@ -54,7 +54,7 @@ std::string from_folder(const std::string& folder, const std::string& file) {
   return (std::filesystem::path(folder) / file).lexically_normal().string();
 }
 
-/// What a file has wrong becomes a problem of the key that names it.
+/// Records the problems of a file as problems of the key that names it.
 void record(const Section& s, std::string_view key, const data::InputError& error) {
   for (const data::Problem& p : error.problems) s.problem(key, fmt::format("{} {}", p.place, p.what), p.remedy);
 }

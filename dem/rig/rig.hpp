@@ -13,13 +13,14 @@
 
 namespace dem {
 
-/// What a camera that looks along the axis calls right and up.
+/// Axes of the picture of a camera that looks along the axis: what it calls right and up.
 struct Picture {
   Vec3 origin;  ///< m, on the axis
   Vec3 right;   ///< unit, horizontal, towards the side where the measured body rises; zero where the axis is vertical
   Vec3 up;      ///< unit, against gravity
 };
-/// Of a body that turns by the right hand about the unit vector `turning` through `point` [m].
+/// The picture along the axis of a body that turns by the right hand about the unit vector `turning` through `point`
+/// [m].
 Picture picture_along(Vec3 turning, Vec3 point, Vec3 down);
 
 /// A body whose torque is measured.
@@ -28,12 +29,12 @@ struct Driven {
   Vec3 torque_axis;  ///< torque = torque_axis . moment of the powder on the body about its motion's point
 };
 
-/// What is measured.
+/// The measured quantities of the rig.
 struct Sensor {
-  std::vector<Driven> driven;  ///< whose torques, together, are the output
+  std::vector<Driven> driven;  ///< bodies whose torques, together, are the output
   Vec3 flow_axis;              ///< axial flow = flow_axis . momentum / flow_length
-  double flow_length = 1.0;    ///< m, of the box along that axis
-  double period = 0.0;         ///< s, as turn_of says
+  double flow_length = 1.0;    ///< m, length of the box along that axis
+  double period = 0.0;         ///< s, time of a turn (turn_of)
   Picture picture;
   bool circulates = false;  ///< the flow is that of both BuiltRig::channels, and flow_length both their lengths
 };
@@ -70,21 +71,21 @@ struct NamedMesh {
 };
 std::vector<NamedMesh> rig_meshes(const Case& c);
 
-/// Of the meshes' check; the same for every run.
+/// Warnings of the meshes' check; they are the same for every run.
 std::vector<std::string> rig_warnings(const Case& c);
 
-/// What of the rig alone cannot be simulated.
+/// Problems of the rig alone that keep it from being simulated.
 std::vector<data::Problem> rig_problems(const Case& c);
 
 /// Settings that no target names, one "name = value" a line.
 std::string rig_settings(const Case& c);
 
-/// What the rig's bodies are called and made of, in their order.
+/// Name and material of each of the rig's bodies, in their order.
 struct BodyLabel {
   std::string name, material;
 };
 std::vector<BodyLabel> body_labels(const Case& c);
-/// All by which a pair of materials may name a body: names, materials and "wall".
+/// All words by which a pair of materials may name a body: names, materials and "wall".
 std::vector<std::string> body_names(const Case& c);
 
 /// The highest speed of any point of a moving body [m/s].

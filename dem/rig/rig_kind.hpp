@@ -1,6 +1,6 @@
 #pragma once
-// What every kind of rig says of itself. A new kind is a file that defines one of these, a line below, and one in rig.cpp,
-// which lists them; its data are a member of Rig (dem/case/case.hpp).
+// The description that every kind of rig gives of itself. A new kind is a file that defines one of these, a line below,
+// and one in rig.cpp, which lists them; its data are a member of Rig (dem/case/case.hpp).
 #include <span>
 #include <string>
 #include <vector>
@@ -23,7 +23,7 @@ struct RigQuantity {
 /// Whether a kind reads a level beside a fill: one of them says how much powder there is.
 enum class FillBy { fill, fill_or_level };
 
-/// What a run will be, as far as a rig's dimensions say it in closed form. What of it is odd is found by
+/// The outlook of a run, as far as a rig's dimensions give it in closed form. Oddities in it are found by
 /// dem/forecast/forecast.cpp, the same for all kinds.
 struct RigOutlook {
   struct Passage {
@@ -32,21 +32,21 @@ struct RigOutlook {
   };
   struct Tool {
     std::string name;
-    double lowest = 0.0;  ///< m, of its points, counted as the surface
+    double lowest = 0.0;  ///< m, height of its lowest point, counted as the surface
   };
   double fill = 0.0;     ///< share of what the vessel holds up to `full_at`
   double surface = 0.0;  ///< m, of the bed at rest, counted along `up`
   std::string up, full_at;
   std::vector<std::string> bodies;  ///< one line each
   std::vector<Passage> passages;    ///< between bodies that move against each other
-  std::vector<Tool> tools;          ///< that must dip into the bed
+  std::vector<Tool> tools;          ///< tools that must dip into the bed
   std::vector<std::string> warnings;
   std::vector<data::Problem> problems;
 };
 
 struct RigKind {
   const char* name;           ///< as rig.kind says
-  bool (*is)(const Case& c);  ///< whether the case's rig is of this kind; of the slice: always
+  bool (*is)(const Case& c);  ///< whether the case's rig is of this kind; the slice's always says yes
   FillBy fill_by;
   std::span<const RigQuantity> quantities;  ///< beside angular velocity and fill, which all kinds have
   /// Makes the case's rig one of this kind, with what no quantity names. Problems are recorded in the study.
@@ -55,13 +55,13 @@ struct RigKind {
   BuiltRig (*build)(const Case& c, std::uint64_t seed);
   std::vector<NamedMesh> (*meshes)(const Case& c);        ///< one box length of each
   std::vector<std::string> (*warnings)(const Case& c);    ///< the same for every run
-  std::vector<data::Problem> (*problems)(const Case& c);  ///< what of the rig alone cannot be simulated
-  std::string (*settings)(const Case& c);                 ///< that no target names, one "name = value" a line
-  std::vector<BodyLabel> (*labels)(const Case& c);        ///< of the bodies, in their order
-  std::size_t (*measured_bodies)(const Case& c);          ///< whose torques make the output
-  Channels (*channels)(const Case& c);                    ///< of two bodies side by side; of length 0 where none are
-  double (*tool_speed)(const Case& c);                    ///< m/s, highest of any point of a moving body
-  double (*fill_depth)(const Case& c, double volume);     ///< m, of a lattice of this volume in the box without bodies
+  std::vector<data::Problem> (*problems)(const Case& c);  ///< problems of the rig alone
+  std::string (*settings)(const Case& c);                 ///< settings that no target names, one "name = value" a line
+  std::vector<BodyLabel> (*labels)(const Case& c);        ///< labels of the bodies, in their order
+  std::size_t (*measured_bodies)(const Case& c);          ///< number of bodies whose torques make the output
+  Channels (*channels)(const Case& c);                    ///< of two bodies side by side; length 0 where there are none
+  double (*tool_speed)(const Case& c);                    ///< m/s, highest speed of any point of a moving body
+  double (*fill_depth)(const Case& c, double volume);     ///< m, of a lattice of this volume in a box without bodies
   RigOutlook (*outlook)(const Case& c);                   ///< null: it is found out from the meshes
 };
 
@@ -70,7 +70,7 @@ extern const RigKind machine_rig;  ///< dem/rig/machine.cpp
 extern const RigKind drum_rig;     ///< dem/rig/drum.cpp
 extern const RigKind stl_rig;      ///< dem/rig/build_stl_rig.cpp
 
-/// All of them; the first is that of a study that names none.
+/// All kinds of rig; the first is the kind of a study that names none.
 std::span<const RigKind* const> rig_kinds();
 const RigKind& kind_of(const Case& c);
 

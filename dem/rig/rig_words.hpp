@@ -1,5 +1,5 @@
 #pragma once
-// Lengths and speeds of a rig in what is said to the user.
+// Texts of lengths and speeds of a rig, for the user.
 #include <fmt/format.h>
 
 #include <numbers>

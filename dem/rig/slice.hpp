@@ -23,7 +23,7 @@ TriangleMesh auger_mesh(const Rig& rig);
 /// The U-trough over the box, its side walls up to `top` [m] above the axis.
 TriangleMesh trough_mesh(const Rig& rig, double top);
 
-/// Where the filling starts: a jittered lattice clear of the walls, filled from the bottom, in random order.
+/// The filling at its start: a jittered lattice clear of the walls, filled from the bottom, in random order.
 struct Packing {
   Grains grains;
   std::vector<Vec3> position;  ///< m

@@ -15,7 +15,7 @@ namespace {
 double one(const Sampling&) { return 1.0; }
 double mass(const Sampling& of) { return of.mass; }
 
-/// Of the k-th body whose torque is measured; not a number where there are fewer.
+/// The torque of the k-th measured body; NaN where there are fewer.
 double torque_of(std::size_t k, const Sampling& of, const Simulation& now) {
   if (k >= of.sensor.driven.size()) return std::numeric_limits<double>::quiet_NaN();
   const Driven& d = of.sensor.driven[k];

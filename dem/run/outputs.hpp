@@ -1,8 +1,8 @@
 #pragma once
 // The outputs of a run that are means over time, as a table: what a step adds to the sample under way, and what the
 // sample's mean is divided by. A new output is a row here and a member of Series (dem/run/run.hpp), which says what it
-// means. torque_fluctuation is made of the torque's series (dem/run/summary.hpp). A second table has what is measured on
-// the silhouette of each window.
+// means. torque_fluctuation is made of the torque's series (dem/run/summary.hpp). A second table has what is measured
+// on the silhouette of each window.
 #include <vector>
 
 #include "dem/engine/simulation.hpp"
@@ -11,7 +11,7 @@
 
 namespace dem {
 
-/// What does not change from sample to sample.
+/// The quantities of a run that do not change from sample to sample.
 struct Sampling {
   Sensor sensor;
   double spheres = 0.0;
@@ -25,11 +25,11 @@ struct MeanOutput {
   const char* name;
   const char* unit;
   std::vector<double> Series::*series;
-  double (*at_step)(const Sampling& of, const Simulation& now);  ///< of the step just made
+  double (*at_step)(const Sampling& of, const Simulation& now);  ///< the value of the step just made
   double (*divisor)(const Sampling& of);
 };
 
-/// Torque first.
+/// All outputs that are means over time, torque first.
 const std::vector<MeanOutput>& mean_outputs();
 
 /// An output that is measured on the time-averaged projection of a window (dem/run/silhouette.hpp).

@@ -182,7 +182,7 @@ class Course {
     now().under_way.sums.resize(mean_outputs().size());
   }
 
-  /// From the start, or from the checkpoint that it resumes. Throws Fault.
+  /// Begins from the start, or from the checkpoint that the run resumes. Throws Fault.
   void begin() {
     simulation_.emplace(make_setup(case_, derived_, std::move(rig_), plan_.settle, options_.threads));
     if (options_.resume != nullptr) {
@@ -216,7 +216,7 @@ class Course {
     result_.reason = std::move(reason);
   }
 
-  /// What it came to: of a failed run up to the last good state.
+  /// The result of the run; of a failed run up to the last good state.
   RunResult finish() {
     if (good_) {
       now() = std::move(*good_);

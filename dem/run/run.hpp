@@ -102,24 +102,24 @@ struct Summary {
   double cpu_seconds = 0.0;
   bool reached_target = false;                         ///< the standard error of torque is the wanted one or smaller
   data::FlowState state = data::FlowState::too_short;  ///< whether the means are those of the steady flow
-  std::string why;                                     ///< it is not steady: what drifts or lacks, and the remedy
+  std::string why;                                     ///< why it is not steady: what drifts or lacks, and the remedy
   double measured_from = 0.0;                          ///< s of turning, the start of what is measured
-  double turns = 0.0;                                  ///< measured
+  double turns = 0.0;                                  ///< turns that were measured
   std::vector<double> drift_p;                         ///< of torque, coordination, kinetic energy (dem/run/looks.hpp)
   std::string ordering;                                ///< how the bed ordered; empty when it did not
 };
 
-/// What a run has summed since its last sample, and over all.
+/// The sums of a run since its last sample, and since its start.
 struct Progressing {
-  std::uint64_t steps = 0;   ///< in the sample under way
+  std::uint64_t steps = 0;   ///< steps in the sample under way
   std::vector<double> sums;  ///< in the order of mean_outputs() (dem/run/outputs.hpp)
   std::uint64_t deep_contacts = 0;
   double max_overlap = 0.0;
   double cpu_seconds = 0.0;
-  Exposure exposure;  ///< of the window under way
+  Exposure exposure;  ///< exposure of the window under way
 };
 
-/// Enough to go on as if nothing had happened, to the bit.
+/// All that a run needs to go on as if nothing had happened, to the bit.
 struct Checkpoint {
   State state;
   Series series;
@@ -130,17 +130,17 @@ enum class RunStatus { done, interrupted, failed };
 
 struct RunResult {
   RunStatus status = RunStatus::done;
-  std::string reason;  ///< of a failure: what, where, when
+  std::string reason;  ///< reason of a failure: what, where, when
   std::vector<std::string> warnings;
   std::uint64_t seed = 0;
   Series series;
   Summary summary;
   Diagnostics diagnostics;
-  Checkpoint checkpoint;  ///< the last state; of a failed run a good one before
+  Checkpoint checkpoint;  ///< the last state; the last good one where the run failed
 };
 
 struct RunProgress {
-  double fraction = 0.0;   ///< of the longest run
+  double fraction = 0.0;   ///< share of the longest run
   double simulated = 0.0;  ///< s of turning
   double torque = 0.0;     ///< N m, mean since the start-up
   double relative_error = 1.0;
@@ -159,10 +159,11 @@ struct RunOptions {
   std::function<void(int index, const Simulation& simulation, double time)> frame = {};
 };
 
-/// The steps of a run, settling included, at which its frames are.
+/// The steps of a run, settling included, at which its frames are taken.
 std::vector<std::uint64_t> frame_steps(const PreparedCase& prepared, int frames);
 
-/// Whether a run of this series has ended as this case's would: then it is measured anew without its last state.
+/// Whether a run with this series has ended as a run of this case would now; it is then measured anew without its last
+/// state.
 bool long_enough(const PreparedCase& prepared, const Series& series);
 
 /// A run that cannot go on is a result with status failed. Throws data::InputError (78) when the spheres do not fit.

@@ -103,7 +103,7 @@ void each_window_series(AnySeries& s, Visit&& visit) {
   for (const CameraOutput& output : camera_outputs()) visit(output.name, output.unit, s.*output.series);
 }
 
-/// Of rigs with two channels.
+/// Visits the series that only rigs with two channels have.
 template <class AnySeries, class Visit>
 void each_channel_series(AnySeries& s, Visit&& visit) {
   visit("mixing_index", "1", s.mixing_index);
@@ -173,7 +173,7 @@ Checkpoint read_checkpoint(const data::Hdf5Group& group) {
                    .cpu_seconds = p[3],
                    .exposure = {.pictures = static_cast<int>(group.integer("pictures_under_way")),
                                 .covered = group.read<std::uint8_t>("covered_under_way").values}};
-  // Of before there was one of the outputs, or of a steady run that was kept without its last state.
+  // The file is from before there was one of the outputs, or of a steady run that was kept without its last state.
   if (now.under_way.sums.size() != mean_outputs().size()) return {};
   return now;
 }

@@ -14,7 +14,7 @@
 
 namespace dem {
 
-/// Writes it whole or not at all. Throws data::InputError (73).
+/// Writes the file, whole or not at all. Throws data::InputError (73).
 void write_run(const std::string& path, const Case& c, const RunResult& result);
 
 /// A run read back: all but the derived diagnostics, which follow from the case.
@@ -22,12 +22,12 @@ struct SavedRun {
   RunResult result;
   std::string settings;  ///< settings_text of the case that was run
   int rule = 0;          ///< look_rule_version by which it was judged
-  /// That the file has, by name. Of others, which came after it was written, the series and means are not numbers, and
-  /// the run is not gone on from: its checkpoint has no state.
+  /// The outputs that the file has, by name. Of outputs that came after the file was written, series and means are not
+  /// numbers. The run is then not gone on from: its checkpoint has no state.
   std::vector<std::string> outputs;
 };
 
-/// Throws data::InputError: 66 missing, 65 not such a file.
+/// Reads a run's file. Throws data::InputError: 66 missing, 65 not such a file.
 SavedRun read_run(const std::string& path);
 
 }  // namespace dem

@@ -14,7 +14,7 @@ constexpr double fit_from = 0.1, fit_to = 0.6;  // of R, from the line through a
 constexpr double most_left_out = 0.1;           // of the surface, where powder lies above it
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// From and to, of the box along a direction, counted from the origin [m].
+/// The two ends of the box along a direction, counted from the origin [m].
 std::pair<double, double> extent(const Box& box, Vec3 origin, Vec3 direction) {
   const Vec3 middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
   const double at = dot(direction, middle - origin);
@@ -94,7 +94,7 @@ class Slope {
   double cos_, sin_, limit_;
 };
 
-/// Of the line of least squares through the surface on one side, `way` 1 uphill and -1 downhill.
+/// The slope of the line of least squares through the surface on one side: `way` is 1 uphill and -1 downhill.
 double fitted_slope(const Slope& slope, const PicturePlane& plane, double centre, double way) {
   if (!slope.powder(0.0, centre)) return unknown;
   double n = 0.0, left_out = 0.0, s1 = 0.0, h1 = 0.0, ss = 0.0, sh = 0.0, from = centre;

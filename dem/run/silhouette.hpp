@@ -15,8 +15,8 @@
 //           radius. Angles are positive where the bed stands higher on the side where the measured body rises.
 // The surface is where the share, interpolated between the cells' centres, falls to `silhouette_share`. It is followed
 // from above the centre to both sides. Where powder lies above it, a grain in flight mostly, it is left out. No angle
-// is measured where more than a tenth of it is left out, where it ends before 0.6 R, or where the centre lies outside the
-// silhouette, as that of a ring does.
+// is measured where more than a tenth of it is left out, where it ends before 0.6 R, or where the centre lies outside
+// the silhouette, as that of a ring does.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -45,12 +45,12 @@ PicturePlane picture_plane(const Picture& picture, const Box& box, double smalle
 /// Pictures that were laid one upon the other, at most 255.
 struct Exposure {
   int pictures = 0;
-  std::vector<std::uint8_t> covered;  ///< in how many of them each cell is, row by row from the bottom left
+  std::vector<std::uint8_t> covered;  ///< in how many pictures each cell is covered, row by row from the bottom left
 };
 /// Adds the picture of these spheres.
 void expose(const PicturePlane& plane, std::span<const PositionRow> spheres, Exposure& exposure);
 
-/// Not a number where it is not found.
+/// Measures of a silhouette; NaN where one is not found.
 struct Silhouette {
   double x, z;                      ///< m, the centre
   double area;                      ///< m2

@@ -47,7 +47,8 @@ data::SeriesMean mean_of(std::span<const double> values) {
   return s.mean;
 }
 
-/// Of what is measured on silhouettes: windows in which it was not found are left out where they are few.
+/// The mean of a quantity that is measured on silhouettes. Windows in which it was not found are left out where they
+/// are few.
 data::SeriesMean mean_of_found(std::span<const double> values) {
   constexpr double most_missing = 0.05;
   std::vector<double> found;
@@ -59,7 +60,7 @@ data::SeriesMean mean_of_found(std::span<const double> values) {
   return {.mean = unknown, .standard_error = unknown, .reliable = false};
 }
 
-/// Of the values at times in [from, to).
+/// The mean of the values at times in [from, to).
 double mean_between(const std::vector<double>& time, const std::vector<double>& values, double from, double to) {
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < std::min(time.size(), values.size()); ++k) {
@@ -70,7 +71,7 @@ double mean_between(const std::vector<double>& time, const std::vector<double>& 
   return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// What changed between the first and the last quarter of all that comes after the start-up, where bonds align.
+/// The changes between the first and the last quarter of all that comes after the start-up, where bonds align.
 std::string ordering_of(const Series& s, double start_up) {
   const auto first = std::upper_bound(s.look_time.begin(), s.look_time.end(), start_up) - s.look_time.begin();
   const auto at = static_cast<std::size_t>(first);

@@ -36,7 +36,7 @@ struct Motion {
 
 struct Pose {
   Rotation rotation;
-  bool turned = false;  ///< else the rotation is none
+  bool turned = false;  ///< false: there is no rotation
   Vec3 point;           ///< m, where the motion's point is now
   Vec3 velocity;        ///< m/s, of that point
   Vec3 spin;            ///< rad/s

@@ -12,15 +12,16 @@
 
 namespace dem {
 
-/// Three own vertices per triangle, not welded (dem/walls/mesh_check.hpp). STL has no unit: `unit` [m] is the length that 1
-/// in the file stands for. Throws data::InputError: 66 missing; 65 with line or triangle for what is truncated, not
-/// finite, empty, not STL, or too far from its origin for single precision.
+/// Reads a mesh, with three vertices of its own per triangle, not welded (dem/walls/mesh_check.hpp). STL has no unit:
+/// `unit` [m] is the length that 1 in the file stands for. Throws data::InputError: 66 missing; 65 with line or
+/// triangle for what is truncated, not finite, empty, not STL, or too far from its origin for single precision.
 TriangleMesh read_stl(const std::string& path, double unit);
 
-/// The same from the bytes of a file; `name` is how messages call it.
+/// Reads a mesh from the bytes of a file; `name` is how messages call it.
 TriangleMesh parse_stl(std::string_view bytes, const std::string& name, double unit);
 
-/// Binary STL in metres (single precision, by that format). Throws data::InputError when the file cannot be written.
+/// Writes binary STL in metres (single precision, by that format). Throws data::InputError when the file cannot be
+/// written.
 void write_stl(const TriangleMesh& mesh, const std::string& path);
 
 }  // namespace dem

@@ -9,7 +9,7 @@
 // Feet that two features share within rounding, and the neighbouring facets of a tessellated smooth surface, give
 // normals within `merge_angle` of each other: the deepest is the contact, the others are the same one.
 //
-// All in the body's own frame: the grid is built once, and the mesh may move rigidly.
+// All lengths and directions are in the body's own frame: the grid is built once, and the mesh may move rigidly.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -49,7 +49,8 @@ struct Surface {
   std::vector<std::uint32_t> first, features;
 };
 
-/// `reach` [m]: how far from the surface a sphere's centre is ever asked about.
+/// Makes the surface of a welded mesh. `reach` [m]: the largest distance from the surface at which a sphere's centre is
+/// ever asked about.
 Surface make_surface(const TriangleMesh& welded, double reach);
 
 struct NearFeature {

@@ -28,7 +28,7 @@ void add_findings(CalibrationReport& report, const std::vector<data::Finding>& f
     (finding.severity == data::Severity::note ? report.cautions : report.warnings).push_back(data::describe(finding));
 }
 
-/// What is suspected of units and errors comes before any other remedy.
+/// Puts suspicions about units and errors before any other remedy.
 void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& findings) {
   using enum data::FindingKind;
   for (const data::Finding& finding : findings)
@@ -130,7 +130,7 @@ class Steps {
     to_ += length / length_;
     tell(0.0);
   }
-  /// What is done of the step that was begun.
+  /// Reports how much of the current step is done.
   void tell(double share) const {
     if (progress_) progress_(step_, from_ + share * (to_ - from_));
   }

@@ -23,19 +23,20 @@ namespace uq {
 
 struct CalibrateOptions {
   SurrogateOptions surrogates = {};
-  std::optional<data::Sampler> sampler = {};  ///< instead of each case's own
+  std::optional<data::Sampler> sampler = {};  ///< sampler that replaces each case's own
   MixtureSamplerOptions mixture = {};         ///< its seed and threads are set from those below
-  NutsOptions nuts = {};                      ///< likewise
-  CutOptions cut = {};                        ///< likewise
+  NutsOptions nuts = {};                      ///< seed and threads likewise
+  CutOptions cut = {};                        ///< seed and threads likewise
   IdentifyOptions identify = {};
-  std::vector<double> error_scan = {0.01, 0.03, 0.05};  ///< relative measurement errors; empty: no scan
+  std::vector<double> error_scan = {0.01, 0.03, 0.05};  ///< relative measurement errors to scan; empty: no scan
   bool quadrature = true;                               ///< check one- and two-dimensional posteriors by integration
   int threads = 0;                                      ///< 0: as many as the machine has
-  std::optional<std::uint64_t> seed = {};               ///< instead of the study's
-  /// What uq/calibrate/data_check.hpp and the readers found, for the report; none: the data are looked at first.
+  std::optional<std::uint64_t> seed = {};               ///< seed that replaces the study's
+  /// The findings of uq/calibrate/data_check.hpp and of the readers, for the report; none: the data are looked at
+  /// first.
   std::optional<std::vector<data::Finding>> findings = {};
   std::function<void(const std::string& step, double share)> progress = {};  ///< share of the whole job done, 0 to 1
-  std::function<void(double share)> sampling_progress = {};  ///< of a case's draws, whatever the sampler
+  std::function<void(double share)> sampling_progress = {};  ///< share of a case's draws done, whatever the sampler
 };
 
 /// One case, resolved and sampled.
@@ -43,7 +44,7 @@ struct SampledCase {
   std::shared_ptr<const CaseModel> model;
   Draws draws;
   data::Sampler sampler = data::Sampler::mixture;
-  SupportReport support = {};                                        ///< of the draws; unknown where there are none
+  SupportReport support = {};                                        ///< of the draws; unknown where there are no draws
   std::vector<std::shared_ptr<const SampledCase>> cut_sources = {};  ///< cases whose posteriors were cut
 };
 
@@ -56,12 +57,12 @@ struct Calibration {
 /// The seed of all random streams.
 std::uint64_t seed_of(const data::Study& study, const CalibrateOptions& options);
 
-/// Draws of `model`, which is the sampled case's own or the same for other data; `draws` per chain in the first round
-/// instead of the sampler's own.
+/// Draws of `model`, which is the sampled case's model or the same model with other data; `draws` per chain in the
+/// first round replace the sampler's own number.
 Draws sample_model(const data::Study& study, const SampledCase& sampled, const std::shared_ptr<const CaseModel>& model,
                    const CalibrateOptions& options, std::optional<int> draws = {});
 
-/// A case whose parameter is another's posterior, cut, has that case sampled first.
+/// Samples a case. Where a parameter is the cut posterior of another case, that case is sampled first.
 SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
                         const CalibrateOptions& options = {});
 
@@ -70,18 +71,18 @@ NuisanceReport summary_of(const SampledCase& sampled, int unknown);
 
 CaseReport report_case(const data::Study& study, const SampledCase& sampled, const CalibrateOptions& options = {});
 
-/// The case with the surrogates of other runs: those that the others contradict left out.
+/// Calibrates the case again with surrogates of fewer runs: the runs that the others contradict are left out.
 WithoutRuns calibrate_without(const data::Study& study, const std::vector<FittedSurrogate>& others,
                               std::size_t case_index, const CalibrateOptions& options = {});
 
-/// The case beside itself with the parameters of its `compare` held: whether the data ask for them (Bayes factor). None
-/// where the case has no such key, or its sampler gives no evidence.
+/// Compares the case with itself when the parameters of its `compare` are held, to see whether the data ask for them
+/// (Bayes factor). None where the case has no such key, or its sampler gives no evidence.
 std::vector<ModelComparison> compare_models(const data::Study& study, const SampledCase& sampled,
                                             std::size_t case_index, const CalibrateOptions& options = {});
 
-/// What the verdicts would be at other measurement errors. The observed numbers keep the noise that they have, so they
-/// are replaced by the posterior mean of what is predicted there, plus noise of the stated relative error, the same
-/// standard normal numbers (the study's seed, the case's index) at every error.
+/// The verdicts at other measurement errors. The observed numbers keep the noise that they have, so they are replaced
+/// by the posterior mean of the prediction there, plus noise of the stated relative error. This noise has the same
+/// standard normal numbers (from the study's seed and the case's index) at every error.
 std::vector<ErrorScan> scan_errors(const data::Study& study, const SampledCase& sampled, std::size_t case_index,
                                    const CalibrateOptions& options = {});
 

@@ -1,5 +1,6 @@
 #pragma once
-// What a case's report warns of: draws that do not agree, data and priors that contradict each other, priors cut short.
+// The warnings of a case's report: draws that do not agree, data and priors that contradict each other, priors cut
+// short.
 #include "uq/calibrate/calibrate.hpp"
 #include "uq/calibrate/case_words.hpp"
 
@@ -8,7 +9,8 @@ namespace uq {
 /// Adds the warnings of a case whose fit, doubt and bands are known.
 void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled);
 
-/// A posterior between a prior and data that contradict it is a compromise that neither of them supports.
+/// Warns of a posterior between a prior and data that contradict each other: a compromise that neither of them
+/// supports.
 void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
                          const VerdictThresholds& thresholds);
 

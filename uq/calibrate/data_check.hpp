@@ -1,16 +1,18 @@
 #pragma once
-// Rows and observations looked at once, before anything is fitted: what cannot be meant, and what would give a wrong
-// answer without a word. `check` says it; `fit`, `sample` and `calibrate` say the same and stop at what they refuse.
+// A check of rows and observations before anything is fitted: it finds what cannot be meant, and what would silently
+// give a wrong answer. `check` reports it; `fit`, `sample` and `calibrate` report the same and stop at what they
+// refuse.
 //
 //   refused   contradictions between the study, the runs and the observations, as building the cases finds them
-//             (uq/posterior/build_case.cpp): a control that the runs hold at another value than the measured one, a parameter
-//             fixed where no run is; one file observed twice in a case; two columns exchanged; a column in another unit
+//             (uq/posterior/build_case.cpp): a control that the runs hold at another value than the measured one, a
+//             parameter fixed where no run is; one file observed twice in a case; two columns exchanged; a column in
+//             another unit
 //   warned    copies, rows outside the ranges, standard errors of 0 among others, an output that no run changes, inputs
 //             that move together, ranges that the runs do not cover, magnitudes that suggest another unit, standard
 //             errors that suggest a percentage
 //   noted     a parameter over decades whose prior, uniform in its value, nobody stated
-// A factor between units is suspected where values times the factor fill their range, or meet the runs, and the values
-// themselves do not; and where some rows or readings of one output are such a factor from the others.
+// A factor between units is suspected in two cases: where the values fill their range, or meet the runs, only when
+// multiplied by the factor, and where some rows or readings of one output differ by such a factor from the others.
 #include <optional>
 #include <vector>
 
@@ -30,13 +32,13 @@ struct DataCheckThresholds {
   double unlikely_scatter = 2e-3;  ///< probability that errors as stated scatter as little
 };
 
-/// All there is to say; nothing is thrown. A row that lies far outside is marked in `table`.
+/// All findings about the data; nothing is thrown. A row that lies far outside is marked in `table`.
 std::vector<data::Finding> check_data(const data::Study& study, data::RunTable& table,
                                       const std::optional<data::RunTable>& low = {},
                                       const std::vector<std::string>& log_outputs = {},
                                       const DataCheckThresholds& thresholds = {});
 
-// Its parts, each a look of its own.
+// The parts of check_data, each with its own kind of finding.
 std::vector<data::Finding> check_ranges(const data::Study& study, data::RunTable& table,
                                         const DataCheckThresholds& thresholds);
 std::vector<data::Finding> check_outputs(const data::Study& study, const data::RunTable& table,
@@ -51,14 +53,14 @@ std::vector<data::Finding> check_priors(const data::Study& study);
 std::vector<data::Finding> check_cases(const data::Study& study, const data::RunTable& table,
                                        const std::optional<data::RunTable>& low);
 
-/// A factor between two ways to write a number, and what it is between.
+/// A factor between two ways to write a number, and the names of the two.
 struct UnitFactor {
   double factor = 1.0;
   std::string between;  ///< "a prefix (m against none)"
 };
 
-/// The factor that takes values of about `typical` to about `expected`, within `slack` (a ratio), if one between units of
-/// that quantity is known.
+/// The known factor between units of that quantity that takes values of about `typical` to about `expected`, within
+/// `slack` (a ratio); none where there is no such factor.
 std::optional<UnitFactor> known_factor(const data::Unit& unit, double typical, double expected, double slack);
 
 }  // namespace uq

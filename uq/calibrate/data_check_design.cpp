@@ -1,4 +1,4 @@
-// Of the runs' inputs: whether they move together, and whether they cover the ranges.
+// Checks of the runs' inputs: whether they move together, and whether they cover the ranges.
 //   correlation    of two inputs over the runs, plain and of ranks
 //   multiple       R^2 of an input regressed on all others: 1 - 1 / (C^-1)_kk, C the correlation matrix
 #include <fmt/format.h>

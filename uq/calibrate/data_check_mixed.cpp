@@ -18,7 +18,7 @@ constexpr std::size_t group_least = 3;  // rows of the smaller group
 constexpr double factor_slack = 2.0;    // between the groups' medians, beside a factor between units
 
 struct Entry {
-  double value = 0.0;  ///< of the output, SI, not 0
+  double value = 0.0;  ///< value of the output, SI, not 0
   const data::RunRow* row = nullptr;
 };
 

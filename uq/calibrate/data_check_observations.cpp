@@ -1,5 +1,5 @@
-// Of the observations: copies, magnitudes beside the runs', standard errors that cannot be meant; and what building the
-// cases would refuse.
+// Checks of the observations: copies, magnitudes beside the runs', standard errors that cannot be meant, and what
+// building the cases would refuse.
 //
 // Errors in percent: readings along one control are smooth, so their scatter about a simple curve in it says how large
 // their errors can be. With residuals r_i, errors s_i and as many degrees of freedom as the curve leaves,
@@ -126,8 +126,8 @@ Finding exchanged_in(const data::ObservationSet& set, const std::string& one, co
           .places = {}};
 }
 
-/// An output's column beside that of its standard errors, or beside a control's, where the numbers of each lie where the other's
-/// belong.
+/// An output's column beside that of its standard errors, or beside a control's, where the numbers of each lie where
+/// the other's belong.
 void check_exchanged(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
                      std::vector<Finding>& findings) {
   for (std::size_t column = 0; column < set.outputs.size(); ++column) {

@@ -1,5 +1,5 @@
-// Of outputs, measured or of runs: several rows that have exactly the largest value, or the smallest, at different
-// settings. So reads a sensor at the end of its range, and such a row says only "at least" or "at most".
+// A check of outputs, measured or of runs: several rows that have exactly the largest value, or the smallest, at
+// different settings. A sensor at the end of its range reads so, and such a row says only "at least" or "at most".
 //
 // Numbers rounded to few digits meet by chance. So nothing is said where the values are coarse, or where a value in the
 // middle comes as often, or of zeros.

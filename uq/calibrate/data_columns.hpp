@@ -25,7 +25,7 @@ struct InputColumn {
 /// Whether the row's material holds the parameter ([materials.X] fixed): its range does not concern the row.
 bool is_held(const data::Study& study, const data::RunRow& row, const std::string& name);
 
-/// Every parameter and control; rows left out, or whose material holds the parameter, are not in it.
+/// The columns of every parameter and control. Rows left out, or whose material holds the parameter, are not in them.
 std::vector<InputColumn> input_columns(const data::Study& study, const data::RunTable& table,
                                        const std::string* material = nullptr);
 

@@ -27,11 +27,11 @@ double training_runs(const data::RunTable& table, const std::string& material, c
   return std::min(static_cast<double>(all), static_cast<double>(options.runs_most));
 }
 
-/// What each evaluation of a case's likelihood works on.
+/// The sizes that each evaluation of a case's likelihood works on.
 class Load {
  public:
   void add(double readings, double runs) { parts_.push_back({readings, runs}); }
-  /// Of a sampling with these shares of the runs and of the readings.
+  /// The time of a sampling with these shares of the runs and of the readings.
   double seconds(double of_runs, double of_readings) const {
     double operations = 0.0;
     for (const Part& part : parts_) {

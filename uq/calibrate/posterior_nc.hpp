@@ -16,7 +16,7 @@
 
 namespace uq {
 
-/// Atomic. Throws data::InputError (73) when it cannot write.
+/// Writes the file, whole or not at all. Throws data::InputError (73) when it cannot write.
 void write_posterior(const std::string& path, const data::Study& study, const SampledCase& sampled, std::uint64_t seed);
 
 /// The group posterior alone as a CSV: chain, draw, one column per unknown in the study's unit, lp.

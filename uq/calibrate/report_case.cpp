@@ -1,4 +1,4 @@
-// From a case's draws to what is told of it: verdicts, convergence, bands, warnings.
+// The report of a case, made from its draws: verdicts, convergence, bands, warnings.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -106,7 +106,8 @@ void add_quadrature(CaseReport& report, const SampledCase& sampled, const Eigen:
                                           report.name, *report.grid_difference));
 }
 
-/// What the second look saw, and how small a place it would have missed: n draws miss a share v with (1 - v)^n.
+/// The second look in words: what it saw, and how small a place it would have missed. n draws miss a share v with (1 -
+/// v)^n.
 std::string search_in_words(const Draws& draws) {
   if (draws.scouts == 0) return "";
   const std::string found = draws.found_modes == 0 ? "no maximum that the draws do not know"
@@ -119,7 +120,7 @@ std::string search_in_words(const Draws& draws) {
       draws.scouts, draws.searched_starts, found, 100.0 * (1.0 - std::pow(0.05, 1.0 / draws.scouts)));
 }
 
-/// What is known of a cut parameter is what its own case says.
+/// Takes the verdicts on cut parameters from their own cases.
 void take_cut_verdicts(Identification& found, const SampledCase& sampled, const CalibrateOptions& options) {
   for (const auto& source : sampled.cut_sources) {
     const Identification of_source = identify(*source->model, source->draws.pooled(), options.identify);
@@ -135,7 +136,7 @@ void take_cut_verdicts(Identification& found, const SampledCase& sampled, const 
   }
 }
 
-/// What cannot carry a verdict, and why, of each parameter, in words (as IdentifyOptions has it).
+/// The part that cannot carry a verdict, and the reason for each parameter, in words (as IdentifyOptions has it).
 struct Doubt {
   DoubtOf of = DoubtOf::nothing;
   std::vector<std::string> unsupported;
@@ -155,7 +156,7 @@ Doubt doubt_about(const SampledCase& sampled, const std::vector<std::string>& al
   return found;
 }
 
-/// What is known of a case before its draws are looked at.
+/// The report as far as it is known before the case's draws are looked at.
 CaseReport begun(const data::Study& study, const SampledCase& sampled) {
   const CaseModel& model = *sampled.model;
   CaseReport report;

@@ -1,4 +1,4 @@
-// From a resolved case to its draws, by the sampler that the case asks for.
+// Sampling of a resolved case, by the sampler that the case asks for.
 #include <fmt/core.h>
 
 #include <algorithm>

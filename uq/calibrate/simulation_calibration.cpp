@@ -57,7 +57,7 @@ class Binomials {
   std::vector<std::vector<double>> cdf_;
 };
 
-/// What one replicate gives for every unknown.
+/// The outcome of one replicate for every unknown.
 struct Replicate {
   bool converged = false;
   std::string reason;  ///< why not

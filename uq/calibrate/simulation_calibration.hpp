@@ -23,9 +23,9 @@ namespace uq {
 
 struct SimulationOptions {
   int replicates = 100;
-  int ranks = 99;         ///< L, draws kept of each replicate
+  int ranks = 99;         ///< L, number of draws kept of each replicate
   double interval = 0.9;  ///< probability of the intervals whose coverage is counted
-  double level = 0.95;    ///< of the bands, simultaneous over all points and unknowns
+  double level = 0.95;    ///< probability of the bands, simultaneous over all points and unknowns
   MixtureSamplerOptions sampler = {.draws = 400, .draws_max = 6400, .stop = {.ess_bulk = 600.0}};  ///< of a replicate
   int threads = 0;  ///< 0: as many as the machine has; each replicate takes one
   std::uint64_t seed = 1;
@@ -40,7 +40,7 @@ struct RankBands {
 };
 RankBands rank_bands(int count, int rank_max, double level, std::uint64_t seed);
 
-/// Whether the ranks stay inside.
+/// Whether the ranks stay inside the bands everywhere.
 bool inside_bands(const std::vector<int>& ranks, int rank_max, const RankBands& bands);
 
 }  // namespace uq

@@ -1,6 +1,7 @@
 #pragma once
-// What predicts one output of one material: a Gaussian process over the inputs that its runs vary, or any other
-// function. Inputs are in the unit cube: parameters by uq/posterior/prior.hpp's u, controls by (x - low) / (high - low).
+// An emulator predicts one output of one material: a Gaussian process over the inputs that the material's runs vary, or
+// any other function. Inputs are in the unit cube: parameters by uq/posterior/prior.hpp's u, controls by (x - low) /
+// (high - low).
 #include <Eigen/Dense>
 #include <functional>
 #include <map>
@@ -18,10 +19,10 @@ enum class InputKind { parameter, control };
 
 struct EmulatorInput {
   InputKind kind = InputKind::parameter;
-  std::size_t index = 0;  ///< in Study::parameters or Study::controls
+  std::size_t index = 0;  ///< index into Study::parameters or Study::controls
 };
 
-/// It refers to the study.
+/// The study's input; it refers to the study.
 inline data::Input input_of(const data::Study& study, const EmulatorInput& input) {
   if (input.kind == InputKind::parameter) {
     const data::Parameter& p = study.parameters[input.index];
@@ -35,16 +36,16 @@ inline data::Input input_of(const data::Study& study, const EmulatorInput& input
 struct RunCloud {
   Eigen::MatrixXd points;         ///< unit cube, one per row, both levels where there are two
   Eigen::VectorXd length_scales;  ///< unit cube
-  double prior_variance = 0.0;    ///< of the process without any runs: SI^2, or of the logarithm
-  bool logarithmic = false;       ///< learnt as a logarithm
+  double prior_variance = 0.0;    ///< variance of the process without any runs: SI^2, or of the logarithm
+  bool logarithmic = false;       ///< the output is learnt as a logarithm
 };
 
 struct Emulator {
   std::string material;
-  std::size_t output = 0;                   ///< in Study::outputs
+  std::size_t output = 0;                   ///< index into Study::outputs
   std::vector<EmulatorInput> inputs;        ///< columns of the points
   std::map<std::size_t, double> constants;  ///< parameters that the material's runs hold at one value, SI
-  std::map<std::size_t, std::pair<double, double>> control_range;  ///< SI, of the runs
+  std::map<std::size_t, std::pair<double, double>> control_range;  ///< SI, range of each control over the runs
   std::function<surrogate::Prediction(const Eigen::MatrixXd& points)> predict;
   /// The means of `predict` alone. Empty where that is not cheaper.
   std::function<Eigen::VectorXd(const Eigen::MatrixXd& points)> predict_mean = {};
@@ -52,10 +53,10 @@ struct Emulator {
   /// moves by the same amount (unit cube). Empty: the caller takes differences.
   std::function<surrogate::PredictionGradient(const Eigen::MatrixXd& points, std::span<const int> coordinates)>
       predict_with_gradient = {};
-  /// Points stacked in groups of `group` rows; empty where there is none.
+  /// Predicts points stacked in groups of `group` rows. Empty where there is no such function.
   std::function<std::vector<surrogate::Prediction>(const Eigen::MatrixXd& points, int group)> predict_batch = {};
   std::shared_ptr<const RunCloud> runs = {};  ///< none: a function that no runs stand behind
-  std::string doubt = {};                     ///< why no verdict can rest on it; empty: it can
+  std::string doubt = {};                     ///< why no verdict can rest on the emulator; empty: one can
 };
 
 /// A process of the surrogate layer as an emulator; it is shared, not copied.

@@ -125,7 +125,7 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
     for (const int i : kept)
       if (!came_back[i] && suspicion(i) > options.screen) suspects.push_back(i);
     std::sort(suspects.begin(), suspects.end(), [&](int a, int b) { return suspicion(a) > suspicion(b); });
-    // What stands near the worst one may only be pulled along by it.
+    // A run whose error is near the worst one's may only be pulled along by it.
     while (!suspects.empty() &&
            (suspects.size() > at_once || suspicion(suspects.back()) < 0.5 * suspicion(suspects.front())))
       suspects.pop_back();

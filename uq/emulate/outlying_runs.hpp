@@ -1,8 +1,10 @@
 #pragma once
-// Runs that the others contradict: a torque written ten times too large, a run that failed and gave half of it.
+// Outlying runs, which the others contradict: a torque written ten times too large, a run that failed and gave half of
+// it.
 //
 // One such run spoils a surrogate for all: it stretches the nugget or shortens the length scales until its own
-// standardised leave-one-out error looks harmless (masking). So the surrogate is fitted again without the suspects:
+// standardised leave-one-out error looks harmless (masking). The surrogate is therefore fitted again without the
+// suspects:
 //   1  leave-one-out errors e_i / s_i of the process fitted to the runs kept, robustly scaled:
 //        z_i = (e_i / s_i - median) / max(1, 1.4826 median |e / s - median|)
 //   2  the runs with |z| above `screen`, the largest first and at most a few at a time, are put aside; at the very
@@ -31,9 +33,9 @@
 namespace uq {
 
 struct OutlierOptions {
-  double screen = 3.0;     ///< robust standard deviations: put aside
-  double outlying = 8.0;   ///< robust standard deviations from the prediction of the others: named
-  double share_max = 0.2;  ///< of the runs that may be put aside
+  double screen = 3.0;     ///< robust standard deviations beyond which a run is put aside
+  double outlying = 8.0;   ///< robust standard deviations from the others' prediction, beyond which it is named
+  double share_max = 0.2;  ///< share of the runs that may be put aside
   double spread = 0.35;    ///< predictive sd over the sd of the runs kept, at most
   double least = 0.15;     ///< difference over the sd of the runs kept, at least: less spoils nothing
   double harm = 1.3;       ///< rms leave-one-out error of the others with the suspects over that without, at least
@@ -42,23 +44,25 @@ struct OutlierOptions {
 
 struct OutlyingRuns {
   std::vector<int> runs;                     ///< indices in the training set, the worst first
-  std::vector<double> expected, deviations;  ///< what the others predict (unit of y), and z
-  double harm = 1.0;                         ///< what OutlierOptions::harm is compared with
+  std::vector<double> expected, deviations;  ///< prediction from the others (unit of y), and z
+  double harm = 1.0;                         ///< number that is compared with OutlierOptions::harm
   double scatter = 1.0;                      ///< 1.4826 median |e / s| of the runs kept: below 1, errors are overstated
 };
 
-/// That accused runs lie at one end of an input.
+/// The finding that accused runs lie at one end of an input.
 struct OneEnd {
   int input = 0;    ///< column of x
-  bool low = true;  ///< the end
-  double p = 1.0;   ///< of runs chosen at random, in any of the inputs
+  bool low = true;  ///< at the low end, not the high one
+  double p = 1.0;   ///< chance that randomly chosen runs lie so, in any of the inputs
 };
-inline constexpr std::size_t one_end_least = 4;  ///< accused runs
-inline constexpr double one_end_p = 0.01;        ///< at most
-/// None for fewer runs, a larger p, or a middle run of the accused that is not in the outer quarter.
+inline constexpr std::size_t one_end_least = 4;  ///< least number of accused runs
+inline constexpr double one_end_p = 0.01;        ///< largest p
+/// The end at which accused runs lie. None for fewer runs, a larger p, or a middle run of the accused that is not in
+/// the outer quarter.
 std::optional<OneEnd> at_one_end(const Eigen::MatrixXd& x, const std::vector<int>& runs);
 
-/// Never throws for odd runs; none are found where the process cannot be fitted without the suspects.
+/// Finds outlying runs. It never throws for odd runs, and finds none where the process cannot be fitted without the
+/// suspects.
 OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surrogate::GaussianProcess& process,
                            const surrogate::FitOptions& fit, const OutlierOptions& options = {});
 

@@ -15,9 +15,9 @@ namespace {
 /// A tensor grid over the unit cube; the last input varies fastest.
 struct Grid {
   int inputs = 0, nodes = 0;
-  Eigen::VectorXd node, node_weight;  ///< of one input
+  Eigen::VectorXd node, node_weight;  ///< nodes and weights of one input
   Eigen::MatrixXd points;             ///< one per row
-  Eigen::VectorXd weight;             ///< of the points; they add up to one
+  Eigen::VectorXd weight;             ///< weights of the points; they add up to one
 
   int coordinate(Eigen::Index point, int input) const {
     for (int k = inputs - 1; k > input; --k) point /= nodes;

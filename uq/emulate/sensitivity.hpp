@@ -1,8 +1,9 @@
 #pragma once
-// Sobol indices: which share of an output's variance over the ranges of its inputs is whose.
+// Sobol indices: the share that each input has in an output's variance over the ranges of the inputs.
 //
-// With the inputs independent and uniform over the unit cube (parameters by uq/posterior/prior.hpp's u, controls by their range),
-// I. M. Sobol, Math. Comput. Simul. 55 (2001) 271, and T. Homma, A. Saltelli, Reliab. Eng. Syst. Saf. 52 (1996) 1:
+// With the inputs independent and uniform over the unit cube (parameters by uq/posterior/prior.hpp's u, controls by
+// their range), I. M. Sobol, Math. Comput. Simul. 55 (2001) 271, and T. Homma, A. Saltelli, Reliab. Eng. Syst. Saf. 52
+// (1996) 1:
 //   first order  S_i = Var(E[f | x_i]) / Var(f)         what x_i does on its own
 //   total        T_i = 1 - Var(E[f | x_~i]) / Var(f)    what x_i does alone and together with others
 // The expectations are tensor Gauss-Legendre sums, exact for polynomials of degree 2 nodes - 1 in each input. The
@@ -23,18 +24,18 @@ struct SobolIndex {
 };
 
 struct SensitivityOptions {
-  int points_max = 1500;  ///< of the grid; decides the nodes per input, of which there are three at least
-  int nodes_max = 24;     ///< per input
-  int draws = 200;        ///< of the response
+  int points_max = 1500;  ///< points of the grid; they decide the nodes per input, at least three
+  int nodes_max = 24;     ///< nodes per input at most
+  int draws = 200;        ///< draws of the response
   std::uint64_t seed = 1;
 };
 
-/// The most inputs: three nodes in each of seven are 2,187 points, whose joint covariance takes about a second; two
-/// nodes would not see curvature.
+/// The largest number of inputs. Three nodes in each of seven are 2,187 points, whose joint covariance takes about a
+/// second; two nodes would not see curvature.
 inline constexpr int sensitivity_inputs_max = 7;
 
-/// Indices of a response whose joint prediction at points (one per row, unit cube) `predict` gives; empty for more
-/// inputs than sensitivity_inputs_max, or where the response does not vary.
+/// The Sobol indices of a response. `predict` gives its joint prediction at points (one per row, unit cube). Empty for
+/// more inputs than sensitivity_inputs_max, or where the response does not vary.
 std::vector<SobolIndex> sobol_indices(const std::function<surrogate::Prediction(const Eigen::MatrixXd&)>& predict,
                                       int inputs, const SensitivityOptions& options = {});
 

@@ -8,7 +8,7 @@
 
 namespace uq {
 
-/// Hash of what the rows say, in their order.
+/// Hash of the rows' contents, in their order.
 std::string table_hash(const data::RunTable& table);
 
 void save_surrogates(const std::string& path, const data::Study& study, const data::RunTable& table,
@@ -16,10 +16,10 @@ void save_surrogates(const std::string& path, const data::Study& study, const da
 
 struct SavedSurrogates {
   std::vector<FittedSurrogate> fitted;  ///< for SurrogateOptions::known
-  std::string stale;                    ///< why a file that is there was not used; empty: it was, or there is none
+  std::string stale;                    ///< why an existing file was not used; empty: it was used, or there is none
 };
 
-/// Never throws for a damaged file: that is a reason to fit again.
+/// Loads the saved surrogates. It never throws for a damaged file: that is a reason to fit again.
 SavedSurrogates load_surrogates(const std::string& path, const data::Study& study, const data::RunTable& table,
                                 const SurrogateOptions& options);
 

@@ -18,7 +18,7 @@
 namespace uq {
 namespace {
 
-/// Of the stated errors: runs at one point that scatter more are doubted.
+/// In stated errors: where runs at one point differ by more, the errors are doubted.
 constexpr double far_apart = 4.0;
 
 std::vector<double> in_unit(const Eigen::VectorXd& values, const data::Unit& unit) {
@@ -27,7 +27,7 @@ std::vector<double> in_unit(const Eigen::VectorXd& values, const data::Unit& uni
   return shown;
 }
 
-/// What the two-level process found, and how its cheaper level did.
+/// Adds the findings of the two-level process, and how its cheaper level did.
 void add_levels(SurrogateReport& report, const FittedSurrogate& fitted, const data::Output& output) {
   const surrogate::TwoLevelProcess& two = *fitted.two_level;
   report.low_runs = two.low().runs();

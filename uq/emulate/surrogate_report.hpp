@@ -1,5 +1,5 @@
 #pragma once
-// How a fitted surrogate is judged, in the study's names and units.
+// The judgement of a fitted surrogate, in the study's names and units.
 #include "uq/emulate/surrogates.hpp"
 
 namespace uq {

@@ -29,7 +29,7 @@ struct Columns {
   std::vector<std::size_t> parameters, controls, outputs;
 };
 
-/// Of an input in RunRow::inputs.
+/// The place of an input in RunRow::inputs.
 std::size_t column_of(const Columns& columns, const EmulatorInput& input) {
   return input.kind == InputKind::parameter ? columns.parameters[input.index]
                                             : columns.parameters.size() + columns.controls[input.index];

@@ -1,5 +1,5 @@
 #pragma once
-// Of a case: what holds for its parameters together, then all of it; and the case calibrated again.
+// Field lists of a case: what holds for its parameters together, then all of it; and the case calibrated again.
 #include "uq/findings/headline.hpp"
 #include "uq/findings/parameter_fields.hpp"
 #include "uq/findings/plan_fields.hpp"
@@ -70,7 +70,7 @@ void visit_fields(Visit&& visit, T& e) {
   visit("ppp", e.ppp);
 }
 
-/// A parameter as its case shows it: one that does not fit overrules the parameter's own word.
+/// Visits a parameter as its case shows it: a case that does not fit overrules the parameter's own verdict.
 template <class Visit, SameAs<ParameterReport> T>
 void visit_shown(Visit&& visit, const CaseReport& of, T& p) {
   visit_fields(visit, p);

@@ -1,5 +1,5 @@
 #pragma once
-// How a finding's fields are listed, each with its key in report.json: the one list by which they are written and read.
+// The list of a finding's fields, each with its key in report.json: the one list by which they are written and read.
 //
 // visit_fields(visit, finding) calls the visitor once for each field, in the order of the file:
 //   visit("key", field)                               a number, text, list, map or struct

@@ -1,6 +1,6 @@
 #pragma once
-// A finding out of report.json: the visitor of field_list.hpp that reads. A key that the file lacks leaves the field at its
-// default.
+// The visitor of field_list.hpp that reads a finding from report.json. A key that the file lacks leaves the field at
+// its default.
 #include <fmt/format.h>
 
 #include <limits>
@@ -14,7 +14,7 @@
 
 namespace uq::fields {
 
-/// A value of the wrong kind, and where: found deep inside, told to the user with the file's name.
+/// A value of the wrong kind, and its place. It is found deep inside, and told to the user with the file's name.
 struct Misfit {
   std::string where, what;
 };
@@ -106,7 +106,7 @@ inline void load(const Json& json, const std::string& where, Texts& values) {
   for (const auto& [name, value] : json.items()) load(value, where + "." + name, values.emplace_back(name, "").second);
 }
 
-/// Reads the fields of one finding; one that the file lacks keeps its default.
+/// Reads the fields of one finding; a field that the file lacks keeps its default.
 class Reader {
  public:
   Reader(const Json& json, std::string where) : json_(json), where_(std::move(where)) { require_table(json_, where_); }

@@ -1,5 +1,5 @@
 #pragma once
-// What a finding becomes in report.json: the visitor of field_list.hpp that writes. A number is a number, a list a list, a
+// The visitor of field_list.hpp that writes a finding into report.json. A number becomes a number, a list a list, a
 // struct a table. JSON has no infinities, and no NaN.
 #include <cmath>
 #include <map>
@@ -146,7 +146,7 @@ Json save_fields(const T& value) {
   return std::move(writer.json);
 }
 
-/// Null where there were no runs to ask.
+/// Writes a support report; null where there were no runs to ask.
 inline Json save(const SupportReport& support) { return support.known ? save_fields(support) : Json(nullptr); }
 
 template <class T>

@@ -18,7 +18,7 @@ std::string capital(std::string text) {
   return text;
 }
 
-/// What was measured, in the order of its points.
+/// Names of the measured outputs, in the order of the points.
 Names measured(const CaseReport& result) {
   Names outputs;
   for (const PredictivePoint& point : result.predictive)
@@ -29,7 +29,7 @@ Names measured(const CaseReport& result) {
 struct Standing {
   Names fixed;   ///< with their values
   Names open;    ///< not identified
-  Names silent;  ///< of which the data say nothing
+  Names silent;  ///< parameters of which the data say nothing
 };
 
 Standing standing(const CaseReport& result, Typography typography) {
@@ -66,7 +66,7 @@ bool tied_by_a_curve(const CaseReport& result) {
                      [](const TradedPair& traded) { return !std::isfinite(traded.value); });
 }
 
-/// What to do next: the plan's first choice, where there is one.
+/// The next step in words: the plan's first choice, where there is a plan.
 std::string next_step(const CaseReport& result, const Standing& found) {
   if (found.open.empty()) return {};
   if (!result.plan || result.plan->candidates.empty()) return " Next: demcal plan says what to measure.";

@@ -1,10 +1,10 @@
 #pragma once
-// What kinds of findings there are, each with its texts (data/texts.hpp).
+// The kinds of findings, each with its texts (data/texts.hpp).
 #include "data/texts.hpp"
 
 namespace uq {
 
-/// What the data say of a parameter (uq/verdict/verdict.hpp).
+/// The verdict on a parameter (uq/verdict/verdict.hpp).
 enum class Verdict { identified, weakly_identified, several_values, not_identified, does_not_fit };
 
 /// Why a parameter is not known (uq/verdict/reason.hpp).
@@ -21,17 +21,17 @@ enum class Reason {
   traded
 };
 
-/// An error that all readings of a case share (uq/posterior/common_share.hpp): a meter's offset or gain that is sampled, or
-/// its common error, the rig's scale, a control's true setting, what the model leaves out.
+/// An error that all readings of a case share (uq/posterior/common_share.hpp): a meter's offset or gain that is
+/// sampled, or its common error, the rig's scale, a control's true setting, what the model leaves out.
 enum class CommonErrorKind { offset, gain, scale, setting, meter, discrepancy };
 
 /// How far a surrogate can be trusted (surrogate/validation.hpp).
 enum class SurrogateWord { good, caution, unusable };
 
-/// How traded parameters hang together (uq/verdict/combination.hpp).
+/// The relation between traded parameters (uq/verdict/combination.hpp).
 enum class CombinationForm { none, product, sum, curved };
 
-/// What a measurement that could be made next is (uq/plan).
+/// The kind of a measurement that could be made next (uq/plan).
 enum class CandidateKind { repeat, setting, output };
 
 using data::to_text;

@@ -4,7 +4,8 @@
 
 namespace uq {
 
-/// "a", "a and b", "a, b and c"; of text, or of what text becomes (uq/report/element.hpp).
+/// The names as a list in words: "a", "a and b", "a, b and c". They are texts, or what texts become
+/// (uq/report/element.hpp).
 template <class Text>
 Text listed(const std::vector<Text>& names) {
   Text text;

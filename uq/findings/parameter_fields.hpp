@@ -1,5 +1,5 @@
 #pragma once
-// Of one parameter, or one unknown of the measurement: its draws, its interval and its verdict.
+// Field lists of one parameter, or of one unknown of the measurement: its draws, its interval and its verdict.
 #include "uq/findings/field_list.hpp"
 #include "uq/findings/results.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Of what to measure next.
+// Field lists of a plan: what to measure next.
 #include "uq/findings/field_list.hpp"
 #include "uq/findings/results.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Of what a posterior predicts, beside what was measured or simulated there.
+// Field lists of a posterior's predictions, beside what was measured or simulated there.
 #include "uq/findings/field_list.hpp"
 #include "uq/findings/results.hpp"
 

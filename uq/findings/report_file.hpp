@@ -3,8 +3,8 @@
 // without sampling.
 //
 // The keys are those of fields.hpp; between versions of format 1 they are only ever added. Doubles have as many digits
-// as give them back to the last bit. An open end and a NaN are null, and a null number comes back as NaN; an infinity is
-// the text "infinity" or "-infinity".
+// as give them back to the last bit. An open end and a NaN are null, and a null number comes back as NaN; an infinity
+// is the text "infinity" or "-infinity".
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -13,9 +13,10 @@
 
 namespace uq {
 
-/// Of the keys, for programs.
+/// The format of the keys, for programs.
 constexpr int report_format = 1;
-/// Of the list of fields. A page is made again only of a report of this edition: another one lacks part of it.
+/// The edition of the list of fields. A page is made again only from a report of this edition: another one lacks part
+/// of it.
 constexpr int report_edition = 4;
 
 /// "format", "edition" and the fields of a report.
@@ -24,18 +25,18 @@ nlohmann::ordered_json report_json(const CalibrationReport& report);
 /// The plans of the cases that have one: {"case", "about", "sentence", "candidates": [...], ...}.
 nlohmann::ordered_json plans_json(const std::vector<CaseReport>& cases);
 
-/// JSON as a file for people too: indented, a list of plain values on one line. Bytes that are no UTF-8 (of a comment in
-/// a Latin-1 file) are replaced.
+/// JSON as a file for people too: indented, a list of plain values on one line. Bytes that are no UTF-8 (of a comment
+/// in a Latin-1 file) are replaced.
 std::string text_of(const nlohmann::ordered_json& json);
 
-/// Throws data::InputError (73).
+/// Writes report.json. Throws data::InputError (73).
 void save_report(const CalibrationReport& report, const std::string& path);
 
-/// A field that the file lacks keeps its default. Throws data::InputError: 66 no such file; 65 not a report, one of a
-/// demcal that did not keep all of it, or a damaged one, with the place.
+/// Reads report.json. A field that the file lacks keeps its default. Throws data::InputError: 66 no such file; 65 not a
+/// report, one of a demcal that did not keep all of it, or a damaged one, with the place.
 CalibrationReport load_report(const std::string& path);
 
-/// One surrogate's part alone, as text, and back; `place` is where the text was found.
+/// Writes one surrogate's part alone as text, and reads it back; `place` is where the text was found.
 std::string to_text(const SurrogateReport& report);
 SurrogateReport surrogate_report_from(const std::string& text, const std::string& place);
 

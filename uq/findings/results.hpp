@@ -1,7 +1,7 @@
 #pragma once
-// What a calibration found, as plain data: made by uq/calibrate/calibrate.cpp, kept by report_file.hpp, shown by uq/report.
-// Values of parameters, controls and outputs are in the study's units (Parameter::unit and so on), not SI: this is the
-// reader's side of the border.
+// The findings of a calibration as plain data: made by uq/calibrate/calibrate.cpp, kept by report_file.hpp, shown by
+// uq/report. Values of parameters, controls and outputs are in the study's units (Parameter::unit and so on), not in
+// SI, as findings are for the reader.
 #include <limits>
 #include <map>
 #include <optional>
@@ -25,9 +25,9 @@ struct OutlyingRun {
 struct SurrogateReport {
   std::string output, material;
   int runs = 0;
-  double q2 = 0.0;           ///< leave-one-out
-  double q2_held_out = 0.0;  ///< held-out folds, hyper-parameters refitted
-  double coverage95 = 0.0;   ///< of leave-one-out intervals
+  double q2 = 0.0;           ///< Q2 of leave-one-out
+  double q2_held_out = 0.0;  ///< Q2 of held-out folds, hyper-parameters refitted
+  double coverage95 = 0.0;   ///< coverage of the 95 % leave-one-out intervals
   double nugget_sd = 0.0;    ///< unit of the output
   std::string unit;
   SurrogateWord verdict = SurrogateWord::unusable;
@@ -38,15 +38,15 @@ struct SurrogateReport {
   std::vector<double> total_order, total_order_sd;        ///< with their sd from the surrogate's uncertainty
   std::vector<double> observed, predicted, standardised;  ///< leave-one-out, per run
   std::vector<double> observed_se;
-  std::vector<double> coverage_left_out, coverage_held_out;  ///< of the 50, 90 and 95 % intervals
+  std::vector<double> coverage_left_out, coverage_held_out;  ///< coverage of the 50, 90 and 95 % intervals
   // Held-out folds (Bastos & O'Hagan 2009): Mahalanobis distance, runs in the fold, tail probability of the distance.
   std::vector<double> fold_distance, fold_runs, fold_probability;
   std::vector<double> pivoted_errors;  ///< pivoted Cholesky errors, fold after fold, each in pivoting order
   std::vector<std::string> notes;      ///< hyper-parameter on its bound, jitter, multi-start outcomes
-  std::string errors_in_doubt;         ///< that the runs' standard errors cannot be meant so; empty: they can
-  bool converged = true;               ///< the maximisation of the likelihood
-  int low_runs = 0;                    ///< of the cheaper level, where there are two (surrogate/two_level.hpp)
-  /// This level's output per the cheaper one's.
+  std::string errors_in_doubt;         ///< says that the runs' standard errors cannot be meant so; empty: they can
+  bool converged = true;               ///< whether the maximisation of the likelihood converged
+  int low_runs = 0;                    ///< runs of the cheaper level, where there are two (surrogate/two_level.hpp)
+  /// Ratio of this level's output to the cheaper level's.
   double rho = std::numeric_limits<double>::quiet_NaN(), rho_sd = std::numeric_limits<double>::quiet_NaN();
   std::vector<OutlyingRun> outlying;  ///< runs that the others contradict
   std::string outlying_together;      ///< that these lie at one end of an input, and what to try; empty: they do not
@@ -55,7 +55,7 @@ struct SurrogateReport {
 /// One connected part of a parameter's 95 % profile interval, with the posterior inside it.
 struct ValueRange {
   double low = 0.0, high = 0.0;               ///< the range's end where the part is open
-  bool low_open = false, high_open = false;   ///< the data do not end it: the range does, or another parameter's
+  bool low_open = false, high_open = false;   ///< a range ends it (its own or another parameter's), not the data
   double weight = 0.0, mean = 0.0, sd = 0.0;  ///< posterior probability of the part; mean and sd within it
 };
 
@@ -77,7 +77,7 @@ struct PlannedParameter {
   std::string name, unit;
   double information = 0.0, information_error = 0.0;  ///< nats; the error is that of a 95 % interval
   double sd_now = 0.0, sd_after = 0.0;                ///< posterior sd, and what it is expected to be
-  std::vector<WordProbability> words;                 ///< of the verdict afterwards; empty: not asked
+  std::vector<WordProbability> words;                 ///< probabilities of the verdict afterwards; empty: not asked
   std::optional<int> repeats_needed;                  ///< readings for "identified" with 90 % probability
   std::optional<int> repeats_low, repeats_high;       ///< its range; no high: the probability stays near 90 %
   std::string floor;  ///< why no number of readings is enough; empty: some is, or not asked
@@ -98,7 +98,7 @@ struct PlanCandidate {
   CandidateKind kind = CandidateKind::setting;
   std::string material;
   std::vector<std::string> outputs;
-  std::vector<std::map<std::string, double>> settings;  ///< controls of each of its points, their units
+  std::vector<std::map<std::string, double>> settings;  ///< controls of each of its points, in their units
   double cost = 1.0;
   bool model_only = false;                            ///< the output need not mean the same in the real powder
   std::vector<PlanLevel> levels;                      ///< the powder's other levels of coarse graining
@@ -106,14 +106,14 @@ struct PlanCandidate {
   std::string error;                                  ///< "2 %"
   double information = 0.0, information_error = 0.0;  ///< about all parameters together, nats
   std::vector<PlannedParameter> parameters;
-  bool teaches = true;  ///< about the parameter asked for
+  bool teaches = true;  ///< whether it teaches about the parameter asked for
 };
 
 /// Several candidates together.
 struct PlanBatch {
   std::vector<std::string> candidates;
   double information = 0.0, information_error = 0.0;  ///< about the parameter asked for, nats
-  double greedy = 0.0;                                ///< of the batch that picks one after the other
+  double greedy = 0.0;                                ///< information of the batch that picks one after the other
   double sd_after = 0.0;
   double cost = 0.0;
 };
@@ -123,7 +123,7 @@ struct PlannedRuns {
   std::vector<std::string> points;                     ///< "carrier friction 0.4, hamaker 9e-18 J, rpm 50 rpm"
   double seconds = 0.0;                                ///< of processor time, where the rows tell
   double variance_before = 0.0, variance_after = 0.0;  ///< of the posterior density, shares of its mean square
-  std::vector<PlannedParameter> parameters;            ///< with a surrogate that is exact: the most that runs can do
+  std::vector<PlannedParameter> parameters;            ///< with an exact surrogate: the most that runs can do
 };
 
 /// How a reading changes when a parameter changes by its prior's sd, at the best fit (before any measurement: at the
@@ -135,7 +135,7 @@ struct PlanArrow {
 };
 
 struct PlanReport {
-  std::string about;      ///< parameter that it ranks by
+  std::string about;      ///< parameter that the plan ranks by
   bool prior = false;     ///< made before any measurement counts
   std::string sentence;   ///< the answer
   std::string cost_unit;  ///< "" where costs are plain numbers
@@ -150,16 +150,16 @@ struct PlanReport {
 /// An error that all readings of a case share.
 struct CommonError {
   CommonErrorKind kind = CommonErrorKind::offset;
-  std::string name;  ///< of the unknown; empty where the error is integrated out
+  std::string name;  ///< name of the unknown; empty where the error is integrated out
 };
 
-/// What such errors hold of a parameter's width (uq/posterior/common_share.hpp).
+/// The part of a parameter's width that such common errors hold (uq/posterior/common_share.hpp).
 struct CommonShare {
   double share = 0.0;               ///< of the posterior variance, 0 to 1
-  std::vector<CommonError> errors;  ///< those that hold a notable part of it
+  std::vector<CommonError> errors;  ///< errors that hold a notable part of it
 };
 
-/// What brings about a parameter's width; shares of it that sum to one.
+/// The sources of a parameter's width, as shares that sum to one.
 struct WidthShares {
   double measurement = 1.0, surrogate = 0.0, structure = 0.0, range = 0.0;
 };
@@ -174,21 +174,22 @@ struct ParameterReport {
   std::optional<double> profile_low, profile_high;   ///< 95 % profile-likelihood interval; none: open on that side
   bool low_is_bound = false, high_is_bound = false;  ///< the range ended before the likelihood fell
   std::vector<double> profile_x, profile_deviance;   ///< the profile itself: 2 (log L_max - log L)
-  double profile_drop = deviance_95;                 ///< deviance at the interval's ends
+  double profile_drop = deviance_95;                 ///< deviance at which the interval ends
   Verdict verdict = Verdict::not_identified;
-  std::optional<Reason> reason;  ///< why it is not known
+  std::optional<Reason> reason;  ///< why the parameter is not known
   bool borderline = false;
   std::string sentence;                       ///< the verdict in words with its numbers
   std::vector<ValueRange> intervals;          ///< the parts of the profile interval, rising; holes in doubt are filled
-  std::vector<ProfileHole> holes;             ///< between them, and those in doubt
+  std::vector<ProfileHole> holes;             ///< holes between the parts, those in doubt too
   std::string low_pinned_by, high_pinned_by;  ///< parameter whose range ends an open side; may be empty
   std::optional<double> runs_end_low, runs_end_high;  ///< where the runs end on an open side, short of the range
-  std::vector<WordProbability> word_probabilities;    ///< falling; none where they were not asked for
+  std::vector<WordProbability> word_probabilities;    ///< the largest first; none where they were not asked for
   WidthShares shares;
   CommonShare common;  ///< part of the width that is in the measurement's share, too
 };
 
-/// The draws of one unknown. Of a report: one of the measurement, sampled with the parameters and integrated out.
+/// A summary of the draws of one unknown. In a report it is an unknown of the measurement that is sampled with the
+/// parameters and integrated out.
 struct NuisanceReport {
   std::string name, unit;
   double prior_mean = 0.0, prior_sd = 0.0;
@@ -196,10 +197,10 @@ struct NuisanceReport {
   double rhat = 0.0, ess_bulk = 0.0, ess_tail = 0.0;
 };
 
-/// What a case's discrepancy process makes of one observation set, against its first control.
+/// The discrepancy that a case finds in one observation set, against the set's first control.
 struct DiscrepancyBand {
   std::string output, unit, control, control_unit, observation_set;
-  double share = 0.0;  ///< of the spread of the data about the model, 0 to 1
+  double share = 0.0;  ///< share in the spread of the data about the model, 0 to 1
   std::vector<double> x, mean, q05, q95;
 };
 
@@ -208,7 +209,7 @@ struct PredictivePoint {
   std::map<std::string, double> controls;
   std::string output, unit;
   double mean = 0.0, q05 = 0.0, q95 = 0.0, observed = 0.0, standard_error = 0.0;
-  std::string observation_set;  ///< that the point belongs to
+  std::string observation_set;  ///< set that the point belongs to
 };
 
 /// A curve of the posterior predictive of the model (without measurement error) against one control.
@@ -219,24 +220,24 @@ struct PredictiveCurve {
 
 /// Parameters whose values are traded against each other: what the data know is a combination of them.
 struct TradedPair {
-  std::string first, second;            ///< of `parameters`, those that are traded most
-  std::vector<std::string> parameters;  ///< all of the combination
+  std::string first, second;            ///< the two of `parameters` that are traded most
+  std::vector<std::string> parameters;  ///< all parameters of the combination
   std::string combination;              ///< "friction * hamaker^0.9", "a + b + c", or that the relation is curved
   CombinationForm form = CombinationForm::none;
-  double value = std::numeric_limits<double>::quiet_NaN();  ///< of the combination, posterior mean; NaN of a curved one
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< posterior mean of the combination; NaN of a curve
   double error = std::numeric_limits<double>::quiet_NaN();  ///< posterior sd
-  std::string unit;                                         ///< of both
+  std::string unit;                                         ///< unit of value and error
   std::string statement;                                    ///< "a + b + c = 0.300 +- 0.006", or the combination alone
   double correlation = 0.0;
   std::vector<std::map<std::string, double>> equivalent;  ///< points along the ridge, each with every free parameter
   std::vector<std::vector<double>> equivalent_u;  ///< the same with every unknown, scaled (uq/posterior/prior.hpp's u)
-  std::vector<PredictiveCurve> curves;            ///< what the model's mean is at them, point by point; no band
+  std::vector<PredictiveCurve> curves;            ///< the model's mean at each of these points; no band
 };
 
 /// A separate region of the posterior.
 struct ModeReport {
   double weight = 0.0;                 ///< posterior probability
-  std::map<std::string, double> mean;  ///< of each free parameter inside it
+  std::map<std::string, double> mean;  ///< mean of each free parameter inside the region
   std::map<std::string, double> sd;
 };
 
@@ -244,20 +245,20 @@ struct ModeReport {
 struct ModelComparison {
   std::string held;               ///< "hamaker = 0 J"
   double log_bayes_factor = 0.0;  ///< natural log of evidence(free) / evidence(held)
-  double error = 0.0;             ///< its standard error, of both kinds
-  double sampling_error = 0.0;    ///< Monte Carlo's
-  double surrogate_error = 0.0;   ///< of the surrogate, which more runs would make smaller
+  double error = 0.0;             ///< standard error, of both kinds together
+  double sampling_error = 0.0;    ///< part of the error from Monte Carlo sampling
+  double surrogate_error = 0.0;   ///< part of the error from the surrogate; more runs would make it smaller
   std::string sentence;           ///< the finding in words
 };
 
-/// How one input's runs lie about the posterior.
+/// The runs of one input beside the posterior.
 struct InputSupport {
   std::string name, unit;
-  std::string material;                    ///< whose runs
-  double runs_low = 0.0, runs_high = 0.0;  ///< that the runs cover
-  double outside = 0.0;                    ///< share of the posterior beyond them
-  double gap = 0.0;                        ///< share of the posterior in a gap of them
-  double gap_low = 0.0, gap_high = 0.0;    ///< that gap; equal: there is none
+  std::string material;                    ///< material whose runs these are
+  double runs_low = 0.0, runs_high = 0.0;  ///< range that the runs cover
+  double outside = 0.0;                    ///< share of the posterior beyond that range
+  double gap = 0.0;                        ///< share of the posterior in a gap between runs
+  double gap_low = 0.0, gap_high = 0.0;    ///< ends of the gap; equal: there is none
   bool operator==(const InputSupport&) const = default;
 };
 
@@ -272,15 +273,15 @@ struct SupportReport {
   bool known = false;                                             ///< the emulators are learnt from runs
   bool supported = true;                                          ///< the unsupported share is below its threshold
   double unsupported = 0.0;                                       ///< share of the draws
-  double outside = 0.0, gap = 0.0, empty = 0.0, uncertain = 0.0;  ///< of them: by which test
-  double distance = 0.0;        ///< median over the draws: to the nearest run, in length scales
+  double outside = 0.0, gap = 0.0, empty = 0.0, uncertain = 0.0;  ///< share of the draws that each test rejects
+  double distance = 0.0;        ///< distance to the nearest run, in length scales; median over the draws
   double variance_ratio = 0.0;  ///< median over the draws: surrogate's variance over that without any runs
   std::vector<InputSupport> inputs;
   std::string sentence;            ///< what is not supported, and how far; empty where all is
   std::vector<NextRun> next_runs;  ///< points of the posterior far from the runs, the first the most useful
 };
 
-/// A parameter where the case was calibrated again.
+/// The verdict on a parameter when the case was calibrated again.
 struct ParameterAgain {
   std::string name;
   Verdict verdict = Verdict::not_identified;
@@ -329,8 +330,8 @@ struct PredictionReport {
   std::vector<std::string> observed_sets;
   std::vector<PredictedPoint> points;
   int inside = 0;        ///< points inside their 90 % intervals
-  double chi2 = 0.0;     ///< of all together
-  double p = 1.0;        ///< that a prediction is as far off
+  double chi2 = 0.0;     ///< chi-squared of all points together
+  double p = 1.0;        ///< probability that a prediction is as far off
   bool predicts = true;  ///< p is above its threshold
   std::string sentence;
 };
@@ -349,7 +350,7 @@ struct CaseReport {
   double log_evidence = 0.0, log_evidence_error = 0.0;
   std::vector<ModelComparison> comparisons;
   int divergences = 0;
-  int chains = 0, draws = 0;  ///< per chain
+  int chains = 0, draws = 0;  ///< chains, and draws per chain
   std::optional<double>
       grid_difference;  ///< largest |mean or sd: sampler - quadrature| in posterior sd; two dimensions
   double fisher_condition = 0.0, collinearity = 0.0;
@@ -366,34 +367,34 @@ struct CaseReport {
   std::string sampler;            ///< "mixture", "nuts", "cut"
   SupportReport support;
   std::optional<WithoutRuns> without;     ///< where runs are contradicted by the others
-  std::string lone_reading;               ///< "bench.csv:5", without which all others fit; empty: there is none
+  std::string lone_reading;               ///< reading without which all others fit: "bench.csv:5"; empty: none
   std::string doubt;                      ///< why no verdict can rest on the surrogate; empty: it can
-  bool unusable = false;                  ///< the doubt is of the surrogate itself: the values are not shown
+  bool unusable = false;                  ///< the surrogate itself is in doubt, and the values are not shown
   double surrogate_to_measurement = 0.0;  ///< sd of the surrogate over that of the measurement, median of the rows
-  std::string search;                     ///< what was looked for beside the chains, and what would have escaped
+  std::string search;                     ///< what was searched for beside the chains, and what could have escaped
   double energy_fraction = std::numeric_limits<double>::quiet_NaN();  ///< smallest of the chains (E-BFMI); NaN where
                                                                       ///< the sampler has no energy
   std::vector<ModeReport> modes;  ///< separate regions of the posterior, by falling weight; none where there is one
   std::string modes_parted_by;    ///< the measurement that would tell the modes apart
   std::vector<VerificationReport> verification;  ///< round by round, the last one decides; empty: not asked for
   std::optional<PlanReport> plan = {};           ///< what to measure next, where it was asked
-  std::vector<PredictionReport> predictions;     ///< of data that it has not used
+  std::vector<PredictionReport> predictions;     ///< predictions of data that the case has not used
 };
 
 /// How the verdict changes when the measurement error is another one.
 struct ErrorScan {
   std::string case_name;
-  double relative_error = 0.0;             ///< of the measured values
+  double relative_error = 0.0;             ///< error as a share of the measured values
   std::vector<ParameterAgain> parameters;  ///< none where the posterior could not be sampled
   double ppp = 0.0;
 };
 
-/// Where a material's runs lie: those that were learnt from, and those that were left out.
+/// The places of a material's runs: the runs learnt from, and the runs left out.
 struct DesignReport {
   std::string material;
-  std::vector<std::string> inputs, units;           ///< those that vary
+  std::vector<std::string> inputs, units;           ///< inputs that vary
   std::vector<std::vector<double>> runs, left_out;  ///< per run its inputs, in their units
-  std::vector<std::string> reasons;                 ///< of each that was left out
+  std::vector<std::string> reasons;                 ///< reason for each run that was left out
 };
 
 struct CalibrationReport {
@@ -408,7 +409,7 @@ struct CalibrationReport {
   std::vector<std::pair<std::string, std::string>>
       provenance;                       ///< version, hashes, instruction set, seeds, table, times
   std::vector<std::string> notes;       ///< choices the source does not give, shown beside the verdicts
-  std::vector<data::Finding> findings;  ///< of rows and observations
+  std::vector<data::Finding> findings;  ///< findings about rows and observations
   std::vector<std::string> cautions;    ///< said on the first screen, without making the status a warning
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// The way from the numerics to the findings: values in SI, or as places on an axis, become those of the study's units, in
-// which findings are kept (results.hpp) and said.
+// Conversion from the numerics to the findings: values in SI, or places on an axis, become values in the study's units,
+// in which findings are kept (results.hpp) and said.
 #include <map>
 #include <span>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// Of where the runs speak: the posterior beside them, and the points to run next.
+// Field lists of the runs' support: the posterior beside the runs, and the points to run next.
 #include "uq/findings/field_list.hpp"
 #include "uq/findings/results.hpp"
 

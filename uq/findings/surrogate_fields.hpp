@@ -1,5 +1,5 @@
 #pragma once
-// Of the runs and what was learnt from them: designs, surrogates, the runs that the others contradict.
+// Field lists of the runs and what was learnt from them: designs, surrogates, the runs that the others contradict.
 #include "uq/findings/field_list.hpp"
 #include "uq/findings/results.hpp"
 

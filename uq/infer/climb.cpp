@@ -116,7 +116,7 @@ class Climber {
     const Eigen::VectorXd found =
         solver.eigenvectors() * turned.cwiseQuotient((solver.eigenvalues().array() + damping).matrix());
     for (std::size_t k = 0; k < free.size(); ++k) step[free[k]] = found[k];
-    // What the support allows of it.
+    // Only the part of the step that the support allows is made.
     return (moved(x_, step) - x_).cwiseQuotient(width_);
   }
 

@@ -9,7 +9,7 @@ namespace uq {
 struct Climb {
   Eigen::VectorXd x;
   double log_density = nowhere;
-  bool known = false;  ///< ended where the knowledge reaches
+  bool known = false;  ///< the climb ended where the knowledge reaches
   int evaluations = 0;
 };
 

@@ -17,7 +17,7 @@ class Conditional {
       if (std::find(given.unknowns.begin(), given.unknowns.end(), s) == given.unknowns.end()) free_.push_back(s);
   }
 
-  /// From the best of some reference draws at the first phi; false when the density is zero at all of them.
+  /// Starts from the best of some reference draws at the first phi; false when the density is zero at all of them.
   bool start(int sweeps) {
     for (int i = 0; i < 200; ++i) {
       Eigen::VectorXd x = target_.reference.draw(random_);

@@ -22,7 +22,7 @@ Eigen::MatrixXd split(const Eigen::MatrixXd& draws) {
   return halves;
 }
 
-/// Of two judgements of one quantity; NaN if either is.
+/// The worse of two judgements of one quantity; NaN if either is.
 enum class Worse { smaller, larger };
 double worse_of(double a, double b, Worse worse) {
   if (std::isnan(a) || std::isnan(b)) return not_a_number;

@@ -3,7 +3,7 @@
 // localization: an improved R-hat for assessing convergence of MCMC", Bayesian Analysis 16:667 (2021). Equation numbers
 // are that paper's. They agree with R's posterior package on the same draws (tests/uq/infer/diagnostics.cpp).
 //
-// In all of them `draws` is iterations x chains of one scalar quantity. A constant or non-finite quantity gives NaN.
+// In all functions `draws` is iterations x chains of one scalar quantity. A constant or non-finite quantity gives NaN.
 #include <Eigen/Dense>
 
 namespace uq {

@@ -225,7 +225,7 @@ Search search_unknown(const Target& target, const Scouts& scouts, const Knowledg
   for (const Climb& found : climbs) {
     search.evaluations += found.evaluations;
     if (found.known || !(found.log_density > nowhere)) continue;
-    // Of the same maximum as one before, within its two standard deviations?
+    // Whether the peak is a maximum that was seen before: within two of its standard deviations.
     const bool seen = std::any_of(search.modes.begin(), search.modes.end(), [&](const Peak& mode) {
       const Eigen::LLT<Eigen::MatrixXd> factor(mode.covariance);
       return factor.info() == Eigen::Success && factor.matrixL().solve(found.x - mode.x).squaredNorm() < 4.0;

@@ -1,7 +1,7 @@
 #pragma once
-// A search for what a sampler does not know: maxima of a density p that its mixture q (uq/infer/student_mixture.hpp) gives no mass.
-// A sampler that lost a mode while it tempered never sees it again, and its chains agree all the same; this search
-// shares neither its chains nor its tempering.
+// A search for what a sampler does not know: maxima of a density p that its mixture q (uq/infer/student_mixture.hpp)
+// gives no mass. A sampler that lost a mode while it tempered never sees it again, and its chains agree all the same.
+// This search shares neither the sampler's chains nor its tempering.
 //
 // 1. Scouts: draws of the reference with their log densities. A region with share v of the reference escapes n of them
 //    with probability (1 - v)^n.
@@ -25,27 +25,27 @@
 namespace uq {
 
 struct ExploreOptions {
-  int scouts = 0;         ///< 0: by the dimension, see scouts_for
+  int scouts = 0;         ///< number of scouts; 0: by the dimension (scouts_for)
   int climbs = 48;        ///< starts followed at most
-  int line_points = 160;  ///< along each line
+  int line_points = 160;  ///< points along each line
   int threads = 0;
 };
 
-/// 1,000 in one dimension to 32,000 in five or more.
+/// The usual number of scouts: 1,000 in one dimension to 32,000 in five or more.
 int scouts_for(int dimension);
 
 struct Scouts {
   Eigen::MatrixXd x;  ///< rows
   Eigen::VectorXd log_density;
-  Eigen::VectorXd low, high;  ///< of the scouts, each coordinate
+  Eigen::VectorXd low, high;  ///< range of the scouts in each coordinate
 };
 Scouts send_scouts(const Target& target, data::RandomStream& random, const ExploreOptions& options = {});
 
 struct Peak {
   Eigen::VectorXd x;
   double log_density = 0.0;
-  Eigen::MatrixXd covariance;  ///< Laplace's
-  double log_mass = 0.0;       ///< Laplace's
+  Eigen::MatrixXd covariance;  ///< covariance of Laplace's approximation
+  double log_mass = 0.0;       ///< log of the mass by Laplace's approximation
 };
 
 /// Laplace's approximation at x; `width` bounds its standard deviations.
@@ -53,11 +53,11 @@ Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::Vector
 
 /// Number of draws within about two standard deviations of a maximum.
 Eigen::Index draws_near(const Peak& mode, const Eigen::MatrixXd& draws);
-/// Log of the mass of p there, by importance sampling as in log_unknown_mass.
+/// Log of the mass of p near a peak, by importance sampling as in log_unknown_mass.
 double log_mass_near(const Target& target, const Peak& peak, std::int64_t& evaluations);
 
-/// What is known: p(x) <= exp(log_level) q(x) for every mixture. In the far tails of q that holds of anything, so a way
-/// uphill goes on to where p is at least exp(log_bulk).
+/// The knowledge of a sampler: a place is known where p(x) <= exp(log_level) q(x) for every mixture. In the far tails
+/// of q this holds of any place, so a climb goes on to where p is at least exp(log_bulk).
 struct Knowledge {
   std::vector<Mixture> mixtures;
   std::vector<double> log_levels;
@@ -69,17 +69,17 @@ struct Knowledge {
   }
 };
 
-/// Log of the mass of p in places about a peak that the knowledge does not reach, by importance sampling from the peak's
-/// normal law, wider by a third; minus infinity where no draw finds such a place.
+/// Log of the mass of p in places about a peak that the knowledge does not reach, by importance sampling from the
+/// peak's normal law, wider by a third; minus infinity where no draw finds such a place.
 double log_unknown_mass(const Target& target, const Peak& peak, const Knowledge& knowledge, std::int64_t& evaluations);
 
 struct Search {
   std::vector<Peak> modes;  ///< unknown maxima, each once
-  int starts = 0;           ///< that were followed
+  int starts = 0;           ///< starts that were followed
   std::int64_t evaluations = 0;
 };
 
-/// Where the search begins beside the scouts.
+/// Places from which the search begins beside the scouts.
 struct Origins {
   Eigen::VectorXd through;      ///< the point that the lines are laid through
   Eigen::MatrixXd starts = {};  ///< rows: further starts

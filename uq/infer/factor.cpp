@@ -6,7 +6,8 @@
 namespace uq {
 namespace {
 
-// What is left of a prior a million times as wide has its rounding: of a variance, what may be added to all.
+// The largest jitter that may be added to all variances, as a share of the largest one. It is the rounding of what is
+// left of a prior a million times as wide.
 constexpr double rounding_most = 1e-4;
 
 }  // namespace

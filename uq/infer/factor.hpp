@@ -10,16 +10,16 @@ struct Factor {
   double jitter = 0.0;  ///< share of the diagonal that was added to it
 };
 
-/// Throws std::domain_error that names `what`.
+/// The Cholesky factor of a covariance. Throws std::domain_error that names `what`.
 Factor factor(Eigen::MatrixXd covariance, const char* what);
 
-/// A root R of a covariance that may be singular, or zero: R R' = covariance, by LDL'. To one that is
-/// negative somewhere by rounding, as little of its largest variance is added as makes it positive, at most a ten
-/// thousandth. Throws as above beyond.
+/// A root R of a covariance that may be singular, or zero: R R' = covariance, by LDL'. A covariance that is negative
+/// somewhere by rounding gets as little of its largest variance added as makes it positive, at most a ten thousandth.
+/// Beyond this it throws as above.
 Eigen::MatrixXd semidefinite_root(const Eigen::MatrixXd& covariance, const char* what);
 
-/// With a ridge that grows until there is a factor; the diagonal's roots where there is none. For covariances that only
-/// shape a proposal, where no result depends on them.
+/// The factor of a covariance with a ridge that grows until there is a factor; the diagonal's roots where there is
+/// none. It is for covariances that only shape a proposal, where no result depends on them.
 Eigen::MatrixXd factor_for_proposal(Eigen::MatrixXd covariance);
 
 }  // namespace uq

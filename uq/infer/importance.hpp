@@ -33,9 +33,9 @@ struct Weights {
 };
 Weights importance_weights(const Proposals& made);
 
-/// Log weights as they come, and the evidence made of them.
+/// The log weights, collected as they come, for the evidence that is made of them.
 struct WeightRecord {
-  std::vector<double> log_weights;  ///< of the proposals inside the support
+  std::vector<double> log_weights;  ///< log weights of the proposals inside the support
   double tries = 0.0;
   void add(const WeightRecord& other);
 };
@@ -43,9 +43,9 @@ struct Evidence {
   double log_value = std::numeric_limits<double>::quiet_NaN();
   double error = std::numeric_limits<double>::quiet_NaN();         ///< standard error of log_value
   double pareto_shape = std::numeric_limits<double>::quiet_NaN();  ///< k-hat
-  double largest_share = 0.0;                                      ///< of the largest weight in the sum of all
-  /// A heavy tail, and a draw of it that counts. Without one the tail's shape is a guess, and k-hat alone exceeds its
-  /// bound in one of a hundred posteriors that are sampled rightly.
+  double largest_share = 0.0;                                      ///< share of the largest weight in the sum of all
+  /// Whether the evidence is doubtful: the tail is heavy, and one of its draws counts. Without such a draw the tail's
+  /// shape is a guess, and k-hat alone exceeds its bound in one of a hundred posteriors that are sampled rightly.
   bool doubtful() const { return pareto_shape > pareto_shape_max && largest_share > 0.03; }
 };
 Evidence evidence_of(const WeightRecord& record);

@@ -1,6 +1,7 @@
 #pragma once
-// What the samplers, the quadrature and the optimiser see of a posterior: a log density on a box, and a reference
-// distribution from which chains start. Neither knows of DEM, surrogates or studies, so any density can be sampled.
+// The view that the samplers, the quadrature and the optimiser have of a posterior: a log density on a box, and a
+// reference distribution from which chains start. They know nothing of DEM, surrogates or studies, so any density can
+// be sampled.
 //
 //   log density   log p(x) + const on lower <= x <= upper, minus infinity outside
 //   reference     a normalised density on the same box, wider than p: the prior of a posterior. Chains start from its
@@ -32,19 +33,19 @@ concept LogDensity = requires(const D& density, const Eigen::VectorXd& x) {
   { density.log_density(x) } -> std::convertible_to<double>;
 };
 
-/// One that also knows its gradient.
+/// A log density that also knows its gradient.
 template <class D>
 concept DifferentiableLogDensity = LogDensity<D> && requires(const D& density, const Eigen::VectorXd& x) {
   { density.log_density_gradient(x) } -> std::convertible_to<Evaluation>;
 };
 
-/// One that evaluates many points (rows) faster than one by one.
+/// A log density that evaluates many points (rows) faster than one by one.
 template <class D>
 concept BatchLogDensity = LogDensity<D> && requires(const D& density, const Eigen::MatrixXd& points) {
   { density.log_densities(points) } -> std::convertible_to<Eigen::VectorXd>;
 };
 
-/// Where chains start from.
+/// The distribution from which chains start.
 struct Reference {
   std::function<Eigen::VectorXd(data::RandomStream&)> draw;
   std::function<double(const Eigen::VectorXd&)> log_density = {};  ///< normalised

@@ -17,7 +17,7 @@ Eigen::VectorXd archived_step(const Moves& moves, RandomStream& random) {
   return (moves.archive.row(first) - moves.archive.row(second)).transpose() / std::numbers::sqrt2;
 }
 
-/// Of the shape of one of the mixture's components, whichever.
+/// A step with the shape of one of the mixture's components, chosen at random.
 Eigen::VectorXd component_step(const Moves& moves, RandomStream& random) {
   const auto& components = moves.mixture.components;
   const auto k = static_cast<std::size_t>(random.uniform() * static_cast<double>(components.size()));

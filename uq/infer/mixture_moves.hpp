@@ -5,7 +5,7 @@
 
 namespace uq {
 
-/// One chain between rounds.
+/// The state of one chain between rounds.
 struct Walker {
   data::RandomStream random;
   Eigen::VectorXd x;
@@ -14,7 +14,7 @@ struct Walker {
   std::int64_t evaluations = 0;
 };
 
-/// What all chains share and none changes.
+/// The density and the mixture, which all chains share and none changes.
 struct Moves {
   const Target& target;
   const Mixture& mixture;

@@ -40,7 +40,7 @@ double apart(const Eigen::MatrixXd& first, const Eigen::MatrixXd& second) {
   return std::abs(first.mean() - second.mean()) / std::hypot(mean_mcse(first), mean_mcse(second));
 }
 
-/// What the two halves do not agree on; empty where they agree.
+/// The disagreement of the two halves, in words; empty where they agree.
 std::string disagreement(const Draws& draws, const std::vector<Half>& halves, const MixtureSamplerOptions& options) {
   if (halves.size() < 2) return "";
   const auto count = static_cast<Eigen::Index>(halves[0].chains.size());

@@ -23,16 +23,16 @@ struct NutsOptions {
   int draws = 1000;         ///< per chain in the first round; each further round doubles the number
   int draws_max = 16000;    ///< per chain
   double acceptance = 0.9;  ///< wanted mean acceptance statistic
-  int depth_max = 10;       ///< of the trajectory's tree
+  int depth_max = 10;       ///< depth of the trajectory's tree
   StopRule stop = {};
   int threads = 0;  ///< 0: as many as the machine has
   std::uint64_t seed = 1;
-  /// Told the share of the work done, 0 to 1 and never falling; one call at a time, from any thread. Rounds that are
-  /// found to be needed are added to the work.
+  /// Is told the share of the work done, 0 to 1 and never falling, by one call at a time from any thread. Rounds that
+  /// are found to be needed are added to the work.
   std::function<void(double share)> progress = {};
 };
 
-/// Needs target.log_density_gradient.
+/// Samples a target. It needs target.log_density_gradient.
 Draws sample_nuts(const Target& target, const NutsOptions& options = {});
 
 }  // namespace uq

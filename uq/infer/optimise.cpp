@@ -8,7 +8,7 @@
 namespace uq {
 namespace {
 
-/// What NLopt calls: the full point from the free coordinates, the best point kept.
+/// The function that NLopt calls. It makes the full point from the free coordinates, and keeps the best point.
 struct Problem {
   const Differentiable& function;
   std::vector<int> free;

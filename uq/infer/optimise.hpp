@@ -29,7 +29,7 @@ struct Maximum {
 
 using Differentiable = std::function<Evaluation(const Eigen::VectorXd&)>;
 
-/// Best of all starts (rows of `starts`, moved into the box).
+/// The best maximum of all starts (rows of `starts`, moved into the box).
 Maximum maximise(const Differentiable& function, const Box& box, const Eigen::MatrixXd& starts,
                  const std::vector<Held>& held = {});
 

@@ -38,10 +38,10 @@ Adaptation of_points(const Eigen::MatrixXd& points) {
   return state;
 }
 
-/// Of points that the populations' moves made one from another, each counts as half a draw.
+/// The weight of a point that the populations' moves made from another: it counts as half a draw.
 constexpr double half = 0.5;
 
-/// What a point known already and a weighted draw count as.
+/// The weights of a point that was known already and of a weighted draw.
 struct Counts {
   double point = 1.0, draw = 1.0;
 };
@@ -100,7 +100,8 @@ void adapt(const Target& target, Adaptation& state, data::RandomStream& random, 
     const bool hard = state.efficiency < options.poor && misses < 4;
     if (state.efficiency > 0.85 || (refit > 1 && !better && !hard) || weights.efficiency == 0.0) break;
     if (refit >= (hard ? options.hard_refits_max : options.refits_max)) break;
-    // What was gathered gives way slowly to a refit's few draws, but for what the mixture was first fitted to.
+    // Points gathered before give way slowly to a refit's few draws. Points of the mixture's first fit give way faster:
+    // each counts half.
     gather(state, made, weights, {.point = refit == 0 ? half : 1.0, .draw = std::max(weights.efficiency, 0.05)},
            options.points_max, random);
     state.current =
@@ -118,7 +119,7 @@ void add_modes(Adaptation& state, const std::vector<Peak>& modes, double share) 
   // Nothing is known of how good it is.
   state.best = state.current;
   state.efficiency = 0.0;
-  // They stay with twice their mass, so that p / q is bounded there whatever the fits do.
+  // The modes stay with twice their mass, so that p / q is bounded there whatever the fits do.
   for (std::size_t i = 0; i < modes.size(); ++i) {
     added[i].weight = std::clamp(2.0 * std::exp(modes[i].log_mass - state.log_evidence), 0.002, 0.1);
     state.kept.push_back(added[i]);

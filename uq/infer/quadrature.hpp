@@ -13,9 +13,9 @@
 namespace uq {
 
 struct QuadratureOptions {
-  int first_cells = 24;     ///< per side before refinement
+  int first_cells = 24;     ///< cells per side before refinement
   int levels = 9;           ///< halvings at most
-  double tolerance = 1e-5;  ///< of a cell's integral, relative to the whole, below which it is not split
+  double tolerance = 1e-5;  ///< error of a cell's integral, over the whole, below which it is not split
   std::int64_t evaluations_max = 400000;
   int threads = 0;
   Eigen::MatrixXd guides = {};  ///< rows; may be empty
@@ -24,7 +24,7 @@ struct QuadratureOptions {
 struct Quadrature {
   Eigen::VectorXd mean, sd;
   Eigen::VectorXd fourth;     ///< mean fourth power of the distance to the mean
-  double correlation = 0.0;   ///< two dimensions
+  double correlation = 0.0;   ///< of the two coordinates; in two dimensions only
   double log_evidence = 0.0;  ///< log integral of the density
   std::int64_t evaluations = 0;
   bool resolved = true;  ///< no cell was left above the tolerance
@@ -33,8 +33,9 @@ struct Quadrature {
 Quadrature integrate(const Target& target, const QuadratureOptions& options = {});
 
 /// Whether every mean and variance of the draws is within five of its standard errors of the exact one. The error of a
-/// variance is the larger of what the draws say and of what the exact fourth moment and their effective number say: draws
-/// that miss a far place of a thousandth of the mass by chance do not know how far they may be off.
+/// variance is the larger of two estimates, one from the draws, and one from the exact fourth moment and the effective
+/// number of draws: draws that by chance miss a far place with a thousandth of the mass do not know how far they may be
+/// off.
 bool agree(const Draws& draws, const Quadrature& exact);
 
 }  // namespace uq

@@ -21,7 +21,7 @@ std::string missed_maxima(const Target& target, Draws& draws, const SecondCheckO
   }
   data::RandomStream random(options.seed, data::Purpose::second_check);
   const Mixture mixture = fit_mixture(kept, Eigen::VectorXd::Ones(count), random);
-  // Of draws of p, log p - log q is about log Z.
+  // At draws of p, log p - log q is about log Z.
   const double log_evidence = quantile(log_density - mixture.log_densities(kept), 0.5);
   const Scouts scouts = send_scouts(target, random, options.explore);
   Eigen::Index highest = 0;

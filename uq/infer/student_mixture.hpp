@@ -24,28 +24,30 @@ struct MixtureComponent {
 
 struct Mixture {
   std::vector<MixtureComponent> components;
-  int fitted = 0;  ///< of them; one more, if there is, is the wide one
+  int fitted = 0;  ///< components that were fitted; one more, if there is one, is the wide one
   double log_density(const Eigen::VectorXd& x) const;
-  Eigen::VectorXd log_densities(const Eigen::MatrixXd& points) const;  ///< of each row
+  Eigen::VectorXd log_densities(const Eigen::MatrixXd& points) const;  ///< log density of each row
   Eigen::ArrayXXd log_terms(const Eigen::MatrixXd& points) const;      ///< points x components
   Eigen::VectorXd draw(data::RandomStream& random) const;
 };
 
 struct MixtureOptions {
   int components_max = 64;  ///< largest number of components tried
-  int iterations = 60;      ///< of expectation maximisation
+  int iterations = 60;      ///< iterations of expectation maximisation
   double tolerance = 1e-3;  ///< stop when the mean log density rises by less: a thousandth of a proposal's worth
 };
 
-/// Fits to the rows of `points` with non-negative `weights` (any scale). Given what was fitted to much the same points
-/// `before`, goes on from there, and tries no other number of components but the next larger one.
+/// Fits a mixture to the rows of `points` with non-negative `weights` (any scale). Given a mixture `before` that was
+/// fitted to much the same points, it goes on from there, and tries no other number of components but the next larger
+/// one.
 Mixture fit_mixture(const Eigen::MatrixXd& points, const Eigen::VectorXd& weights, data::RandomStream& random,
                     const MixtureOptions& options = {}, const Mixture* before = nullptr);
 
-/// With components at its end that no fit to points moves, whose weights are shares of the whole; at most half of it.
+/// The mixture with components at its end that no fit to points moves. Their weights are shares of the whole, at most
+/// half of it.
 Mixture with_kept(Mixture mixture, const std::vector<MixtureComponent>& kept);
 
-/// With further components, whose weights are shares of the whole.
+/// The mixture with further components, whose weights are shares of the whole.
 Mixture with_components(Mixture mixture, const std::vector<MixtureComponent>& added);
 
 }  // namespace uq

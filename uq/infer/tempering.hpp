@@ -22,13 +22,13 @@ struct TemperingOptions {
 
 struct Population {
   Eigen::MatrixXd x;            ///< points x dimension
-  Eigen::VectorXd log_density;  ///< of p
+  Eigen::VectorXd log_density;  ///< log density of p
   int steps = 0;
-  bool reached = false;  ///< b came to 1
+  bool reached = false;  ///< whether b came to 1
   std::int64_t evaluations = 0;
 };
 
-/// From reference draws, of which there may be more than the population holds.
+/// Reference draws from which tempering starts; there may be more than the population holds.
 struct Starts {
   Eigen::MatrixXd x;
   Eigen::VectorXd log_density;

@@ -1,5 +1,5 @@
 #pragma once
-// A target on the whole space: each bounded coordinate by a map whose Jacobian enters the density.
+// A target on the whole space. Each bounded coordinate is mapped there, and the map's Jacobian enters the density.
 //   both ends finite  x = l + (h - l) s(z),  s = 1 / (1 + exp(-z)),  log dx/dz = log(h - l) + log s + log(1 - s)
 //   one end finite    x = l + exp(z)  or  x = h - exp(z),            log dx/dz = z
 //   neither           x = z

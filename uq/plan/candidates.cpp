@@ -117,7 +117,7 @@ class Usual {
  private:
   /// Settings at which the case's data were taken.
   struct Observed {
-    const std::set<std::vector<double>>&of_any, &of_this;  ///< of any output, of the one asked for
+    const std::set<std::vector<double>>&of_any, &of_this;  ///< settings of any output, and of the one asked for
   };
 
   void add_output(const std::string& material, std::size_t output, const Emulator& emulator, const Observed& observed) {
@@ -175,7 +175,7 @@ class Usual {
     });
   }
 
-  /// Of many settings, a dozen.
+  /// The observed settings; a dozen of them where they are many.
   static std::vector<std::vector<double>> few(const std::set<std::vector<double>>& observed) {
     std::vector<std::vector<double>> all(observed.begin(), observed.end());
     constexpr std::size_t most = 12;

@@ -99,8 +99,8 @@ const data::ObservationSet* usual_reading(const Study& study, std::size_t case_i
   return found;
 }
 
-/// How well the settings of further readings of a material are known: as those of the case's own, or as the study says of its
-/// controls. A new reading is set anew, so no error of it is one of the case's unknowns.
+/// How well the settings of further readings of a material are known: as those of the case's own, or as the study says
+/// of its controls. A new reading is set anew, so no error of it is one of the case's unknowns.
 std::vector<data::SettingError> setting_errors_of(const Study& study, std::size_t case_index,
                                                   const std::string& material) {
   std::vector<data::SettingError> errors;
@@ -117,8 +117,8 @@ std::vector<data::SettingError> setting_errors_of(const Study& study, std::size_
   return errors;
 }
 
-/// A set for readings of `output` that no set of the case has a place for: of the candidate's meter, or of the one that has
-/// read the output.
+/// A set for readings of `output` that no set of the case has a place for: of the candidate's meter, or of the one that
+/// has read the output.
 data::ObservationSet new_set(const Study& study, std::size_t case_index, const Candidate& candidate, std::size_t output,
                              std::string name) {
   data::ObservationSet set{.name = std::move(name), .material = candidate.material, .outputs = {output}};
@@ -143,7 +143,7 @@ data::ObservationSet new_set(const Study& study, std::size_t case_index, const C
   return set;
 }
 
-/// Of a planned point: an index into the candidates, and one into the candidate's outputs.
+/// Where a planned point belongs: an index into the candidates, and one into the candidate's outputs.
 struct Home {
   std::size_t candidate = 0, column = 0;
 };

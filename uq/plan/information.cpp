@@ -78,7 +78,7 @@ double mean_log(const Sums& sums, const Part& part) {
   return total / static_cast<double>(used);
 }
 
-/// What all draws say of the readings, and what each half says of its own.
+/// The densities of the readings by all draws, and by each half of its own readings.
 struct Densities {
   Sums all, halves;
 };
@@ -90,7 +90,7 @@ double extrapolated(const Densities& densities, Index left_out) {
          0.5 * mean_log(densities.halves, {blocks / 2, blocks, left_out});
 }
 
-/// By how much the extrapolation through all, halves and quarters is more than that through all and halves.
+/// The excess of the extrapolation through all, halves and quarters over that through all and halves.
 double next_order(const Sums& sums) {
   const auto parts = [&](Index count) {
     double sum = 0.0;

@@ -1,10 +1,10 @@
 #pragma once
-// How much a reading is expected to teach: the information, in nats, that y gives of all unknowns or of one of them.
+// The expected information of a reading y, in nats, about all unknowns or about one of them.
 // Nothing here knows of studies: an Ensemble is draws of the unknowns with the normal law of the reading given each.
 //
-// Of all unknowns theta (D. V. Lindley, Ann. Math. Stat. 27:986 (1956)):
+// About all unknowns theta (D. V. Lindley, Ann. Math. Stat. 27:986 (1956)):
 //   I(theta; y) = E [ log p(y | theta) - log p(y) ],
-// p(y) estimated by the mean of p(y | theta_j) over the other draws, and of one of them, the rest integrated out:
+// with p(y) estimated by the mean of p(y | theta_j) over the other draws. About one of them, the rest integrated out:
 //   I(theta_k; y) = E [ log p(y | theta_k) - log p(y) ].
 // p(y | theta_k) is a conditional density, and any other normalised density in its place gives less on average (D.
 // Barber & F. Agakov, NIPS 16 (2003); A. Foster et al., NeurIPS 32 (2019)), so the best of several is taken. Each is a
@@ -21,8 +21,8 @@
 // the mean of those from either half of the draws is free of that term (M. Quenouille, Biometrika 43:353 (1956)), for
 // independent draws and for nets of quasi-random ones alike. A correction above a tenth of a nat is not small, and is
 // stated as the error. The error of independent draws is the delete-a-block jackknife's; that of quasi-random ones
-// comes from repeats with other scramblings (`combined`). Repeats share the bias that is left, a term over n^2: the next
-// order, from quarters of the draws, takes it off, and what it took off joins the error.
+// comes from repeats with other scramblings (`combined`). Repeats share the bias that is left, a term over n^2: the
+// next order, from quarters of the draws, takes it off, and what it took off joins the error.
 #include <Eigen/Dense>
 #include <cstdint>
 #include <vector>
@@ -42,7 +42,7 @@ struct Ensemble {
 /// A number with the half-width of its 95 % interval.
 struct Estimate {
   double value = 0.0, error = 0.0;
-  double remainder = 0.0;  ///< by which the next order of the extrapolation differs; of the total alone
+  double remainder = 0.0;  ///< difference of the next order of the extrapolation; only set for the total
 };
 
 struct InformationAbout {
@@ -61,10 +61,10 @@ struct InformationOptions {
   Eigen::MatrixXd noise = {};
 };
 
-/// Needs at least 60 draws. Work: draws squared, times readings squared.
+/// The information of an ensemble's reading. It needs at least 60 draws. Work: draws squared, times readings squared.
 Information information(const Ensemble& ensemble, const InformationOptions& options = {});
 
-/// The mean of independent estimates of the same, with Student's error.
+/// The mean of independent estimates of the same information, with Student's error.
 Information combined(const std::vector<Information>& repeats);
 
 /// I(theta; y) where both are finite: rows theta (weights `prior`), columns y, entries p(y | theta). Exact.

@@ -71,7 +71,8 @@ PlanCandidate describe(const PlanBasis& basis, std::size_t i) {
   return one;
 }
 
-/// By information about the parameter asked for per cost; what need not mean the same in the powder comes last.
+/// The candidates ranked by information about the parameter asked for per cost. Candidates whose output need not mean
+/// the same in the powder come last.
 std::vector<std::size_t> ranked(const PlanBasis& basis, const std::vector<PlanCandidate>& all) {
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -83,7 +84,8 @@ std::vector<std::size_t> ranked(const PlanBasis& basis, const std::vector<PlanCa
   return order;
 }
 
-/// Of the best candidates, of the best reading made again and of the best set of settings: how many it takes.
+/// Counts the readings that are needed of the best candidates, of the best reading made again and of the best set of
+/// settings.
 void count_readings(const PlanBasis& basis, std::vector<PlanCandidate>& all, const std::vector<std::size_t>& order) {
   std::vector<std::size_t> asked(
       order.begin(), order.begin() + static_cast<std::ptrdiff_t>(std::min(asked_for_repeats, order.size())));

@@ -3,7 +3,7 @@
 // of the verdict; how many readings it takes; several candidates together.
 //   candidates (candidates.hpp) -> laws of their readings (outlook.hpp) -> information (information.hpp)
 //   -> words afterwards (forecast.hpp) -> ranking and batches -> PlanReport (uq/findings/results.hpp)
-// All is averaged over the posterior, or, before any measurement, over the prior; never at a point.
+// All numbers are averaged over the posterior, or, before any measurement, over the prior; never taken at a point.
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -29,8 +29,8 @@ struct PlanOptions {
   std::function<void(double share)> progress = {};
 };
 
-/// Throws data::InputError: 65 where the case does not fit its data, or has no draws; 78 for an unknown parameter or a
-/// candidate that cannot be.
+/// Makes the plan of a case. Throws data::InputError: 65 where the case does not fit its data, or has no draws; 78 for
+/// an unknown parameter or a candidate that cannot be.
 PlanReport make_plan(const data::Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
                      const SampledCase& sampled, const data::PlanSection& section, const PlanOptions& options);
 

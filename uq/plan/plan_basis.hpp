@@ -1,5 +1,5 @@
 #pragma once
-// What a plan for one case stands on: draws of its posterior or prior, the candidates, and the law of every reading that
+// The basis of a plan for one case: draws of its posterior or prior, the candidates, and the law of every reading that
 // they could give.
 #include <Eigen/Dense>
 #include <optional>
@@ -27,23 +27,24 @@ struct PlanBasis {
 
   std::string name_of(int parameter) const;
   const data::Unit& unit_of(int parameter) const;
-  /// What the rows are expected to teach; before a measurement the mean over several scramblings of the prior's draws.
+  /// The information expected from the rows; before a measurement it is the mean over several scramblings of the
+  /// prior's draws.
   Information information_of(const std::vector<Eigen::Index>& rows) const;
-  /// Before the reading, in the study's unit.
+  /// Posterior sd of a parameter before the reading, in the study's unit.
   double sd_now(int parameter) const;
-  void tell(double share) const;  ///< progress
+  void tell(double share) const;  ///< reports progress
 
   const data::Study& study;
   const SampledCase& sampled;
   const PlanOptions& options;
-  Eigen::MatrixXd draws;                ///< of the posterior, in u
+  Eigen::MatrixXd draws;                ///< draws of the posterior, in u
   Eigen::VectorXd centre;               ///< in u: the best fit, or the prior's means
   std::optional<Identification> found;  ///< none before a measurement
   int about = 0;                        ///< the parameter asked for
   std::vector<Candidate> candidates;
   ExtendedCase extended;
   std::vector<Outlook> outlooks;       ///< one, or one for each scrambling of the prior's draws
-  std::vector<Eigen::MatrixXd> noise;  ///< of each outlook's readings; none: the information draws its own
+  std::vector<Eigen::MatrixXd> noise;  ///< noise of each outlook's readings; none: the information draws its own
   std::optional<Forecast> forecast;    ///< none before a measurement
 
  private:

@@ -25,7 +25,7 @@ double cost_of(const PlanBasis& basis, const std::vector<std::size_t>& members) 
   for (const std::size_t i : members) sum += basis.candidates[i].cost;
   return sum;
 }
-/// With `left` for members that are still to be chosen.
+/// Whether the budget pays for these members, with `left` kept for members that are still to be chosen.
 bool affordable(const PlanBasis& basis, const std::vector<std::size_t>& members, double left) {
   return !basis.options.budget || cost_of(basis, members) + left <= *basis.options.budget * (1.0 + 1e-9);
 }
@@ -57,8 +57,8 @@ std::optional<std::size_t> best_at(const PlanBasis& basis, std::vector<std::size
   return static_cast<std::size_t>(best - value.begin());
 }
 
-/// Adds the best member beside those that are there, until there are `size`; each leaves what the cheapest of the rest cost.
-/// Nothing: the budget does not reach so far.
+/// Adds the best member beside those that are there, until there are `size`; each leaves what the cheapest of the rest
+/// cost. Nothing: the budget does not reach so far.
 std::optional<std::vector<std::size_t>> greedily(const PlanBasis& basis, std::vector<std::size_t> members, int size) {
   double cheapest = HUGE_VAL;
   for (const Candidate& one : basis.candidates)

@@ -1,5 +1,5 @@
 #pragma once
-// Candidates that are measured together.
+// Batches: candidates that are measured together.
 #include <vector>
 
 #include "uq/findings/results.hpp"
@@ -7,9 +7,9 @@
 
 namespace uq::plan {
 
-/// The best set of each size up to PlanOptions::batch that the budget allows: picked one after the other, then each
-/// exchanged for a better one beside the others, twice at most. The exchanged set counts only where it teaches more by all
-/// of the draws, since the search asks some of them.
+/// The best set of each size up to PlanOptions::batch that the budget allows. Candidates are picked one after the
+/// other, then each is exchanged for a better one beside the others, twice at most. The exchanged set counts only where
+/// it teaches more by all of the draws, since the search uses only some of them.
 std::vector<PlanBatch> batches_of(const PlanBasis& basis);
 
 }  // namespace uq::plan

@@ -12,7 +12,7 @@
 namespace uq::plan {
 namespace {
 
-/// With as many digits as it takes to tell the width now from that afterwards, three at most.
+/// A width in words, with as many digits as tell the width now from the width afterwards, three at most.
 std::string width(const PlannedParameter& parameter, double sd) {
   const bool two = fmt::format("{:.2g}", parameter.sd_now) != fmt::format("{:.2g}", parameter.sd_after);
   return fmt::format("{:.{}g}{}", sd, two ? 2 : 3, behind_number(parameter.unit));
@@ -78,14 +78,14 @@ std::string range_text(double low, double high) {
   return high - low < 0.005 * high ? fmt::format("{:.2g}", low) : fmt::format("{:.2g} to {:.2g}", low, high);
 }
 
-/// What all candidates of an output say of one other level of coarse graining.
+/// The range of differences of all candidates of an output from one other level of coarse graining.
 struct LevelRange {
   double low = HUGE_VAL, high = 0.0, doubt = 0.0;
   int agree = 0, unsure = 0, candidates = 0;
   bool measured = false;  ///< the case reads it
 };
 
-/// For each output what the powder's levels of coarse graining say.
+/// One note for each output on what the powder's levels of coarse graining say.
 std::vector<std::string> level_notes(const PlanReport& report) {
   std::map<std::pair<std::string, std::pair<std::string, std::string>>, LevelRange> ranges;
   for (const PlanCandidate& one : report.candidates)

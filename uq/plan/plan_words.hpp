@@ -1,5 +1,5 @@
 #pragma once
-// A plan's answer as a sentence, and what has to be said beside it.
+// The answer of a plan as a sentence, and remarks beside it.
 #include <string>
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace uq::plan {
 /// The answer: what to measure, what it gives, and what gives more. The candidates are ranked.
 std::string sentence_of(const PlanBasis& basis, const PlanReport& report);
 
-/// What the ranking rests on that the user should know.
+/// Assumptions of the ranking that the user should know.
 std::vector<std::string> notes_of(const PlanBasis& basis, const PlanReport& report);
 
 /// The error that a reading of the candidate is taken to have: "2 % and 0.1 mN m".

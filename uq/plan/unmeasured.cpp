@@ -33,7 +33,7 @@ double mean_at(const data::Study& study, const Emulator& emulator, const std::ve
   return emulator.predict(point).mean[0];
 }
 
-/// One reading of the first output in the middle of the runs, for a case that observes nothing.
+/// Gives a case that observes nothing one reading of the first output in the middle of the runs.
 void assume_reading(data::Study& study, const std::vector<Emulator>& emulators, data::CalibrationCase& item) {
   constexpr std::size_t output = 0;
   const auto emulator = std::find_if(emulators.begin(), emulators.end(), [&](const Emulator& one) {

@@ -12,10 +12,10 @@ struct BetaShapes {
 };
 
 double beta_cdf(double share, BetaShapes shapes);
-/// 1 - cdf without its cancellation.
+/// The upper tail 1 - cdf, without the cancellation of this difference.
 double beta_upper(double share, BetaShapes shapes);
 double beta_quantile(double probability, BetaShapes shapes);
-/// Of the density, at a share that is kept a rounding error away from the ends.
+/// Log of the density, at a share that is kept a rounding error away from the ends.
 double beta_log_density(double share, BetaShapes shapes);
 
 }  // namespace uq

@@ -125,7 +125,7 @@ class Builder {
     for (const auto& [name, unknown] : found) add_nuisance(model, home_of(unknown), name, unknown);
   }
 
-  /// Of an unknown that a measurement has.
+  /// The home of an unknown that a measurement has.
   static Home home_of(const data::Nuisance& unknown) { return {nullptr, unknown.parameter.name}; }
 
   const Emulator* find_emulator(const std::string& material, std::size_t output) const {

@@ -1,5 +1,5 @@
 #pragma once
-// What a study knows of a meter and of the settings of one observation set, as part of a group's Measurement.
+// A study's knowledge of a meter and of the settings of one observation set, made into a part of a group's Measurement.
 #include <Eigen/Core>
 #include <vector>
 
@@ -8,21 +8,21 @@
 
 namespace uq {
 
-/// Rows of one output of one set, the last of their group.
+/// The rows of one output of one set. They are the last rows of their group.
 struct SetRows {
   const data::ObservationSet& set;
-  std::size_t output = 0;  ///< in Study::outputs
+  std::size_t output = 0;  ///< index into Study::outputs
   Eigen::Index first = 0;
-  const std::vector<std::size_t>& points;  ///< of the set, by row: those at which the output was measured
+  const std::vector<std::size_t>& points;  ///< by row, the points of the set at which the output was measured
 };
 
-/// One of the model's unknowns that act on them, of the case or of the set.
+/// One of the model's unknowns, of the case or of the set, that acts on the rows.
 struct Acting {
   data::Nuisance nuisance;
   int unknown = -1;
 };
 
-/// Adds to group.measurement; says what the study asks and the runs cannot tell.
+/// Adds the rows to group.measurement. Returns what the study asks and the runs cannot tell.
 std::vector<data::Problem> add_measurement(RowGroup& group, const data::Study& study, const SetRows& rows,
                                            const std::vector<Acting>& unknowns);
 

@@ -1,7 +1,8 @@
 #pragma once
-// How much of a posterior's width is held by errors that repeated readings share: a meter's gain or zero, the rig's scale, a
-// setting known to an error, a discrepancy. Neither repeats nor more accurate readings take that part away, so that
-// another remedy is needed: to find that error by itself. (A setting's error averages out over other settings.)
+// The share of a posterior's width that is held by errors which repeated readings share: a meter's gain or zero, the
+// rig's scale, a setting known to an error, a discrepancy. Neither repeats nor more accurate readings take that part
+// away, so another remedy is needed: to find that error by itself. (A setting's error averages out over other
+// settings.)
 //
 // At each of some draws u of the posterior the model is taken as linear. With J the slopes of the predicted data times
 // the priors' sds P, and S the data's covariance without what the sampled nuisances do,
@@ -21,7 +22,7 @@ namespace uq {
 /// The errors of the case that repeated readings share.
 std::vector<CommonError> shared_errors(const CaseModel& model);
 
-/// Of each of the case's own parameters; shares of zero where repeats share no error.
+/// The share of each of the case's own parameters; zero where repeats share no error.
 /// `draws`: rows in u, of the model's posterior.
 std::vector<CommonShare> common_shares(const CaseModel& model, const Eigen::MatrixXd& draws);
 

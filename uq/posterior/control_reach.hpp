@@ -5,12 +5,12 @@
 
 namespace uq {
 
-/// How far beyond the runs of a material, as a share of a control's range, a reading may lie. A scrambled design of a few
-/// dozen runs stops several percent short of its range's ends, and the surrogate's variance covers that; further out it
-/// extrapolates.
+/// The distance beyond the runs of a material, as a share of a control's range, at which a reading may lie. A scrambled
+/// design of a few dozen runs stops several percent short of its range's ends, and the surrogate's variance covers
+/// that; further out it extrapolates.
 inline constexpr double control_reach = 0.1;
 
-/// Whether a value is no further from runs that span `runs` [SI].
+/// Whether a value lies within this reach of runs that span `runs` [SI].
 inline bool within_reach(const data::Control& control, double value, const std::pair<double, double>& runs) {
   const data::Axis axis = control.axis();
   const double u = axis.to_unit(value);

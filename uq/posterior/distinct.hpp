@@ -16,17 +16,17 @@ void pool_rows(CaseModel& model);
 /// The pooled model where there is one, else the model itself.
 const CaseModel& distinct_rows(const CaseModel& model);
 
-/// Of the measured numbers, those that a row of a pooled model stands for each counted.
+/// The number of measured numbers; each reading that a row of a pooled model stands for is counted.
 int number_count(const CaseModel& model);
 
-/// Largest number of different settings of one output and material that a case may have; above, throws
-/// data::InputError (65) that says what to average.
+/// Largest number of different settings of one output and material that a case may have. Above it data::InputError (65)
+/// is thrown that says what to average.
 inline constexpr int settings_max = 400;
 
-/// What the scatter of repeats about their means says, with its slope along the noise's factor.
+/// The log density of the scatter of repeats about their means, with its slope along the noise's factor.
 struct Scatter {
   double log_density = 0.0, chi_squared = 0.0;
-  double slope = 0.0;  ///< of the log density, to u of the factor's unknown
+  double slope = 0.0;  ///< derivative of the log density to u of the factor's unknown
 };
 Scatter scatter_of(const CaseModel& model, const Repeats& repeats, const Eigen::VectorXd& u);
 

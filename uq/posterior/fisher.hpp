@@ -5,7 +5,7 @@
 // direction over the variance that the data alone would leave. Below 1 the data say less than the prior.
 // The collinearity of the columns is 1 / sqrt(smallest eigenvalue of the Gram matrix of S^-1/2 J's unit columns)
 // (Brun et al. 2001).
-// All of it is local, and misleads on curved ridges: the verdicts come from profiles.
+// These numbers are local, and mislead on curved ridges: the verdicts come from profiles.
 #include <Eigen/Dense>
 
 #include "uq/posterior/case_model.hpp"
@@ -17,7 +17,7 @@ struct FisherSpectrum {
   Eigen::MatrixXd directions;   ///< columns, in units of prior sds
   double condition = 0.0;       ///< largest over smallest eigenvalue; infinite when the smallest is zero to rounding
   double collinearity = 1.0;
-  int known_directions = 0;  ///< of all unknowns, nuisances too: eigenvalues above 1
+  int known_directions = 0;  ///< number of eigenvalues above 1, of all unknowns, nuisances too
 };
 
 FisherSpectrum fisher_spectrum(const CaseModel& model, const Eigen::VectorXd& u);

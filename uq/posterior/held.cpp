@@ -12,8 +12,8 @@ namespace {
 
 /// A side's quadratic form in the surrogate's error of one group's rows.
 struct Side {
-  Eigen::MatrixXd rows;       ///< of the emulator
-  Eigen::MatrixXd jacobian;   ///< of the readings, columns of the free unknowns
+  Eigen::MatrixXd rows;       ///< rows at which the emulator is asked
+  Eigen::MatrixXd jacobian;   ///< slopes of the readings, one column per free unknown
   Eigen::MatrixXd precision;  ///< S^-1
   Eigen::VectorXd residual;   ///< y - mean
 };
@@ -141,7 +141,7 @@ double surrogate_part(const CaseModel& full, const ComparedSide& first, const Co
   form.bottomRightCorner(rows, rows) = 0.5 * b.matrix;
   Eigen::VectorXd slope(2 * rows);
   slope << a.linear, -b.linear;
-  // Of delta given the data: covariance (C^-1 + E)^-1, E the first side's form; mean that times E r.
+  // The law of delta given the data: covariance (C^-1 + E)^-1, E the first side's form; mean this covariance times E r.
   Eigen::MatrixXd seen = Eigen::MatrixXd::Identity(2 * rows, 2 * rows);
   seen.leftCols(rows) += covariance.leftCols(rows) * a.matrix;
   const Eigen::MatrixXd left = seen.partialPivLu().solve(covariance);

@@ -6,7 +6,8 @@
 //
 // What a surrogate's error makes of a Bayes factor. Both evidences integrate the surrogate's functions f out; with f
 // known the factor would be another. Let f = mean + delta, delta ~ N(0, C) jointly at the rows of both sides' most
-// likely points, with the response linear around each of them (J, columns of the free unknowns). A side's log evidence is
+// likely points, with the response linear around each of them (J, columns of the free unknowns). A side's log evidence
+// is
 //   ln Z(delta) = -1/2 (r - delta)' M (r - delta) + const,   r = y - mean,
 //   M = S^-1 - S^-1 J (J' S^-1 J + I)^-1 J' S^-1,            S: the measurement's covariance,
 // I for the priors, which are about as wide as the unit cube. The data say something of delta, too: given them and the
@@ -21,10 +22,10 @@
 
 namespace uq {
 
-/// `held`: unknowns and their values in u. At least one unknown must be left.
+/// The case's posterior over the others. `held`: unknowns and their values in u. At least one unknown must be left.
 Target held_target(const std::shared_ptr<const CaseModel>& model, const std::vector<Held>& held);
 
-/// Points of all unknowns from points of the rest.
+/// Points of all unknowns, made from points of the unknowns that are left.
 Eigen::MatrixXd with_held(const Eigen::MatrixXd& rest, const std::vector<Held>& held);
 
 /// One side of a comparison.

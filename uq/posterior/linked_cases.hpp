@@ -1,6 +1,6 @@
 #pragma once
-// The cases that are sampled as one: the wanted case and those whose posteriors it takes (uq/posterior/case_model.hpp, linked
-// cases), and where in them an unknown is at home. A posterior taken with `cut` brings its law, not its case.
+// The cases that are sampled as one: the wanted case and those whose posteriors it takes (uq/posterior/case_model.hpp,
+// linked cases), and where in them an unknown is at home. A posterior taken with `cut` brings its law, not its case.
 #include <string>
 #include <vector>
 
@@ -9,7 +9,8 @@
 
 namespace uq {
 
-/// Case that an unknown belongs to, links followed, and its name there; no case: the whole study's.
+/// The case that an unknown belongs to, with links followed, and its name there. No case: it belongs to the whole
+/// study.
 struct Home {
   const data::CalibrationCase* owner = nullptr;
   std::string name;
@@ -18,17 +19,18 @@ struct Home {
 
 class LinkedCases {
  public:
-  /// Both must outlive the object.
+  /// Follows the links of a case. Study and case must outlive the object.
   LinkedCases(const data::Study& study, const data::CalibrationCase& wanted);
 
   const std::vector<const data::CalibrationCase*>& cases() const { return cases_; }  ///< the wanted one first
-  /// Circles, posteriors that do not exist, cuts at one remove. The functions below need that there are none.
+  /// Problems: circles, posteriors that do not exist, a cut that is reached through another case. The functions below
+  /// need that there are none.
   const std::vector<data::Problem>& problems() const { return problems_; }
 
-  /// Of a parameter or nuisance of a case, as the case states it.
+  /// The prior of a parameter or nuisance of a case, as the case states it.
   const data::Prior& prior_of(const data::CalibrationCase& item, const std::string& name) const;
   Home home(const data::CalibrationCase& item, const std::string& name) const;
-  /// The density that an unknown had before any data: through cuts, too.
+  /// The density that an unknown had before any data, traced through cuts, too.
   const data::Prior& first_prior(const data::CalibrationCase& item, const std::string& name) const;
   const data::Nuisance& first_nuisance(const data::CalibrationCase& item, const std::string& name) const;
 

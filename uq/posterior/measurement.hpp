@@ -24,22 +24,22 @@ namespace uq {
 
 /// A control's error in one observation set.
 struct SettingShift {
-  std::size_t control = 0;  ///< in Study::controls
-  int column = 0;           ///< of the emulator's inputs
+  std::size_t control = 0;  ///< index into Study::controls
+  int column = 0;           ///< column of the emulator's inputs
   Eigen::VectorXd error;    ///< per row of the set, in unit-cube lengths
-  Eigen::VectorXd level;    ///< per row: rows of one level share the error
+  Eigen::VectorXd level;    ///< level of each row; rows of one level share the error
 };
 
-/// 1 where a row's level is a column's, 0 elsewhere.
+/// A matrix that is 1 where a row's level equals a column's level, 0 elsewhere.
 Eigen::MatrixXd same_level(const Eigen::VectorXd& rows, const Eigen::VectorXd& columns);
 
 /// Rows of one observation set in a group.
 struct ReadSet {
   Eigen::Index first = 0, count = 0;
-  double factor = 1.0;           ///< what is fixed of the scale
+  double factor = 1.0;           ///< fixed part of the scale
   std::vector<int> factors;      ///< unknowns that multiply: scale, gains
   std::vector<int> offsets;      ///< unknowns that add
-  int noise = -1;                ///< unknown; -1: the stated standard errors
+  int noise = -1;                ///< unknown of the noise; -1: the stated standard errors hold
   bool noise_is_sd = false;      ///< the unknown replaces the standard errors, else multiplies them
   double common_absolute = 0.0;  ///< SI
   double common_relative = 0.0;
@@ -54,12 +54,12 @@ struct DiscrepancyRows {
   Eigen::MatrixXd controls;  ///< rows x controls, in their ranges
 };
 
-/// Of a group; empty where the numbers are the emulator's output with independent errors.
+/// The measurement of a group. It is empty where the numbers are the emulator's output with independent errors.
 struct Measurement {
   std::vector<ReadSet> sets;
   std::vector<DiscrepancyRows> discrepancies;
   bool plain() const { return sets.empty() && discrepancies.empty(); }
-  /// Copies of the rows, above the rows themselves, at which the emulator is asked: two per uncertain control.
+  /// How many copies of the rows, beside the rows themselves, the emulator is asked at: two per uncertain control.
   int shifts() const;
 };
 
@@ -70,7 +70,8 @@ struct GroupLaw {
   Eigen::VectorXd mean;        ///< SI
   Eigen::MatrixXd covariance;  ///< SI^2, without the noise
   Eigen::VectorXd noise;       ///< SI^2, variances
-  /// SI, what an error of one of a control does: of each set's rows, for each uncertain control, in the order of both.
+  /// SI, effect of one standard error of a control on the rows of a set: for each set and each of its uncertain
+  /// controls, in this order.
   std::vector<Eigen::VectorXd> settings = {};
 };
 
@@ -86,7 +87,8 @@ Meter meter_at(const Measurement& measurement, const std::vector<Unknown>& unkno
 Eigen::VectorXd noise_of(const Measurement& measurement, const std::vector<Unknown>& unknowns,
                          const Eigen::VectorXd& variance, const Eigen::VectorXd& u);
 
-/// `variance`: of the stated standard errors, one per row; `prediction`: at the rows and their shifted copies.
+/// The law of a group's numbers. `variance`: of the stated standard errors, one per row; `prediction`: at the rows and
+/// their shifted copies.
 GroupLaw law_of(const Measurement& measurement, const std::vector<Unknown>& unknowns, const Eigen::VectorXd& variance,
                 const surrogate::Prediction& prediction, const Eigen::VectorXd& u);
 
@@ -97,8 +99,8 @@ struct LawGradient {
   std::vector<Eigen::MatrixXd> covariance;
 };
 
-/// `along_and_u`: indices of the unknowns along which `prediction` has derivatives, in its order, and their values; the
-/// nuisances are added.
+/// The law's derivatives. `along_and_u`: indices of the unknowns along which `prediction` has derivatives, in its
+/// order, and their values; the nuisances are added.
 LawGradient law_gradient(const Measurement& measurement, const std::vector<Unknown>& unknowns,
                          const Eigen::VectorXd& variance, const surrogate::PredictionGradient& prediction,
                          const std::pair<std::vector<int>, Eigen::VectorXd>& along_and_u);

@@ -5,10 +5,10 @@
 
 namespace uq {
 
-/// Corners counter-clockwise; one or two where all points coincide or lie on a line. `points`: one per row.
+/// The hull's corners, counter-clockwise; one or two where all points coincide or lie on a line. `points`: one per row.
 std::vector<Eigen::Vector2d> convex_hull(const Eigen::MatrixXd& points);
 
-/// 0 inside.
+/// The distance of a point to the hull; 0 inside.
 double distance_to_hull(const std::vector<Eigen::Vector2d>& hull, const Eigen::Vector2d& point);
 
 }  // namespace uq

@@ -60,7 +60,7 @@ std::vector<GroupLaw> laws_at(const CaseModel& full, const Eigen::VectorXd& u) {
   return laws;
 }
 
-/// Of all numbers together, where own errors are linked.
+/// Log density of all numbers together, where own errors are linked.
 double log_linked_density(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u) {
   const StackedPrediction stacked = stack(model, laws, u);
   return log_normal(observed(model) - stacked.mean, stacked.total());

@@ -15,7 +15,7 @@ struct GroupSlopes {
   LawGradient slopes;
 };
 
-/// By central differences, for an emulator without a derivative along a common shift.
+/// Slopes by central differences, for an emulator without a derivative along a common shift.
 GroupSlopes differenced(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u) {
   constexpr double step = 1e-5;
   const auto total_at = [&](const Eigen::VectorXd& at) {
@@ -127,8 +127,8 @@ void add_linked(const CaseModel& model, const Eigen::VectorXd& u, Evaluation& su
   add_normal(observed(model) - stacked.mean, stacked.total(), all, sum);
 }
 
-/// With central differences along all unknowns: what a setting's error does to two outputs changes with the predictions'
-/// second derivatives, which no emulator gives.
+/// The likelihood with central differences along all unknowns: what a setting's error does to two outputs changes with
+/// the predictions' second derivatives, which no emulator gives.
 Evaluation differenced_likelihood(const CaseModel& model, const Eigen::VectorXd& u) {
   constexpr double step = 1e-5;
   Evaluation found{.value = log_likelihood(model, u), .gradient = Eigen::VectorXd(u.size())};

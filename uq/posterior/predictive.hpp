@@ -1,5 +1,5 @@
 #pragma once
-// What the posterior says of the data: the check whether the model fits at all, and the bands of the figures.
+// The posterior's predictions of the data: the check whether the model fits at all, and the bands of the figures.
 //
 // Check. The distance of data y from the prediction at u is
 //   T(y, u) = (y - m(u))' S(u)^-1 (y - m(u)),   S: all that is uncertain of y given u.
@@ -26,10 +26,10 @@ struct FitCheck {
 /// `draws`: rows in u.
 FitCheck check_fit(const CaseModel& model, const Eigen::MatrixXd& draws, const Eigen::VectorXd& best);
 
-/// A measured number with its settings, in the study's units; what is predicted of it is still to be said.
+/// A measured number with its settings, in the study's units. Its prediction is still to be filled.
 PredictivePoint observed_point(const data::Study& study, const RowOrigin& from);
 
-/// Own errors with these variances and links from standard normal numbers.
+/// Draws of the numbers' own errors, with these variances and links, from standard normal numbers.
 Eigen::VectorXd own_errors(const Eigen::VectorXd& variance, const std::vector<LinkedErrors>& linked,
                            const Eigen::VectorXd& normal);
 
@@ -55,7 +55,7 @@ Eigen::VectorXd mean_prediction(const CaseModel& model, const Eigen::MatrixXd& d
 /// Whether the case itself observes a set (index in Study::observations), not one linked with it.
 bool is_own_set(const data::Study& study, const CaseModel& model, std::size_t set);
 
-/// At most `count` rows, evenly spaced.
+/// At most `count` of the rows, evenly spaced.
 Eigen::MatrixXd thinned(const Eigen::MatrixXd& draws, Eigen::Index count);
 
 }  // namespace uq

@@ -61,7 +61,7 @@ ScaledPrior::ScaledPrior(const data::Parameter& parameter, const data::Prior& pr
                                         unit.from_si(low), unit.from_si(high), data::behind_number(unit.symbol)),
                             "move the prior's mean or widen its sd or the range"});
   log_mass_ = std::log(mass);
-  // What the range cuts off of the prior as the user stated it, its own bounds included.
+  // The mass that the range leaves of the prior as the user stated it, its own bounds included.
   const bool own_tail = law_cdf(prior.low, false) > 0.5;
   kept_mass_ = std::min(1.0, mass / std::abs(law_cdf(prior.high, own_tail) - law_cdf(prior.low, own_tail)));
   find_moments();

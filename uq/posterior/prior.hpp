@@ -20,7 +20,7 @@ class ScaledPrior {
 
   double low() const { return low_; }    ///< u, support
   double high() const { return high_; }  ///< u
-  double log_density(double u) const;    ///< of u, normalised on the support
+  double log_density(double u) const;    ///< log density of u, normalised on the support
   double slope(double u) const;          ///< d log density / du
   double cdf(double u) const;
   double inverse_cdf(double probability) const;  ///< u
@@ -29,9 +29,9 @@ class ScaledPrior {
   double sd() const { return sd_; }                  ///< of u
   double value_mean() const { return value_mean_; }  ///< of x, SI
   double value_sd() const { return value_sd_; }      ///< of x, SI
-  double kept_mass() const { return kept_mass_; }    ///< of the prior as stated, inside the parameter's range
+  double kept_mass() const { return kept_mass_; }    ///< mass of the stated prior inside the parameter's range
   const data::Parameter& parameter() const { return parameter_; }
-  /// Whether it prefers some values of its range.
+  /// Whether the prior prefers some values of its range.
   bool is_informative() const {
     return prior_.kind != data::PriorKind::uniform && prior_.kind != data::PriorKind::log_uniform;
   }
@@ -39,7 +39,7 @@ class ScaledPrior {
  private:
   double log_density_of_value(double x) const;
   double slope_of_value(double x) const;
-  /// Of the uncut law; upper tail when asked, so that far tails keep their digits.
+  /// The cdf of the uncut law, or its upper tail when asked, so that far tails keep their digits.
   double law_cdf(double x, bool upper) const;
   double law_inverse(double probability, bool upper) const;
   void find_moments();

@@ -40,7 +40,7 @@ Eigen::MatrixXd points_of_ranges(const CaseModel& model, data::RandomStream& ran
   return points;
 }
 
-/// What the predictions at some points come to, per measured number.
+/// The reach of the predictions at some points, per measured number.
 struct Reach {
   Eigen::VectorXd nearest;          ///< distance of the nearest prediction, in its sds
   Eigen::VectorXd lowest, highest;  ///< SI

@@ -6,7 +6,7 @@
 
 namespace uq {
 
-/// Of one observation set, each known by its parameter's name:
+/// The unknowns of one observation set, each known by its parameter's name:
 ///   the machine's scale, where the set is of the machine and [rig] scale is a prior
 ///   METER_OUTPUT_gain    normal about 1, sd the relative common error of a named meter: one for all of its sets
 ///   METER_OUTPUT_offset  normal about 0, sd the absolute one

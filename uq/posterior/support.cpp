@@ -55,7 +55,7 @@ struct Plane {
   Index first = 0, second = 0;
   MatrixXd points;  ///< distinct
   std::vector<Eigen::Vector2d> hull;
-  double radius = 0.0;     ///< of the holes that so many runs leave
+  double radius = 0.0;     ///< radius of the holes that this many runs leave
   Eigen::Array2d regular;  ///< half the mean spacing of each input's values: no hole is narrower than its levels
 };
 
@@ -131,7 +131,7 @@ VectorXd variance_ratio(const Emulator& emulator, const MatrixXd& points) {
   return (variance / emulator.runs->prior_variance).matrix();
 }
 
-/// What one draw meets in one emulator.
+/// The findings of one draw in one emulator.
 struct RunsAround {
   std::vector<bool> outside;               ///< per input: at half of the rows or more
   std::vector<int> gap;                    ///< per input: which gap, or -1
@@ -212,7 +212,8 @@ std::string interval(double low, double high, const std::string& unit) {
   return fmt::format("{:.3g} to {:.3g}{}{}", low, high, unit.empty() ? "" : " ", unit);
 }
 
-/// What is not supported, the greatest share first. `empty`: the inputs in whose plane it is, "friction and rpm".
+/// A sentence on what is not supported, the greatest share first. `empty`: the inputs in whose plane there are no runs,
+/// "friction and rpm".
 std::string sentence_of(const SupportReport& report, const SupportThresholds& t, const std::string& empty) {
   std::vector<std::pair<double, std::string>> reasons;
   const bool several = std::any_of(report.inputs.begin(), report.inputs.end(), [&](const InputSupport& input) {
@@ -246,7 +247,7 @@ std::string sentence_of(const SupportReport& report, const SupportThresholds& t,
 
 /// A candidate for the next run: a draw at an observed setting.
 struct Candidate {
-  VectorXd point;  ///< of the emulator's inputs
+  VectorXd point;  ///< point in the emulator's inputs
   Index row = 0;
 };
 

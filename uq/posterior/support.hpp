@@ -30,8 +30,8 @@ struct SupportThresholds {
   double gap_factor = 5.0, gap_least = 0.15;
   double empty_factor = 1.5;
   double uncertain = 1.0 / 3.0;
-  int draws = 300;     ///< looked at
-  int next_runs = 12;  ///< proposed
+  int draws = 300;     ///< draws that are looked at
+  int next_runs = 12;  ///< runs that are proposed
 };
 
 /// `draws`: rows in u, of all unknowns.
@@ -42,11 +42,11 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
 struct RunsReach {
   double low = 0.0, high = 1.0;
 };
-/// The part that the runs of every emulator cover which depends on the unknown; the whole support where no emulator is learnt
-/// from runs.
+/// The part that the runs of every emulator cover which depends on the unknown; the whole support where no emulator is
+/// learnt from runs.
 RunsReach runs_reach(const CaseModel& model, int unknown, const SupportThresholds& thresholds = {});
 
-/// For each own parameter why no verdict can rest on the surrogates there, or nothing.
+/// For each own parameter, why no verdict can rest on the surrogates there; empty text where one can.
 std::vector<std::string> unsupported_parameters(const CaseModel& model, const SupportReport& support);
 
 /// Why the surrogates that a case rests on carry no verdict; empty where they do.

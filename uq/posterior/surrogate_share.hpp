@@ -1,5 +1,5 @@
 #pragma once
-// How much of a posterior's width is the surrogate's: what would be left if the surrogate's mean were the truth.
+// The surrogate's share of a posterior's width: what would be left if the surrogate's mean were the truth.
 //
 // The draws u_j of the posterior are weighted by the ratio of the likelihoods without and with the surrogate's error,
 //   w_j = N(y; m(u_j), E) / N(y; m(u_j), E + S(u_j)),
@@ -16,19 +16,19 @@
 namespace uq {
 
 struct SurrogateShare {
-  double share = 1.0;          ///< of the posterior variance, of the worst parameter
-  std::string parameter;       ///< that it is of
-  std::vector<double> shares;  ///< of each of the case's own parameters
+  double share = 1.0;          ///< share of the posterior variance, for the worst parameter
+  std::string parameter;       ///< the worst parameter
+  std::vector<double> shares;  ///< share for each of the case's own parameters
   double effective_draws = 0.0;
 };
 
-inline constexpr double least_effective = 20.0;  ///< draws
+inline constexpr double least_effective = 20.0;  ///< least effective number of draws
 
-/// `draws`: rows in u, of the model's posterior, and the model's log likelihood at each.
+/// The surrogate's share. `draws`: rows in u, of the model's posterior, with the model's log likelihood at each.
 SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws,
                                const Eigen::VectorXd& log_likelihood);
 
-/// The same of a thousand of the draws at most: enough for a share to a few per cent.
+/// The share from a thousand of the draws at most: enough for a few per cent.
 SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws);
 
 }  // namespace uq

@@ -17,19 +17,19 @@ struct NormalLaw {
 struct Unknown {
   std::string label;  ///< the parameter's name, with the case's in front for another case's own
   ScaledPrior prior;
-  bool own = true;  ///< a parameter that is free in the case itself; else another's, or a nuisance
-  std::optional<data::NuisanceKind> nuisance = {};  ///< what it is of the measurement; none: a parameter
+  bool own = true;  ///< a parameter that is free in the case itself; false: another case's, or a nuisance
+  std::optional<data::NuisanceKind> nuisance = {};  ///< kind of nuisance of the measurement; none: a parameter
   std::string cut_from = {};                        ///< case whose posterior it has, without feedback
   std::optional<NormalLaw> cut;                     ///< that posterior's moments, known once that case is sampled
 
-  /// A nuisance that acts on the spread of what is read alone, not on its mean.
+  /// Whether it is a nuisance that acts on the spread of readings alone, not on their mean.
   bool only_widens() const {
     using data::NuisanceKind;
     return nuisance && *nuisance != NuisanceKind::offset && *nuisance != NuisanceKind::gain &&
            *nuisance != NuisanceKind::scale && *nuisance != NuisanceKind::setting;
   }
 
-  /// In SI.
+  /// The value in SI at u, and its slope.
   double value(double u) const { return prior.parameter().axis().from_unit(u); }
   double slope(double u) const { return prior.parameter().axis().slope(u); }
 };

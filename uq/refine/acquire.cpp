@@ -56,7 +56,7 @@ Squares squares_of(const Eigen::VectorXd& residual, const Eigen::MatrixXd& total
 /// Covariance of the emulator's values at `rows` with those at `runs`, and among the runs.
 struct Cross {
   Eigen::MatrixXd with_runs, between;
-  Eigen::VectorXd mean;  ///< of the runs
+  Eigen::VectorXd mean;  ///< mean of the runs
 };
 
 Cross cross_covariance(const Emulator& emulator, const Eigen::MatrixXd& rows, const Eigen::MatrixXd& runs) {

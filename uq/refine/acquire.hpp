@@ -1,5 +1,6 @@
 #pragma once
-// Which run sharpens a posterior most: the expected integrated variance of the posterior density (O. Surer, M. Plumlee,
+// The run that sharpens a posterior most, by the expected integrated variance of the posterior density (O. Surer, M.
+// Plumlee,
 // S. M. Wild, "Sequential Bayesian experimental design for calibration of expensive simulation models", Technometrics
 // 66:157 (2024), arXiv 2305.16506), of a batch, with replicates among the candidates (O. Surer, arXiv 2505.03990).
 //
@@ -44,7 +45,7 @@ struct RunPoint {
 /// The emulator's inputs at the points, one row each.
 Eigen::MatrixXd emulator_points(const Emulator& emulator, const std::vector<RunPoint>& points);
 
-/// What a run's value scatters by about the surrogate's function: the variance is absolute + relative * mean^2.
+/// The scatter of a run's value about the surrogate's function: the variance is absolute + relative * mean^2.
 struct RunNoise {
   double absolute = 0.0;  ///< SI^2 of the output
   double relative = 0.0;
@@ -57,7 +58,7 @@ struct ReferencePoints {
 };
 
 struct ReferenceOptions {
-  int draws = 256;  ///< of the posterior
+  int draws = 256;  ///< draws of the posterior
   int prior = 256;  ///< scrambled Sobol points of the prior: where the posterior may yet turn out to be
   std::uint64_t seed = 0;
 };
@@ -71,15 +72,15 @@ ReferencePoints reference_points(const CaseModel& model, const Eigen::MatrixXd& 
 /// The integrated variance of one case's posterior density, and what candidates would take from it.
 class IntegratedVariance {
  public:
-  /// `noise`: of a run, per group of the model.
+  /// Starts without any run added. `noise`: noise of a run, per group of the model.
   IntegratedVariance(const CaseModel& model, const ReferencePoints& reference, const std::vector<RunPoint>& candidates,
                      const std::vector<RunNoise>& noise);
 
-  /// Expected reduction by each candidate beside those already added; share of integral E p^2.
+  /// Expected reduction by each candidate beside the candidates already added; share of integral E p^2.
   Eigen::VectorXd reductions() const;
-  /// Expected integrated variance after those already added; share of integral E p^2, 0 to 1.
+  /// Expected integrated variance after the candidates already added; share of integral E p^2, 0 to 1.
   double variance() const;
-  /// Counts on a run at this candidate from now on.
+  /// Adds a run at this candidate: it is counted on from now on.
   void add(int candidate);
 
  private:

@@ -117,7 +117,7 @@ Candidates candidates_of(const Acquisition& acquisition, const NextRunsOptions& 
     if (std::none_of(distinct.begin(), distinct.end(), [&](const RunPoint& known) { return same_run(known, run); }))
       distinct.push_back(run);
   Candidates found;
-  // Of the points that have runs, as many of each material as are asked for, spread over all of them.
+  // As many points with runs are taken of each material as are asked for, spread over all of them.
   std::vector<std::string> materials;
   for (const RunPoint& point : distinct)
     if (std::find(materials.begin(), materials.end(), point.material) == materials.end())

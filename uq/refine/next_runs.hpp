@@ -37,8 +37,8 @@ struct CandidateOptions {
 struct Acquisition {
   std::vector<CaseState> cases;
   std::vector<RunPoint> existing;                           ///< runs that there are, pending ones included
-  std::function<RunNoise(const Emulator& emulator)> noise;  ///< of one more run
-  std::function<RunPoint(const RunPoint& point)> rounded;   ///< to what can be typed; empty: as it is
+  std::function<RunNoise(const Emulator& emulator)> noise;  ///< noise of one more run
+  std::function<RunPoint(const RunPoint& point)> rounded;   ///< the point in digits that can be typed; empty: as it is
 };
 
 struct NextRunsOptions {
@@ -65,7 +65,7 @@ RunPoint run_at(const RowGroup& group, Eigen::Index row, const Eigen::VectorXd& 
 /// Whether two runs set the same.
 bool same_run(const RunPoint& a, const RunPoint& b);
 
-/// Depends on its arguments alone.
+/// Chooses the next batch. The result depends on the arguments alone.
 Batch next_batch(const Acquisition& acquisition, const NextRunsOptions& options);
 
 }  // namespace uq

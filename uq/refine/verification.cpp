@@ -43,7 +43,7 @@ std::map<std::string, double> values_of(const data::Study& study, const data::Ru
   return values;
 }
 
-/// One output of one material: its values appended, its distance added.
+/// Adds one output of one material: appends its values and adds its distance.
 void add_output(const data::Study& study, const FittedSurrogate& fitted, const std::vector<VerificationRun>& runs,
                 VerificationReport& report) {
   const std::size_t output = fitted.rows.output;

@@ -24,11 +24,11 @@ struct VerificationRun {
   std::string label;
 };
 
-/// `surrogates` must not have seen the runs.
+/// Compares the runs with the surrogates, which must not have seen them.
 VerificationReport verify(const data::Study& study, const std::vector<FittedSurrogate>& surrogates,
                           const std::vector<VerificationRun>& runs);
 
-/// What the runs say, in one sentence or two: that they confirm the posterior, or where they do not.
+/// The outcome in one sentence or two: that the runs confirm the posterior, or where they do not.
 std::string verification_sentence(const VerificationReport& report, const std::string& simulation);
 
 }  // namespace uq

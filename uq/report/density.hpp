@@ -16,17 +16,18 @@ struct PlotBox {
 
 struct DensityGrid {
   std::vector<double> x, y;     ///< cell centres
-  std::vector<double> density;  ///< x.size() * y.size(), x slowest; cells sum to one
+  std::vector<double> density;  ///< x.size() * y.size() cells, x slowest; the cells sum to one
   double level50 = 0.0;         ///< density at the edge of the smallest region that holds half
   double level90 = 0.0;
 };
 
 struct DensityOptions {
-  int cells = 96;                ///< per axis
-  double neighbour_share = 0.2;  ///< of the draws that shape a kernel
+  int cells = 96;                ///< cells per axis
+  double neighbour_share = 0.2;  ///< share of the draws that shape a kernel
 };
 
-/// Draws beyond the box are left out. An empty grid when fewer than 20 are left or they do not vary.
+/// The density on a grid over the box. Draws beyond the box are left out. The grid is empty when fewer than 20 are left
+/// or they do not vary.
 DensityGrid joint_density(const std::vector<double>& x, const std::vector<double>& y, const PlotBox& box,
                           const DensityOptions& options = {});
 

@@ -15,8 +15,8 @@ struct Raw {
   std::string html;
 };
 
-/// Text made safe between tags and inside quoted attributes. Control characters are dropped, line breaks and tabs become
-/// spaces, and what is no UTF-8 becomes U+FFFD.
+/// Text made safe between tags and inside quoted attributes. Control characters are dropped, line breaks and tabs
+/// become spaces, and what is no UTF-8 becomes U+FFFD.
 std::string escape_html(std::string_view text);
 
 class Markup {
@@ -48,7 +48,7 @@ class Element {
   enum class Kind { block, part, void_block };
 
   Element(const char* name, Kind kind) : name_(name), kind_(kind) {}
-  /// An attribute more; none where the value is empty.
+  /// The element with one more attribute; unchanged where the value is empty.
   Element with(const char* attribute, std::string_view value) const;
   Element is(std::string_view classes) const { return with("class", classes); }
 
@@ -56,7 +56,7 @@ class Element {
   Markup operator()(const Child&... children) const {
     return around((Markup() + ... + Markup(children)));
   }
-  /// Nothing around nothing.
+  /// The element around its content; nothing where the content is empty.
   Markup unless_empty(const Markup& content) const { return content.empty() ? Markup() : around(content); }
 
  private:
@@ -66,7 +66,7 @@ class Element {
   Kind kind_;
 };
 
-/// One piece for each of a list: each(notes, tag::li).
+/// One piece of markup for each item of a list: each(notes, tag::li).
 template <class List, class Piece>
 Markup each(const List& list, const Piece& piece) {
   Markup all;

@@ -52,7 +52,7 @@ Observed observed_beside(const CaseReport& result, const PredictiveCurve& curve)
   return observed;
 }
 
-/// Of data that the case has not used. With a second control they need not lie on the curve.
+/// The points of data that the case has not used. With a second control they need not lie on the curve.
 Observed unused_beside(const CaseReport& result, const PredictiveCurve& curve) {
   Observed unused;
   for (const PredictionReport& made : result.predictions)

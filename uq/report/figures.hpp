@@ -11,8 +11,8 @@
 
 namespace uq {
 
-/// The curves to draw torque (or any output) against its control with: those of the case, or, where it has none, curves
-/// through its predictive points at the control that varies most.
+/// The curves by which torque (or any output) is drawn against its control. They are the case's own, or, where it has
+/// none, curves through its predictive points at the control that varies most.
 std::vector<PredictiveCurve> curves_to_draw(const CaseReport& result);
 
 /// Observed points with their errors and the posterior predictive band against one control.
@@ -27,7 +27,7 @@ Figure equivalent_figure(const CaseReport& result, const TradedPair& traded, con
 Figure discrepancy_figure(const CaseReport& result, const DiscrepancyBand& band, const std::string& stem);
 
 /// The joint posterior of two parameters: draws, 50 and 90 % regions, prior box, equivalent points.
-enum class FigureSize { wide, half };  ///< of the page's width
+enum class FigureSize { wide, half };  ///< share of the page's width
 Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t> pair, FigureSize size,
                     const std::string& stem);
 
@@ -44,7 +44,7 @@ Figure profile_figure(const ParameterReport& parameter, const std::string& stem)
 bool has_chains(const CaseReport& result);
 /// One parameter's draws in their order, a line per chain.
 Figure trace_figure(const CaseReport& result, std::size_t parameter, const std::string& stem);
-/// How the ranks of each chain's draws among all spread; level where the chains agree.
+/// The spread of the ranks of each chain's draws among all draws; it is level where the chains agree.
 Figure chain_rank_figure(const CaseReport& result, std::size_t parameter, const std::string& stem);
 /// One parameter's posterior distribution with its median and 90 % interval.
 Figure marginal_figure(const CaseReport& result, std::size_t parameter, const std::string& stem);

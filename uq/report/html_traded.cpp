@@ -101,7 +101,7 @@ Markup joint_figures(const CaseReport& result, const std::string& id, const Cont
   return wide + side_by_side(small);
 }
 
-/// What must stand beside "not traded" where a pair's errors hang together all the same.
+/// The remark beside "not traded" where a pair's errors are strongly correlated all the same.
 std::string correlated(const CaseReport& result) {
   constexpr double much = 0.8;
   std::string text;

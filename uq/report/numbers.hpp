@@ -1,5 +1,5 @@
 #pragma once
-// How the page writes numbers: as uq/findings/wording says, in a page's typography.
+// Numbers as the page writes them: by the rules of uq/findings/wording, in a page's typography.
 #include <fmt/format.h>
 
 #include <string>

@@ -10,10 +10,10 @@
 
 namespace uq::page {
 
-/// Where figures go and what draws them.
+/// The place where figures go, and the options of what draws them.
 struct Context {
   const HtmlOptions& options;
-  std::string figures;  ///< folder
+  std::string figures;  ///< folder of the figures
 };
 
 /// How a cell is set: a number to the right, lengthy words broken anywhere.
@@ -22,14 +22,14 @@ using enum CellKind;
 
 struct Column {
   std::string name;
-  CellKind kind = plain;  ///< of its cells; the heading of numbers is set like them
+  CellKind kind = plain;  ///< kind of the column's cells; the heading of numbers is set like them
 };
 
 struct Cell {
   template <std::convertible_to<Markup> Content>
   Cell(const Content& shown, std::optional<CellKind> other_kind = {}) : content(shown), kind(other_kind) {}
   Markup content;
-  std::optional<CellKind> kind;  ///< where it is not its column's
+  std::optional<CellKind> kind;  ///< kind of the cell where it differs from its column's
 };
 
 struct Table {
@@ -56,10 +56,10 @@ Markup link(const std::string& id, const std::string& words);
 /// A case's place in the page: "case-2-carrier". The index keeps two names with one slug apart.
 std::string case_id(std::size_t index, const CaseReport& result);
 
-// Of a case, `id` as in case_id.
+// The parts of a case; `id` as in case_id.
 /// What is measured beside the model: fit, predictions, discrepancy.
 Markup data_part(const CaseReport& result, const std::string& id, const Context& context);
-/// Its parameters' joint posterior and what is traded.
+/// The joint posterior of the case's parameters, and what is traded.
 Markup joint_part(const CaseReport& result, const std::string& id, const Context& context);
 /// Runs of the simulation at points of the posterior beside the surrogate.
 Markup verification_part(const CaseReport& result, const std::string& id, const Context& context);

@@ -1,5 +1,5 @@
 #pragma once
-// What to measure next, in words: the terminal's table and the part of the page.
+// A plan in words: the terminal's table and the part of the page about what to measure next.
 #include <string>
 
 #include "uq/findings/results.hpp"
@@ -12,7 +12,7 @@ std::string plan_text(const std::string& case_name, const PlanReport& plan);
 /// "identified 82 %, weakly identified 18 %"; empty where the words were not asked.
 std::string words_text(const PlannedParameter& parameter);
 
-/// "4", "never: ...", or "" where it was not asked.
+/// The number of readings in words: "4", "never: ...", or "" where it was not asked.
 std::string readings_text(const PlannedParameter& parameter);
 
 /// The parameter that the plan ranks by, in a list; throws std::out_of_range where it is missing.

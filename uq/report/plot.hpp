@@ -1,5 +1,5 @@
 #pragma once
-// What the report's figures share: blocks of data, axis scales, the look. Used by figure*.cpp.
+// Common parts of the report's figures: blocks of data, axis scales, the look. Used by figure*.cpp.
 #include <array>
 #include <string>
 #include <string_view>
@@ -15,7 +15,7 @@ inline constexpr const char* vermillion = "#D55E00";
 inline constexpr const char* green = "#009E73";
 inline constexpr const char* ink = "#222222";
 inline constexpr const char* grey = "#777777";
-/// Of curves that stand side by side.
+/// The colours of curves that stand side by side.
 inline constexpr std::array colours = {blue, vermillion, green, sky, ink, grey};
 
 /// An axis: the power of ten (a multiple of three) taken out of its numbers, and its label that says so.
@@ -25,7 +25,7 @@ struct Axis {
 };
 Axis axis_for(std::string_view name, std::string_view unit, double largest);
 
-/// "# name", the columns row by row, two blank lines. Rows with a NaN or an infinity are left out.
+/// A block of data: "# name", the columns row by row, two blank lines. Rows with a NaN or an infinity are left out.
 std::string block(std::string_view name, const std::vector<std::vector<double>>& columns);
 
 /// Grid, borders and fonts, the same in every figure; the key above the plot, where it hides no data.
@@ -38,7 +38,7 @@ struct Extent {
   double low = 0.0, high = 1.0;
   bool empty = true;
   void include(double value);
-  /// Widened on both sides by a share of its width; of a point, by a share of its value.
+  /// The extent widened on both sides by a share of its width, or, where it is a point, by a share of its value.
   Extent padded(double share) const;
   double largest() const;
 };

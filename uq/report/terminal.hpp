@@ -1,5 +1,5 @@
 #pragma once
-// What the terminal says after a calibration: the verdicts in words, and where the report is. Plain ASCII from the
+// The terminal's text after a calibration: the verdicts in words, and where the report is. Plain ASCII from the
 // program (names and sentences are passed as they are), at most 96 columns where words allow.
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the words of a case hang on: its parameters' findings, and the same sorted by what is said of them.
+// The facts that decide the words of a case: its parameters' findings, and the same sorted by what is said of them.
 #include <string>
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace uq {
 
-/// Of a case that fits.
+/// The facts of a case that fits.
 struct CaseFacts {
   std::vector<ParameterReport> parameters;
   std::vector<TradedPair> traded;
@@ -25,8 +25,8 @@ struct SortedParameters {
   Names beyond_runs, wanted_runs;  ///< values that go on where no run is, and the runs that would tell
   Names conditional, ends_of;      ///< values that depend on where another's range ends, and whose ranges these are
   double of_structure = 0.0, of_measurement = 0.0, of_surrogate = 0.0, of_range = 0.0, of_common = 0.0;
-  double largest_surrogate = 0.0;  ///< share of one parameter
-  CommonShare largest_common;      ///< of one that is held by such errors, or partly
+  double largest_surrogate = 0.0;  ///< largest share of any one parameter
+  CommonShare largest_common;      ///< of a parameter that is held, at least partly, by common errors
 };
 
 SortedParameters sort_parameters(const std::vector<ParameterReport>& parameters);
@@ -34,7 +34,7 @@ SortedParameters sort_parameters(const std::vector<ParameterReport>& parameters)
 /// Adds a name that is not among the others.
 void add_name(Names& names, const std::string& name);
 
-/// The form that goes with one name, or with several.
+/// The form of words that goes with one name, or with several.
 inline const char* one_or(const Names& names, const char* one, const char* more) {
   return names.size() == 1 ? one : more;
 }

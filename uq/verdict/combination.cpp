@@ -104,7 +104,7 @@ FittedCombination fit_combination(const Eigen::MatrixXd& values, const Eigen::Ve
   const Index m = values.cols();
   FittedCombination best;
   double best_score = std::numeric_limits<double>::infinity();
-  // What a form must win by over the plain ones.
+  // `handicap` is the margin by which a form must win over the plain ones.
   const auto consider = [&](const Eigen::MatrixXd& terms, CombinationForm form, const std::vector<double>& powers,
                             double handicap) {
     const Eigen::VectorXd free = least_varying(terms);
@@ -229,7 +229,7 @@ void round_powers(std::vector<CombinationTerm>& terms) {
   for (CombinationTerm& term : terms) term.power = std::round(100.0 * term.power / reference) / 100.0;
 }
 
-/// What is multiplied first, the plain exponent in front, then what divides.
+/// Writes a product: factors first, the one with the plain exponent in front, then divisors.
 void write_product(const PrintedColumns& columns, CombinationText& out) {
   std::vector<CombinationTerm>& terms = out.written.terms;
   const bool flip = std::all_of(terms.begin(), terms.end(), [](const auto& term) { return term.power < 0.0; });

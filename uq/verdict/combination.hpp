@@ -20,19 +20,19 @@
 namespace uq {
 
 struct CombinationTerm {
-  double power = 1.0;        ///< e_i of a product, p_i of a sum
-  double coefficient = 1.0;  ///< c_i; 1 of a product
+  double power = 1.0;        ///< e_i in a product, p_i in a sum
+  double coefficient = 1.0;  ///< c_i in a sum; 1 in a product
 };
 
 struct FittedCombination {
   CombinationForm form = CombinationForm::none;
   std::vector<CombinationTerm> terms;  ///< one per column
-  double spread = 1.0;                 ///< along the direction, of independent terms
-  double share = 1.0;                  ///< spread over that of the least term: below combination_share it holds
+  double spread = 1.0;                 ///< spread along the direction; 1 for independent terms
+  double share = 1.0;                  ///< spread over that of the least term; it holds below combination_share
   bool exact_numbers = false;          ///< powers or coefficients are small whole numbers
 };
 
-/// Best of the forms for these columns; whether it holds is the caller's question. `ranges`: widths of the columns'
+/// The best of the forms for these columns; whether it holds is the caller's question. `ranges`: widths of the columns'
 /// ranges, by which a value is told from zero.
 FittedCombination fit_combination(const Eigen::MatrixXd& values, const Eigen::VectorXd& ranges);
 
@@ -45,11 +45,11 @@ double filled_share(const Eigen::MatrixXd& values);
 /// How a column is written: its name, or name/(1e-18 J) where units would be mixed.
 struct CombinationColumn {
   std::string name, unit;
-  double typical = 1.0;  ///< size of its values
+  double typical = 1.0;  ///< typical size of the column's values
 };
 struct CombinationText {
   std::string text;           ///< "friction - 0.091 x hamaker/(1e-18 J)"
-  std::string unit;           ///< of its value; empty: a pure number
+  std::string unit;           ///< unit of the text's value; empty: a pure number
   double scale = 1.0;         ///< value in the text = scale * evaluate(...)
   FittedCombination written;  ///< with coefficients as printed, values in the columns' own units
 };

@@ -1,7 +1,8 @@
 #pragma once
-// Where all observation sets of a case together fit nowhere: does each fit on its own? Then they contradict each other,
-// and no better model of one of them would help. A set on its own: the case with the other sets' standard errors 10^4
-// times larger, at its largest likelihood, with the chi-squared tail of uq/posterior/predictive.hpp's best fit.
+// A check of the observation sets of a case that together fit nowhere: does each fit on its own? If each does, they
+// contradict each other, and no better model of one of them would help. A set on its own is the case with the other
+// sets' standard errors 10^4 times larger, at its largest likelihood, with the chi-squared tail of
+// uq/posterior/predictive.hpp's best fit.
 #include <Eigen/Dense>
 #include <optional>
 #include <string>
@@ -14,14 +15,14 @@ namespace uq {
 
 struct SetFit {
   std::string name;         ///< of the observation set
-  double best_fit_p = 1.0;  ///< of its rows alone
+  double best_fit_p = 1.0;  ///< p of the best fit to its rows alone
 };
 
-/// One per observation set, linked cases' too; none where there is only one, or where an unknown noise stands in place
-/// of the standard errors. `start`: the best fit to all.
+/// The fits, one per observation set, linked cases' sets too. None where there is only one set, or where an unknown
+/// noise stands in place of the standard errors. `start`: the best fit to all.
 std::vector<SetFit> fits_alone(const data::Study& study, const CaseModel& model, const Eigen::VectorXd& start);
 
-/// What follows, for a case that does not fit: which sets fit on their own, and what to do. Empty without sets.
+/// The consequence for a case that does not fit: which sets fit on their own, and what to do. Empty without sets.
 struct Contradiction {
   std::string finding, remedy;
 };

@@ -87,7 +87,7 @@ ParameterReport describe_draws(const Unknown& unknown, const Eigen::VectorXd& u,
   return report;
 }
 
-/// What decides the word, but for influence.
+/// The facts that decide the word, except its influence.
 WordFacts facts_of(const ParameterReport& report, const Profile& profile, const Unknown& unknown) {
   double within = 0.0;
   for (const ValueRange& part : report.intervals) within += part.weight * part.sd * part.sd;
@@ -103,8 +103,8 @@ WordFacts facts_of(const ParameterReport& report, const Profile& profile, const 
               profile.parts.size() > 1 ? 1.0 - within / (report.prior_sd * report.prior_sd) : report.contraction};
 }
 
-/// The data exclude a part of its range, the surrogate's error counted in: it acts, even where the surrogate cannot tell
-/// by how much over the whole range.
+/// The data exclude a part of its range, the surrogate's error counted in: it acts, even where the surrogate cannot
+/// tell by how much over the whole range.
 bool limited(const WordFacts& facts) { return !(facts.open_low && facts.open_high); }
 
 /// Why each open or wide interval is as it is; what is traded with a structural one is so, too.
@@ -150,7 +150,7 @@ Eigen::VectorXd mode_of(const CaseModel& model, const Eigen::MatrixXd& guiding, 
   return maximise(target.log_density_gradient, {target.lower, target.upper}, starts).x;
 }
 
-/// What is known of a parameter before its structure is asked for.
+/// The evidence about a parameter before its structure is asked for.
 ParameterEvidence evidence_of(const ParameterReport& report, const Profile& profile, const Unknown& unknown,
                               const Influence& influence, const VerdictThresholds& thresholds) {
   ParameterEvidence one{.name = report.name,

@@ -1,5 +1,5 @@
 #pragma once
-// What a case's posterior and likelihood say of each of its parameters: the way from draws to verdicts.
+// The way from draws to verdicts: what a case's posterior and likelihood say of each of its parameters.
 //   profiles and influence (profile.hpp, influence.hpp) -> facts -> words (verdict.hpp)
 //   -> what is traded (traded.hpp), why (structure.hpp), how sure (repeats.hpp) -> sentences (verdict_words.hpp)
 #include <Eigen/Dense>
@@ -21,25 +21,25 @@ namespace uq {
 
 struct IdentifyOptions {
   VerdictThresholds thresholds = {};
-  int even_points = 17;                       ///< of a profile, over the support
-  int near_points = 16;                       ///< of a profile, where the draws lie
-  RepeatOptions repeats = {};                 ///< of the data, for the words' probabilities
+  int even_points = 17;                       ///< points of a profile, over the support
+  int near_points = 16;                       ///< points of a profile, where the draws lie
+  RepeatOptions repeats = {};                 ///< repeats of the data, for the words' probabilities
   std::vector<std::string> unsupported = {};  ///< per own parameter (ParameterEvidence); empty: all are supported
 };
 
 struct Identification {
   std::vector<ParameterReport> parameters;  ///< the case's own, in its order; all but the chains' diagnostics filled
-  std::vector<Profile> profiles;            ///< of the same
-  std::vector<WordFacts> facts;             ///< of the same: what decided their words
-  std::vector<Influence> influence;         ///< of all unknowns
-  Maximum best_fit;                         ///< largest likelihood
+  std::vector<Profile> profiles;            ///< profiles of these parameters
+  std::vector<WordFacts> facts;             ///< facts that decided these parameters' words
+  std::vector<Influence> influence;         ///< influence of all unknowns
+  Maximum best_fit;                         ///< point of largest likelihood
   FisherSpectrum fisher;                    ///< at the best fit
   FitCheck check;
   bool fits = true;
   std::vector<TradedPair> traded;
   std::vector<Mode> modes;                ///< one where the posterior is in one piece
   std::vector<std::string> unvisited;     ///< values that should have draws and have none
-  double surrogate_to_measurement = 0.0;  ///< sd of the one over the other at the best fit, median over rows
+  double surrogate_to_measurement = 0.0;  ///< sd of surrogate over sd of measurement at the best fit, median over rows
 };
 
 /// `draws`: rows in u, from the posterior of `model`.

@@ -22,8 +22,8 @@ Eigen::MatrixXd with_spreads_of(const CaseModel& model, const Eigen::VectorXd& b
   return points;
 }
 
-/// What is known of each unknown beside the data, as a precision; a weak spring for one of which nothing is, so that a
-/// direction that the data leave open stays finite.
+/// The precision by which each unknown is known beside the data. An unknown of which nothing is known gets a weak
+/// spring, so that a direction that the data leave open stays finite.
 Eigen::VectorXd precisions(const CaseModel& model) {
   constexpr double weak = 1e-4;
   Eigen::VectorXd found(model.dimension());

@@ -38,7 +38,7 @@ double log_mass(const CaseModel& model, const Eigen::VectorXd& u) {
   return log_likelihood(model, u) + log_prior(model, u) - factor.matrixLLT().diagonal().array().log().sum();
 }
 
-/// One output's emulator with the row whose other controls stay.
+/// An output's emulator, with the row whose other controls stay.
 struct Place {
   std::size_t group = 0;
   Eigen::Index row = 0;
@@ -51,8 +51,8 @@ struct Parting {
   Place place;
 };
 
-/// Mean and variance, SI, of the reading in one row of a group at u, given the readings in the other rows: an error that
-/// they share with it, such as the meter's, is known as far as they tell it.
+/// Mean and variance, SI, of the reading in one row of a group at u, given the readings in the other rows: an error
+/// that they share with it, such as the meter's, is known as far as they tell it.
 struct Reading {
   double mean = 0.0, variance = 0.0;
 };

@@ -3,7 +3,8 @@
 // slabs; the cells that these make, where draws lie, are the modes. Each has its share of the draws as weight, and a
 // representative: the most likely point of the profiles' paths inside it.
 //
-// What would part them: at each observed output, one control after the other is moved through its range, the others as
+// The measurement that would part the modes is found so: at each observed output, one control after the other is moved
+// through its range, the others as
 // observed, and the largest difference of the modes' predictions is taken, in the measurement's standard errors, beyond
 // what the surrogate's own error may bring about.
 #include <Eigen/Dense>
@@ -18,11 +19,11 @@ namespace uq {
 
 struct Mode {
   double weight = 0.0;
-  Eigen::VectorXd mean, sd;  ///< of the unknowns, u
+  Eigen::VectorXd mean, sd;  ///< mean and sd of the unknowns, u
   Eigen::VectorXd point;     ///< representative, u
 };
 
-/// By falling weight; one where the posterior is in one piece. `draws`: rows in u.
+/// The modes by falling weight; one where the posterior is in one piece. `draws`: rows in u.
 std::vector<Mode> find_modes(const Profiles& all, const Eigen::MatrixXd& draws, const VerdictThresholds& thresholds);
 
 /// Index of the part of a profile that a value belongs to: the nearest.

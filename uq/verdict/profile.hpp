@@ -12,15 +12,16 @@
 //     where the data would have it, the deviance at the end would be at least twice as large;
 //   - the unknown would move there if another could go beyond the end of its range (range_end.hpp);
 //   - no run was made (runs_reach): the deviance there is the surrogate's prior, which nothing has tested;
-//   - only ignorance speaks: up to the end of the range values are unlikely only since the surrogate knows less of them (a
-//     gap among the runs, a corner). With S(u) the data's covariance and N(u) the same without the surrogate's part, the
-//     deviance less the growth of log |S| / |N| from the best fit on stays below the drop there.
+//   - only ignorance speaks: up to the end of the range values are unlikely only since the surrogate knows less of them
+//     (a gap among the runs, a corner). With S(u) the data's covariance and N(u) the same without the surrogate's part,
+//     the deviance less the growth of log |S| / |N| from the best fit on stays below the drop there.
 // An unknown without influence (influence.hpp) pins nothing, and nor does a bound at 0 that nature sets.
 //
-// A hill of the likelihood beyond the drop that holds a share of the posterior (mode_weight) is a part, too, with ends where
-// the deviance has risen by the drop from its own least (hills.hpp).
-// Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take the barrier away,
-// the hole is in doubt, and the interval goes through it. The maximisers form a path along the ridge, if there is one.
+// A hill of the likelihood beyond the drop that holds a share of the posterior (mode_weight) is a part, too, with ends
+// where the deviance has risen by the drop from its own least (hills.hpp).
+// Between two parts the deviance has a barrier. Where an error of two of the surrogate's sds would take the barrier
+// away, the hole is in doubt, and the interval goes through it. The maximisers form a path along the ridge, if there is
+// one.
 #include <Eigen/Dense>
 #include <optional>
 #include <vector>
@@ -45,7 +46,7 @@ struct ProfilePart {
   Eigen::Index best = 0;  ///< its point of least deviance
 };
 
-/// What parts two of them.
+/// The barrier between two parts of the interval.
 struct ProfileBarrier {
   double low = 0.0, high = 0.0;  ///< u
   double deviance = 0.0;         ///< largest in between
@@ -56,8 +57,8 @@ struct Profile {
   int unknown = 0;
   double drop = deviance_95;                          ///< deviance at the interval's ends
   Eigen::VectorXd u;                                  ///< held values, rising
-  Eigen::VectorXd log_likelihood;                     ///< largest at each
-  Eigen::VectorXd deviance;                           ///< from it, once the largest of all profiles is known
+  Eigen::VectorXd log_likelihood;                     ///< largest log likelihood at each
+  Eigen::VectorXd deviance;                           ///< deviance from it, once the largest of all profiles is known
   Eigen::MatrixXd path;                               ///< points x unknowns: the maximiser at each
   std::optional<double> low, high;                    ///< ends of the interval, in u; none: open
   std::optional<int> low_pinned, high_pinned;         ///< unknown at the end of whose range an open side ends
@@ -91,13 +92,14 @@ Profiles profile_likelihood(const CaseModel& model, const Guides& guides, const 
 /// log likelihood of the data and of what calibrated the nuisances.
 Differentiable profiled(const CaseModel& model);
 
-/// The largest of it from each start, with coordinates held. A quasi-Newton search stalls on a thin ridge, where a
-/// nuisance undoes what a parameter does: Gauss-Newton steps, which see the ridge in the data's slopes, go on from there
-/// until they promise less than a thousandth.
+/// The largest value of `profiled` from each start, with coordinates held. A quasi-Newton search stalls on a thin
+/// ridge, where a nuisance undoes what a parameter does: Gauss-Newton steps, which see the ridge in the data's slopes,
+/// go on from there until they promise less than a thousandth.
 Maximum maximise_profiled(const CaseModel& model, const Box& box, const Eigen::MatrixXd& starts,
                           const std::vector<Held>& held = {});
 
-/// From log likelihoods along a path to deviances and to the interval's parts and ends. `draws`: of the posterior, rows in u.
+/// Turns log likelihoods along a path into deviances and the interval's parts and ends. `draws`: draws of the
+/// posterior, rows in u.
 void finish_profile(const CaseModel& model, const Profiles& all, const Eigen::MatrixXd& draws, Profile& profile,
                     const VerdictThresholds& thresholds);
 

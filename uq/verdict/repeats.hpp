@@ -1,5 +1,5 @@
 #pragma once
-// How sure a verdict is of its word: what the words would be if the measurement were made again.
+// The certainty of a verdict's word: what the words would be if the measurement were made again.
 //
 // Repeats are drawn from the posterior predictive, y' = m(u') + S^1/2 z, u' a draw, S the covariance of the data at the
 // best fit. The case is not sampled again. About each point i of a profile's path the model is taken as linear in the
@@ -8,9 +8,9 @@
 //   deviance'_i = |r|^2 - p' (A' A + P)^-1 p + log |S_i| - 2 c_i,   p = A' r + dc_i/du    (less its least over i),
 // c the log density of what calibrated the nuisances, such as a meter's gain: a path may lead far from it.
 // From it come the open sides, the parts, and the contraction: 1 - contraction changes as the variance of
-// prior x exp(-deviance' / 2) does. A hole that two of the surrogate's sds explain is none. What does not hang on the data's
-// noise stays as found: influence, structure, a side that another parameter's range ends. An unknown at the end of its
-// range on the path stays there.
+// prior x exp(-deviance' / 2) does. A hole that two of the surrogate's sds explain is none. What does not hang on the
+// data's noise stays as found: influence, structure, a side that another parameter's range ends. An unknown at the end
+// of its range on the path stays there.
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -24,11 +24,11 @@ namespace uq {
 
 struct RepeatOptions {
   int repeats = 200;
-  int rows_max = 300;  ///< of data; beyond, nothing is repeated
+  int rows_max = 300;  ///< rows of data at most; with more, nothing is repeated
   std::uint64_t seed = 1;
 };
 
-/// Facts of own parameter k, as found, with the draws' share.
+/// The facts of one of the case's own parameters, as found, with the draws' share.
 struct FoundFacts {
   WordFacts facts;
   const Profile* profile = nullptr;
@@ -38,13 +38,13 @@ struct FoundFacts {
 struct PathPoint {
   double u = 0.0;
   double log_prior = 0.0;  ///< of the profiled parameter, there
-  double doubt = 0.0;      ///< of the surrogate, against the best fit, in data errors
+  double doubt = 0.0;      ///< the surrogate's doubt against the best fit, in data errors
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;  ///< without the noise
   Eigen::VectorXd noise;       ///< variances
   std::vector<LinkedErrors> linked_errors;
   Eigen::MatrixXd slopes;                ///< rows x the unknowns that can move
-  Eigen::VectorXd precision;             ///< of their priors
+  Eigen::VectorXd precision;             ///< precisions of these unknowns' priors
   double log_certificates = 0.0;         ///< of what calibrated the nuisances, there
   Eigen::VectorXd pull_of_certificates;  ///< its slope along the unknowns that can move
   bool at_end = false;                   ///< another of the case's parameters stands at the end of its range
@@ -58,11 +58,12 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
 /// Deviances and words along a path, for any data of some of the model's rows.
 class PathWords {
  public:
-  /// `noise_share`: of each row's noise variance: 1 / n for a mean of n readings.
+  /// Prepares the points for some rows. `noise_share`: share of each row's noise variance, 1 / n for a mean of n
+  /// readings.
   PathWords(const std::vector<PathPoint>& points, const std::vector<Eigen::Index>& rows,
             const Eigen::VectorXd& noise_share);
   bool usable() const { return points_.size() >= 3; }
-  /// Less their least; at the points that a covariance could be factored at.
+  /// The deviances less their least, at the points where a covariance could be factored.
   Eigen::VectorXd deviances(const Eigen::VectorXd& y) const;
   /// Whether the interval's low and high end lie where another parameter's range ends, and not this one's data.
   std::pair<bool, bool> ends_by_another(const Eigen::VectorXd& deviance, double drop) const;
@@ -95,7 +96,7 @@ class PathWords {
   std::vector<Local> points_;
 };
 
-/// Per parameter, by falling probability; empty where there are too many rows.
+/// The words' probabilities of each parameter, the largest first; empty where there are too many rows.
 std::vector<std::vector<WordProbability>> repeat_words(const CaseModel& model, const std::vector<FoundFacts>& found,
                                                        const Eigen::MatrixXd& draws, const Eigen::VectorXd& best,
                                                        const VerdictThresholds& thresholds,

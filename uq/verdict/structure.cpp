@@ -37,7 +37,7 @@ Eigen::VectorXd nearest_prediction(const CaseModel& model, const Yardstick& yard
   const Box box{model.lower(), model.upper()};
   const DistanceFrom distance(model, yardstick, best);
   const auto match = [&](const Eigen::VectorXd& u) {
-    // What only widens the spread explains nothing, and stays; what a certificate says of a nuisance counts.
+    // Unknowns that only widen the spread explain nothing, and stay; what a certificate says of a nuisance counts.
     Eigen::VectorXd at = u;
     for (int s = 0; s < model.dimension(); ++s)
       if (model.unknowns[s].only_widens()) at[s] = best[s];

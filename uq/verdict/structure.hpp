@@ -1,5 +1,5 @@
 #pragma once
-// Why an interval is as wide as it is.
+// The reason why an interval is as wide as it is, as far as the model's structure is that reason.
 //
 // Structure. Along the interval of unknown k the others are moved so that the predictions come as near as they can to
 // those of the best fit u* (differences in data errors, influence.hpp):

@@ -152,7 +152,7 @@ TradedPair describe(const CaseModel& model, const Found& found, const Eigen::Mat
     pair.parameters.push_back(model.unknowns[k].label);
     columns.push_back({pair.parameters.back(), parameter.unit.symbol, values.col(k).cwiseAbs().mean()});
   }
-  // Of the members, the two that hang together most.
+  // The two members that are most strongly related.
   std::pair<std::size_t, std::size_t> most{0, 1};
   for (std::size_t a = 0; a < found.subset.size(); ++a)
     for (std::size_t b = a + 1; b < found.subset.size(); ++b) {

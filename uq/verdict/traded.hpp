@@ -1,5 +1,5 @@
 #pragma once
-// Which parameters are traded against each other, and as what combination the data know them.
+// Parameters that are traded against each other, and the combination of them that the data know.
 //
 // Of the parameters that have influence and are not known as separate values, subsets are tried from pairs upwards,
 // each with at least one that is not identified. A subset is traded when the posterior knows a combination of it

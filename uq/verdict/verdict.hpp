@@ -5,15 +5,15 @@
 //   does not fit        the case's posterior predictive p or best-fit p is below its threshold: nothing is identified
 //   not identified      the parameter has no influence (influence.hpp)
 //   several values      the profile interval has several parts, closed on both sides, and within the parts the
-//                       contraction is at least `contraction_weak`; or parts that begin or end where the range does, with
-//                       `contraction_identified`
+//                       contraction is at least `contraction_weak`; or parts that begin or end where the range does,
+//                       with `contraction_identified`
 //   identified          the profile interval is closed on both sides, and contraction is at least
 //                       `contraction_identified`
 //   weakly identified   closed, and contraction is at least `contraction_weak`; or an upper limit: closed above, and
 //                       open below only because the parameter cannot go below its physical bound 0
 //   not identified      anything else
-// The reason, and what can be done about it, is in uq/verdict/reason.hpp and remedies.hpp. Borderline: over repeats of the data
-// (uq/verdict/repeats.hpp) another word has a probability of at least `borderline_probability`.
+// The reason, and what can be done about it, is in uq/verdict/reason.hpp and remedies.hpp. Borderline: over repeats of
+// the data (uq/verdict/repeats.hpp) another word has a probability of at least `borderline_probability`.
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,23 +24,23 @@
 
 namespace uq {
 
-/// Name and value of each, for the report.
+/// Name and value of each threshold, for the report.
 std::vector<std::pair<std::string, std::string>> describe(const VerdictThresholds& thresholds);
 
-/// What decides the word of one parameter in a case that fits.
+/// The facts that decide the word of one parameter in a case that fits.
 struct WordFacts {
   bool influences = true;
-  int parts = 1;  ///< of the profile interval
+  int parts = 1;  ///< parts of the profile interval
   bool open_low = false, open_high = false;
   bool physical_low = false;  ///< open below only at a bound that nature sets (0), not the user, nor another's range
   bool open_beyond = false;   ///< open for more than its own range's end: another's, the end of the runs, the surrogate
   double contraction = 0.0;
-  double contraction_within = 0.0;  ///< of the parts, each about its own mean
+  double contraction_within = 0.0;  ///< contraction within the parts, each about its own mean
   bool closed() const { return !open_low && !open_high; }
 };
 Verdict word_of(const WordFacts& facts, const VerdictThresholds& thresholds);
 
-/// What is known of one parameter; values in the study's unit.
+/// The evidence about one parameter; values in the study's unit.
 struct ParameterEvidence {
   std::string name, unit;
   double mean = 0.0, sd = 0.0, q95 = 0.0;
@@ -55,11 +55,11 @@ struct ParameterEvidence {
   bool unusable = false;  ///< the runs say too little anywhere: then a misfit is the stronger finding
   std::string conditional_on = {};  ///< another parameter whose range's end decides the value; may be empty
   bool undecided = false;           ///< the surrogate is not sharp enough to tell
-  bool traded = false;              ///< known only in a combination with others
+  bool traded = false;              ///< the parameter is known only in a combination with others
   bool unknown_beyond = false;      ///< open since the surrogate knows too little beyond an end
   bool faint = false;               ///< a part of its range is excluded, though the surrogate shows no effect of it
-  double surrogate_share = 0.0;     ///< of the variance, where two values are compared
-  CommonShare common = {};          ///< held by errors that repeated readings share
+  double surrogate_share = 0.0;     ///< the surrogate's share of the variance, where two values are compared
+  CommonShare common = {};          ///< part of the width held by errors that repeated readings share
   bool hidden = false;              ///< without influence only since the data's errors are large
   double silent_sds = 0.0;  ///< of the data's errors: what the surrogate's own error leaves room for, without influence
 };
@@ -83,7 +83,7 @@ struct ParameterVerdict {
 /// The share of each word among those drawn, the most frequent first; words that do not come are left out.
 std::vector<WordProbability> probabilities_of(const std::vector<Verdict>& drawn);
 
-/// `repeats`: the words' probabilities, or none.
+/// The verdict on one parameter. `repeats`: the words' probabilities, or none.
 ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fit,
                        const std::vector<WordProbability>& repeats, const VerdictThresholds& thresholds);
 

@@ -31,7 +31,7 @@ struct Words {
 };
 Words words_of(const CaseFacts& facts);
 
-/// The remedies as they are shown; of none, that none is needed.
+/// The remedies as they are shown; where there is none, the text that none is needed.
 std::string shown_remedy(const Words& words);
 
 }  // namespace uq

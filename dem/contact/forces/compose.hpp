@@ -22,7 +22,7 @@ inline void fill(JkrNormal& part, const PairCoefficients& c) {
   part = {c.young_modulus, hertz_damping(c), floor_of(c), c.adhesion};
 }
 inline void fill(LinearTangential& part, const PairCoefficients& c) {
-  // The dashpot is a share of the normal one's, whose linear form is taken beside Hertz too.
+  // The dashpot is a share of the normal dashpot. The latter's linear form is taken beside Hertz too.
   const double ratio = c.tangential_damping * 2.0 * c.damping_ratio;
   part = {c.tangential_stiffness, ratio * std::sqrt(c.stiffness), c.friction};
 }
@@ -34,7 +34,8 @@ inline void fill(ConstantResistance& part, const PairCoefficients& c) {
   part = {c.rolling_friction, c.twisting_friction};
 }
 inline void fill(SpringResistance& part, const PairCoefficients& c) {
-  // Critical damping of a rolling oscillation, whose mass is that of spinning in place: I / R^2 = 2/5 m.
+  // The damping is a fraction of the critical one of a rolling oscillation, whose mass is that of spinning in place: I
+  // / R^2 = 2/5 m.
   part = {c.rolling_friction, c.twisting_friction, c.rolling_stiffness,
           2.0 * c.rolling_damping * std::sqrt(0.4 * c.rolling_stiffness)};
 }

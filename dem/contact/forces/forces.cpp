@@ -24,7 +24,8 @@ std::shared_ptr<const ForcePass> chosen(const BedCoefficients& bed) {
 }  // namespace
 }  // namespace dem
 
-/// What the rest of the program sees of these files, by another name for each instruction set (CMakeLists.txt).
+/// The entry by which the rest of the program sees these files; it has another name for each instruction set
+/// (CMakeLists.txt).
 extern "C" void DEMCAL_FORCES_ENTRY(const dem::BedCoefficients& bed, std::shared_ptr<const dem::ForcePass>& made) {
   made = dem::chosen(bed);
 }

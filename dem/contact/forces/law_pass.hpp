@@ -13,7 +13,8 @@ inline History<double> history_of(const VectorRow& slip, const VectorRow& roll) 
   return {slip.v, slip.w, roll.v, roll.w};
 }
 
-/// Features that the sphere may have reached since the rebuild: those are sorted by their gap then.
+/// How many of the slot's features the sphere may have reached since the rebuild; they are sorted by their gap at that
+/// time.
 inline std::uint32_t features_in_question(const State& s, const WallSlot& slot, const Frame& frame) {
   const PositionRow& at = s.position[slot.particle];
   const double moved = length(at.at - s.reference[slot.particle]) + frame.moved + 1e-9 * at.radius;
@@ -23,7 +24,7 @@ inline std::uint32_t features_in_question(const State& s, const WallSlot& slot, 
   return asked;
 }
 
-/// Which of the slot's contacts had this normal, or -1: that whose normal is nearest.
+/// The index of the slot's contact that had this normal, or -1. Of several it is the one whose normal is nearest.
 inline int remembered(const Pool<WallMemory>& memory, const WallSlot& slot, Vec3 normal) {
   int best = -1;
   double cosine = merge_cosine;
@@ -157,11 +158,11 @@ class LawPass final : public ForcePass {
   /// A contact found, waiting to be evaluated.
   struct WallHit {
     std::uint32_t slot, place;
-    VectorRow normal;      ///< in the body's frame, and the distance [m]
-    VectorRow slip, roll;  ///< its history, in the body's frame
+    VectorRow normal;      ///< the normal in the body's frame, and the distance [m]
+    VectorRow slip, roll;  ///< the contact's history, in the body's frame
   };
 
-  /// J, in the memories that no contact takes over.
+  /// Energy [J] in the memories of a slot that no contact takes over.
   double given_up(const State& s, const Pool<WallMemory>& memory, const WallSlot& slot, std::uint32_t lost) const {
     const auto law =
         wall(s.motion[slot.particle], slot.body).at(s.motion[slot.particle].mass, s.position[slot.particle].radius);
@@ -173,7 +174,7 @@ class LawPass final : public ForcePass {
     return sum;
   }
 
-  /// Contacts of the chunk's spheres with one body: found one by one, evaluated in lanes.
+  /// Evaluates the contacts of the chunk's spheres with one body. They are found one by one and evaluated in lanes.
   void meet_body(State& s, Pool<WallMemory>& memory, const Surroundings& around,
                  std::span<const std::uint32_t, 2> slots, StepSums& sums) const {
     constexpr std::size_t batch = 64;

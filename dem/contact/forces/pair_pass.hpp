@@ -2,11 +2,11 @@
 // The pair forces of a run of pairs, in two stages: which pairs are in range, then the forces of those, as many at a
 // time as a register has lanes.
 //
-// Most pairs of the list are out of range, and stay so for a while: no two spheres come nearer to each other than twice
-// the fastest sphere's way in a step. So a pair out of range is looked at again only when it could be in range, up to
-// due_steps - 1 steps later; Simulation makes all of them due when a sphere becomes faster than was counted on. Pairs
-// in range are evaluated in every step, which sees when they part. So what is evaluated is what looking at all pairs in
-// every step would find, in the same order.
+// Most pairs of the list are out of range, and stay so for a while: in a step no two spheres approach each other by
+// more than twice the way of the fastest sphere. A pair out of range is therefore looked at again only when it could be
+// in range, up to due_steps - 1 steps later. Simulation makes all of them due when a sphere becomes faster than was
+// counted on. Pairs in range are evaluated in every step, which sees when they part. The pairs evaluated are thus the
+// ones that looking at all pairs in every step would find, in the same order.
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -23,7 +23,7 @@ struct PairSums {
   double dissipated = 0.0;     ///< J in this step
   std::uint64_t contacts = 0;  ///< pairs that touch
   std::uint64_t deep = 0;      ///< contacts whose overlap is more than PairView::deep
-  double max_overlap = 0.0;    ///< of the mean radius of the two
+  double max_overlap = 0.0;    ///< largest overlap, as a share of the mean radius of the two
 };
 
 struct PairView {
@@ -38,17 +38,17 @@ struct PairView {
   Pool<VectorRow>* history;
   LoadRow* load;
   double time_step;        ///< s
-  double range;            ///< m, of the laws beyond touching
-  double deep;             ///< of the mean radius of the two
+  double range;            ///< m, how far the laws reach beyond touching
+  double deep;             ///< share of the mean radius of the two; deeper overlaps are counted
   double steps_per_metre;  ///< at least so many until two spheres are nearer to each other by a metre
 };
 
-/// Laws of the pairs of a bed: one for all where spheres are equal, else a table over both materials.
+/// Laws of the pairs of a bed: one law for all where spheres are equal, else a table over both materials.
 template <class Law, bool Uniform>
 struct PairLaws {
   const Law* table;  ///< materials x materials
   int materials;
-  double mass, radius;  ///< reduced, of the one kind of pair
+  double mass, radius;  ///< reduced mass and radius of the one kind of pair
 
   double each_radius() const { return 2.0 * radius; }
   auto at_all() const {
@@ -62,14 +62,14 @@ struct PairLaws {
 inline constexpr std::uint32_t hit_batch = 512;  ///< pairs looked at before their hits are evaluated
 inline constexpr std::uint32_t ahead = 12;       ///< hits whose rows are asked for in advance
 
-/// x_i - x_j, and r_i + r_j.
+/// The vector x_i - x_j, and the sum r_i + r_j in the fourth place.
 inline Four with_sum_of_radii(const PositionRow& a, const PositionRow& b) {
   typedef long long Bits __attribute__((vector_size(32)));
   const Bits sign = reinterpret_cast<Bits>(Four{0.0, 0.0, 0.0, -0.0});
   return four(a.at.x) - reinterpret_cast<Four>(reinterpret_cast<Bits>(four(b.at.x)) ^ sign);
 }
 
-/// Lists the slots of the bits set in `word`, the word'th.
+/// Lists the slots of the bits set in `bits_of_word`; `word` is the word's number.
 inline std::uint32_t list_bits(std::uint64_t bits_of_word, std::uint32_t word, std::uint32_t* slots,
                                std::uint32_t count) {
   for (; bits_of_word != 0; bits_of_word &= bits_of_word - 1)
@@ -77,14 +77,14 @@ inline std::uint32_t list_bits(std::uint64_t bits_of_word, std::uint32_t word, s
   return count;
 }
 
-/// Has a pair looked at again when its spheres could have come nearer by `gap` [m], in the next step at the earliest.
+/// Lets a pair rest until its spheres could have come nearer by `gap` [m], at least until the next step.
 inline void sleep(const PairView& v, std::uint32_t slot, double gap) {
   const double steps = gap * v.steps_per_metre;
   const std::uint32_t later = steps < due_steps - 1 ? std::max(1u, static_cast<std::uint32_t>(steps)) : due_steps - 1;
   v.due[due_at(slot / 64, v.step + later)] |= bit_of(slot);
 }
 
-/// Pairs among the words [begin, end) that are due: those that are in range are marked so, the others sleep.
+/// Looks at the pairs among the words [begin, end) that are due: those in range are marked so, the others sleep.
 DEMCAL_FLATTEN inline void look_at_due(const PairView& v, std::uint32_t begin, std::uint32_t end) {
   std::uint32_t slots[hit_batch + lanes], count = 0;
   for (std::uint32_t word = begin; word < end; ++word) {
@@ -242,7 +242,7 @@ DEMCAL_FLATTEN void pair_pass(const PairLaws<Law, Uniform> laws, const PairView 
           }
         }
       };
-      if (used == lanes)  // most often; then the compiler knows their number
+      if (used == lanes)  // the usual case, in which the compiler knows the number of lanes
         add(std::integral_constant<int, lanes>{});
       else
         add(used);

@@ -40,7 +40,7 @@ struct ShortRangeAttraction {
       const T nearness = minimum_separation / larger(gap, T(minimum_separation));
       return select(gap < cut_off, T(pull_off * nearness * nearness), T(0.0));
     }
-    /// J, zero at the cut-off.
+    /// Energy [J] of the attraction, zero at the cut-off.
     double energy(double gap) const {
       if (gap >= cut_off) return 0.0;
       const double beyond = larger(gap, minimum_separation), far = larger(cut_off, minimum_separation);

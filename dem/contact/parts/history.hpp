@@ -1,10 +1,10 @@
 #pragma once
-// What a contact remembers from one step to the next.
+// The memory of a contact from one step to the next.
 #include "dem/walls/vec3.hpp"
 
 namespace dem {
 
-/// What a contact remembers from step to step.
+/// The values that a contact keeps from step to step.
 template <class T>
 struct History {
   Vector3<T> slip;  ///< N, elastic tangential force (linear: stiffness times spring)

@@ -1,5 +1,5 @@
 #pragma once
-// Normal laws: the repulsion N along the contact normal, its damping, and what belongs to it of an attraction.
+// Normal laws: the repulsion N along the contact normal, its damping, and an attraction that belongs to the law.
 // Symbols are those of contact_law.hpp: overlap delta, normal velocity u_n (separating > 0), reduced mass m* and radius
 // R*, restitution e.
 //

@@ -2,8 +2,8 @@
 // A spring and a dashpot side by side, behind a slider. Tangential, rolling and twisting laws are made of it.
 //
 // Below the cap the force is T = -k s - c u, with the spring s. At the cap the contact slides: T has the cap's size,
-// and the spring follows as fast as the dashpot lets it, ds/dt = (|T| - k s) / c. Without a dashpot s = cap / k at once.
-// What is remembered is k s.
+// and the spring follows as fast as the dashpot lets it, ds/dt = (|T| - k s) / c. Without a dashpot s = cap / k at
+// once. What is remembered is k s.
 //
 // The step is of second order. The spring is stored half a step ahead, and the force uses its mean over the step. The
 // velocity u is extrapolated, which alone would add energy to an oscillation. The stored spring therefore leads by a
@@ -16,16 +16,15 @@
 
 namespace dem {
 
-/// Spring and dashpot side by side, behind a slider: in the contact plane, in rolling (V a vector [N]) and in twisting
-/// (V a number [N m]).
+/// The force of the slider: in the contact plane and in rolling V is a vector [N], in twisting a number [N m].
 template <class V>
 struct SlipForce {
   V force;  ///< on the sphere
   V kept;   ///< elastic part, of opposite sign
 };
 
-/// `stiffness_per_inertia` [1/s2] is that of the fastest oscillation of a free pair on this spring. C is double where
-/// all contacts share the spring's coefficients.
+/// One step of the slider. `stiffness_per_inertia` [1/s2] is that of the fastest oscillation of a free pair on this
+/// spring. C is double where all contacts share the spring's coefficients.
 template <class V, class T, class C>
 SlipForce<V> slide(const V& before, const V& velocity, C stiffness, C damping, T cap, C stiffness_per_inertia,
                    double time_step) {
