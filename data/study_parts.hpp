@@ -21,8 +21,9 @@ void read_controls(const Section& root, Study& study);
 void read_outputs(const Section& root, Study& study);
 void check_column_names(const Section& root, const Study& study);
 
-/// A prior of `parameter` from an inline table; `cases` allows { posterior = "CASE" }.
+/// Whose prior a table states. That of a case may be { posterior = "CASE" }, too.
 enum class PriorOf { parameter, case_ };
+/// A prior of `parameter` from an inline table.
 Prior read_prior(const Section& section, const Parameter& parameter, PriorOf owner);
 
 /// `{ NAME = VALUE }` for parameters, bare numbers in the parameter's unit, SI.
