@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <limits>
 
@@ -39,6 +40,40 @@ bool Csv::same_values(std::size_t one, std::size_t other) const {
          std::all_of(rows.begin(), rows.end(), [&](const CsvRow& row) { return row.fields[one] == row.fields[other]; });
 }
 
+namespace {
+
+/// What a column that states another error than the standard error of a mean would take to be one; nothing where there is none.
+std::string other_error_column(const std::vector<std::string>& columns, std::string_view name) {
+  const std::string output(name.substr(0, name.size() - 3));
+  const std::array<std::pair<const char*, const char*>, 8> others{
+      {{"_sd", "a standard deviation: divided by the root of the number of its samples"},
+       {"_std", "a standard deviation: divided by the root of the number of its samples"},
+       {"_stdev", "a standard deviation: divided by the root of the number of its samples"},
+       {"_var", "a variance: the root of it over the number of its samples"},
+       {"_variance", "a variance: the root of it over the number of its samples"},
+       {"_ci", "half of a 95 % interval: divided by 1.96"},
+       {"_ci95", "half of a 95 % interval: divided by 1.96"},
+       {"_u95", "an expanded uncertainty: divided by its coverage factor, mostly 2,"}}};
+  for (const auto& [ending, what] : others)
+    for (const std::string& column : columns)
+      if (lower_case(column) == lower_case(output + ending))
+        return fmt::format("; '{}' is {} it is {}", column, what, name);
+  return "";
+}
+
+/// A heading that is the name with brackets whose unit cannot be read, or nothing.
+std::string with_unknown_unit(const std::vector<std::string>& headings, std::string_view name) {
+  for (const std::string& heading : headings) {
+    const std::size_t open = heading.find_first_of("([{");
+    if (open != std::string::npos && open > 0 &&
+        lower_case(trimmed(std::string_view(heading).substr(0, open))) == lower_case(name))
+      return heading;
+  }
+  return "";
+}
+
+}  // namespace
+
 std::size_t Csv::column(std::string_view name) const {
   if (const auto found = find(name, Capitals::any)) return *found;
   std::vector<std::string> same;  // that differ in their units alone
@@ -55,6 +90,10 @@ std::size_t Csv::column(std::string_view name) const {
       near && edit_distance(name, *near) <= 2 && !(of_error && near->ends_with("_sd"))) {
     remedy += fmt::format("; is '{}' meant?", *near);
   }
+  if (of_error) remedy += other_error_column(columns, name);
+  if (const std::string heading = with_unknown_unit(headings, name); !heading.empty())
+    refuse_data(fmt::format("{}:{}", file, header_line), fmt::format("the unit in '{}' is unknown", heading),
+                "write one that UDUNITS-2 knows, like \"mN m\", or none");
   refuse_data(fmt::format("{}:{}", file, header_line), fmt::format("the column '{}' is missing", name), remedy);
 }
 

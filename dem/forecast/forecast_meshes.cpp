@@ -202,9 +202,9 @@ void check_powder(const Case& c, const BuiltRig& rig, Forecast& f) {
   if (lost > 0) {
     f.problems.push_back(
         {place,
-         fmt::format("makes {:.2g} % of the spheres, which start in {}, fall out of the box: no wall "
+         fmt::format("makes {:.0f} % of the spheres, which start in {}, fall out of the box: no wall "
                      "is under them",
-                     100.0 * static_cast<double>(lost) / static_cast<double>(asked), where_filled(rig)),
+                     std::max(1.0, 100.0 * static_cast<double>(lost) / static_cast<double>(asked)), where_filled(rig)),
          remedy});
   } else if (bed.leaves && bed.held < 0.25 * solids / packing_fraction) {
     f.problems.push_back({place,

@@ -156,6 +156,20 @@ TEST_CASE("a table gives the same numbers however it is written, and says how it
   CHECK(data::parse_csv(plain, "bench.csv").took_line().empty());
 }
 
+TEST_CASE("a column of another error than the standard error, or with an unknown unit, is named with what to do") {
+  const auto missing = [](const std::string& heading, const char* column) {
+    try {
+      data::parse_csv(heading + "\n1,2,3\n", "t.csv").column(column);
+    } catch (const data::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK_THAT(missing("speed,torque,torque_sd", "torque_se"), Catch::Contains("divided by the root of the number"));
+  CHECK_THAT(missing("speed,torque,torque_ci95", "torque_se"), Catch::Contains("divided by 1.96"));
+  CHECK_THAT(missing("speed,torque (%FS),n", "torque"), Catch::Contains("the unit in 'torque (%FS)' is unknown"));
+}
+
 TEST_CASE("a per cent in the row of units is a unit, and in a comment it begins one") {
   CHECK(data::parse_csv("share,torque\n%,mN m\n40,2\n", "t.csv").units == std::vector<std::string>{"%", "mN m"});
   CHECK(data::parse_csv("% by hand\nshare,torque\n40,2\n", "t.csv").comments == std::vector<std::string>{"by hand"});

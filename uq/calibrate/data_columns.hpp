@@ -1,5 +1,7 @@
 #pragma once
 // The run table by columns, for uq/data_check*.cpp alone: an input's values over the rows that are learnt from.
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -32,8 +34,26 @@ std::vector<InputColumn> input_columns(const data::Study& study, const data::Run
 /// Place of a name in RunRow::inputs. The table has all of the study's names, or reading it failed.
 std::size_t input_column(const data::RunTable& table, const std::string& name);
 
+/// "bench.csv", without its folder.
+inline std::string file_of(const data::ObservationSet& set) { return set.file.substr(set.file.rfind('/') + 1); }
+
 /// "bench.csv:7"
 std::string place_of(const data::ObservationSet& set, const data::Observation& point);
+
+/// Values and how far they reach.
+struct Extent {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  std::vector<double> values;
+  void add(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+    values.push_back(value);
+  }
+};
+
+/// Looks at a set with points beside the runs of its material; adds what it finds.
+void check_beside_runs(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
+                       std::vector<data::Finding>& findings);
 
 /// Factors between units that a quantity of this unit is written in by mistake, the likeliest first.
 std::vector<UnitFactor> unit_factors(const data::Unit& unit);

@@ -228,14 +228,27 @@ std::string points_in_words(const data::Study& study, const TrainingRows& rows, 
   return text + ".";
 }
 
-/// A scale on which the left-out errors would be smaller, or nothing.
-std::string better_scale(const data::Study& study, const FittedSurrogate& fitted,
-                         const surrogate::FitOptions& options) {
-  constexpr double better = 0.7;  // of the error on the study's scales
+/// Names a scale on which the left-out errors would be smaller, if there is one. A response that bends at one end of an input's
+/// range has no one length scale there: however good the intervals are on average, at that end they are too narrow.
+void add_better_scale(SurrogateReport& report, const data::Study& study, const FittedSurrogate& fitted,
+                      const surrogate::FitOptions& options) {
+  constexpr double better = 0.7;       // of the error on the study's scales
+  constexpr Eigen::Index quick = 300;  // runs; a surrogate that is good otherwise is worth no longer search
+  const bool good = report.verdict == SurrogateWord::good;
+  if (good && fitted.rows.set.y.size() > quick) return;
   const auto scale = best_log_scale(study, fitted.rows, {}, options);
   const double now = left_out_error(*fitted.process, fitted.rows.set);
-  if (!scale || !(scale->error < better * now)) return "";
-  return fmt::format(" Set {}: there the left-out errors are {:.2g} times smaller.", scale->key, now / scale->error);
+  if (!scale || !(scale->error < better * now)) return;
+  const std::string advice =
+      fmt::format("Set {}: there the left-out errors are {:.2g} times smaller.", scale->key, now / scale->error);
+  if (!good) {
+    report.remedy += " " + advice;
+    return;
+  }
+  report.verdict = SurrogateWord::caution;
+  report.finding += " Its errors are not the same all over the range.";
+  report.consequence = "Where the response bends, its intervals are too narrow, and so are posteriors that lie there.";
+  report.remedy = advice;
 }
 
 }  // namespace
@@ -271,8 +284,7 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
     return report;
   }
   add_outlying(report, fitted, fit_options, study);
-  if (report.verdict != SurrogateWord::good && report.outlying.empty())
-    report.remedy += better_scale(study, fitted, fit_options);
+  if (report.outlying.empty()) add_better_scale(report, study, fitted, fit_options);
   return report;
 }
 

@@ -71,12 +71,15 @@ PlanCandidate describe(const PlanBasis& basis, std::size_t i) {
   return one;
 }
 
-/// The candidates ranked by information about the parameter asked for per cost. Candidates whose output need not mean
+/// The candidates ranked by what they are worth to the question, per cost. Candidates whose output need not mean
 /// the same in the powder come last.
 std::vector<std::size_t> ranked(const PlanBasis& basis, const std::vector<PlanCandidate>& all) {
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto worth = [&](std::size_t i) { return all[i].parameters[basis.about].information / all[i].cost; };
+  const auto worth = [&](std::size_t i) {
+    const PlannedParameter& gain = all[i].parameters[basis.about];
+    return basis.worth(gain.information, gain.sd_now, gain.sd_after) / all[i].cost;
+  };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     if (all[a].model_only != all[b].model_only) return all[b].model_only;
     return worth(a) > worth(b);
@@ -119,8 +122,10 @@ void add_runs(const PlanBasis& basis, PlanReport& report) {
   if (!basis.found) return;
   const SurrogateShare share = surrogate_share(*basis.sampled.model, basis.draws);
   if (share.effective_draws < least_effective) return;
-  for (std::size_t k = 0; k < share.shares.size(); ++k) {
-    const double now = basis.sd_now(static_cast<int>(k)), left = std::max(1.0 - share.shares[k], 1e-12);
+  constexpr double far = 1.0;  // sds by which the posterior would move: then too few draws tell how narrow it would be
+  if (std::any_of(share.moved.begin(), share.moved.end(), [](double moved) { return moved > far; })) return;
+  for (std::size_t k = 0; k < share.left.size(); ++k) {
+    const double now = basis.sd_now(static_cast<int>(k)), left = std::clamp(share.left[k], 1e-12, 1.0);
     report.runs.parameters.push_back({.name = basis.name_of(static_cast<int>(k)),
                                       .unit = basis.unit_of(static_cast<int>(k)).symbol,
                                       .information = std::max(0.0, -0.5 * std::log(left)),

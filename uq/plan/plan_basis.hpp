@@ -32,6 +32,12 @@ struct PlanBasis {
   Information information_of(const std::vector<Eigen::Index>& rows) const;
   /// Posterior sd of a parameter before the reading, in the study's unit.
   double sd_now(int parameter) const;
+  /// Whether the data leave separate values of the parameter asked for open.
+  bool has_several_values() const;
+  /// What an expectation is worth to the question, nats: the information about the parameter asked for. Where it has separate
+  /// values, a reading may narrow each and leave both open, so the width counts there, log (sd now / sd after), which only what
+  /// parts them takes down.
+  double worth(double information, double sd_now, double sd_after) const;
   void tell(double share) const;  ///< reports progress
 
   const data::Study& study;

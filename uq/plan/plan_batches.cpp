@@ -30,8 +30,8 @@ bool affordable(const PlanBasis& basis, const std::vector<std::size_t>& members,
   return !basis.options.budget || cost_of(basis, members) + left <= *basis.options.budget * (1.0 + 1e-9);
 }
 
-/// Information about the parameter asked for, by some of the draws.
-double quick_information(const PlanBasis& basis, const std::vector<std::size_t>& members) {
+/// What a batch is worth to the question, by some of the draws.
+double quick_worth(const PlanBasis& basis, const std::vector<std::size_t>& members) {
   Ensemble all = basis.outlooks.front().ensemble(rows_of(basis, members));
   const Index n = std::min<Index>(search_draws, all.draws());
   const MatrixXd column = all.values.col(basis.about).head(n);
@@ -39,7 +39,9 @@ double quick_information(const PlanBasis& basis, const std::vector<std::size_t>&
   all.values = column;
   all.mean = mean;
   all.covariance.resize(static_cast<std::size_t>(n));
-  return information(all, {.seed = basis.options.seed, .noise = {}}).about.front().information.value;
+  const double sd_now = std::sqrt((column.array() - column.mean()).square().mean());
+  const InformationAbout about = information(all, {.seed = basis.options.seed, .noise = {}}).about.front();
+  return basis.worth(about.information.value, sd_now, about.sd_after.value);
 }
 
 /// The member at `position` that is best beside the others; none where no other is affordable.
@@ -50,7 +52,7 @@ std::optional<std::size_t> best_at(const PlanBasis& basis, std::vector<std::size
     std::vector<std::size_t> tried = members;
     tried[position] = static_cast<std::size_t>(i);
     if (!basis.candidates[tried[position]].model_only && affordable(basis, tried, left))
-      value[i] = quick_information(basis, tried);
+      value[i] = quick_worth(basis, tried);
   });
   const auto best = std::max_element(value.begin(), value.end());
   if (*best < 0.0) return {};

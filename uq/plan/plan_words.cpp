@@ -37,7 +37,14 @@ std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
   const bool identified = basis.found && basis.found->parameters[k].verdict == Verdict::identified;
   std::string text;
   if (identified) text = fmt::format("{} is identified already (+- {}). ", report.about, width(gain, gain.sd_now));
-  if (best.teaches)
+  const bool parts = basis.has_several_values() && basis.worth(0.0, gain.sd_now, gain.sd_after) > least_information;
+  if (best.teaches && parts)
+    text += fmt::format(
+        "Measure {}{} next: it is expected to part the values of {}, from +- {} over all to +- {} ({:.2f} "
+        "nats).",
+        best.name, best.kind == CandidateKind::repeat ? " again" : "", report.about, width(gain, gain.sd_now),
+        width(gain, gain.sd_after), gain.information);
+  else if (best.teaches)
     text += fmt::format("Measure {}{} next: it is expected to narrow {} from +- {} to +- {} ({:.2f} nats).", best.name,
                         best.kind == CandidateKind::repeat ? " again" : "", report.about, width(gain, gain.sd_now),
                         width(gain, gain.sd_after), gain.information);

@@ -13,6 +13,8 @@ SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& dr
   SurrogateShare found;
   for (const Unknown& unknown : model.unknowns)
     if (unknown.own) found.shares.push_back(1.0);
+  found.left.assign(found.shares.size(), 0.0);
+  found.moved.assign(found.shares.size(), 0.0);
   if (!found.shares.empty()) found.parameter = model.unknowns.front().label;
   if (draws.rows() < 2) return found;
   const Eigen::VectorXd log_weight = log_likelihoods(without_surrogate_error(model), draws) - log_likelihood;
@@ -30,7 +32,10 @@ SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& dr
     const double with = u.mean(), without = (weight.array() * u).sum();
     const double variance = std::max((u - with).square().mean(), 1e-300);
     const double left = (weight.array() * (u - without).square()).sum();
-    const double share = std::clamp(std::max(1.0 - left / variance, std::pow(without - with, 2) / variance), 0.0, 1.0);
+    const double moved = std::abs(without - with) / std::sqrt(variance);
+    const double share = std::clamp(std::max(1.0 - left / variance, moved * moved), 0.0, 1.0);
+    found.left[own] = left / variance;
+    found.moved[own] = moved;
     found.shares[own++] = share;
     if (share > found.share) {
       found.share = share;

@@ -19,6 +19,8 @@ struct SurrogateShare {
   double share = 1.0;          ///< share of the posterior variance, for the worst parameter
   std::string parameter;       ///< the worst parameter
   std::vector<double> shares;  ///< share for each of the case's own parameters
+  std::vector<double> left;    ///< for each: v / V, the variance that is left without the surrogate's error
+  std::vector<double> moved;   ///< for each: |a - b| / sqrt(V); where it is large, few draws lie where v is asked for
   double effective_draws = 0.0;
 };
 

@@ -32,6 +32,7 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
     const StackedPrediction prediction = predict(model, u);
     const ScaledPrior& prior = model.unknowns[profile.unknown].prior;
     PathPoint point{.u = profile.u[i],
+                    .others = u,
                     .log_prior = std::max(prior.log_density(profile.u[i]), least_log_prior),
                     .doubt = difference(judged, yardstick, u, best).doubt,
                     .mean = prediction.mean,
@@ -49,7 +50,8 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
       const bool low = u[s] - lower[s] <= slack, high = upper[s] - u[s] <= slack;
       if (!low && !high) free.push_back(s);
       // A bound at 0 that nature sets ends nothing (uq/verdict/profile.hpp).
-      if (s < model.own_count() && (high || (low && !physical_low(model.unknowns[s])))) point.at_end = true;
+      if (s < model.own_count() && (high || (low && !physical_low(model.unknowns[s]))))
+        point.at_end = static_cast<int>(s);
     }
     const Evaluation certificates = log_certificates(model, u);
     point.log_certificates = certificates.value;
@@ -91,21 +93,35 @@ PathWords::PathWords(const std::vector<PathPoint>& points, const std::vector<Eig
     local.bent.compute(precision);
     if (local.slopes.cols() > 0 && local.bent.info() != Eigen::Success) continue;
     local.at_end = point.at_end;
+    local.others = point.others;
     points_.push_back(std::move(local));
   }
 }
 
 std::pair<bool, bool> PathWords::ends_by_another(const Eigen::VectorXd& deviance, double drop) const {
-  // Between the outermost point inside and the next one the other comes to its end somewhere: it counts where the interval ends
-  // nearer to the outer one.
-  const auto far_out = [&](int inside, int outside) {
-    const double near = std::sqrt(deviance[inside]), away = std::sqrt(deviance[outside]);
-    return std::sqrt(drop) - near > 0.5 * (away - near);
+  // The other comes to its end somewhere between the outermost point inside and the next one, where its course from the points
+  // further in leads. It ends the interval where the deviance, going on as it does inside, has not reached the drop there.
+  const auto ended_between = [&](int inside, int outside, int further_in) {
+    const Local &in = points_[inside], &out = points_[outside];
+    const int other = out.at_end.value();
+    double at = out.u, rise = -1.0;  // where the other ends; of the root of the deviance with u, outwards
+    if (further_in >= 0 && further_in < static_cast<int>(points_.size())) {
+      const Local& before = points_[further_in];
+      const double course = (in.others[other] - before.others[other]) / (in.u - before.u);
+      const double left = out.others[other] - in.others[other];
+      if (course * left * (out.u - in.u) > 0.0) at = in.u + left / course;
+      rise = (std::sqrt(deviance[inside]) - std::sqrt(deviance[further_in])) / std::abs(in.u - before.u);
+    }
+    const double within = std::min(std::abs(at - in.u), std::abs(out.u - in.u));
+    // Past the least deviance; else along a straight line to the next point.
+    if (rise <= 0.0) rise = (std::sqrt(deviance[outside]) - std::sqrt(deviance[inside])) / std::abs(out.u - in.u);
+    return std::sqrt(deviance[inside]) + rise * within < std::sqrt(drop);
   };
   const auto end_of = [&](int first, int last, int outwards) {
     for (int i = first; i != last; i -= outwards)
       if (deviance[i] <= drop)
-        return i != first && (points_[i].at_end || (points_[i + outwards].at_end && far_out(i, i + outwards)));
+        return i != first &&
+               (points_[i].at_end || (points_[i + outwards].at_end && ended_between(i, i + outwards, i - outwards)));
     return false;
   };
   const int n = static_cast<int>(points_.size());

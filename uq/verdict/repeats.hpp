@@ -12,6 +12,7 @@
 // data's noise stays as found: influence, structure, a side that another parameter's range ends. An unknown at the end
 // of its range on the path stays there.
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct FoundFacts {
 /// The model about one point of a profile's path: the law of its rows, and how the other unknowns move it.
 struct PathPoint {
   double u = 0.0;
+  Eigen::VectorXd others;  ///< all unknowns there
   double log_prior = 0.0;  ///< of the profiled parameter, there
   double doubt = 0.0;      ///< the surrogate's doubt against the best fit, in data errors
   Eigen::VectorXd mean;
@@ -47,7 +49,7 @@ struct PathPoint {
   Eigen::VectorXd precision;             ///< precisions of these unknowns' priors
   double log_certificates = 0.0;         ///< of what calibrated the nuisances, there
   Eigen::VectorXd pull_of_certificates;  ///< its slope along the unknowns that can move
-  bool at_end = false;                   ///< another of the case's parameters stands at the end of its range
+  std::optional<int> at_end;             ///< another of the case's parameters that stands at the end of its range
 };
 
 /// Points that may matter: near enough to the best or beside such a point, and the two ends; all of them when `all`.
@@ -82,7 +84,8 @@ class PathWords {
     Eigen::VectorXd pull_of_certificates;
     Eigen::MatrixXd slopes;            ///< whitened
     Eigen::LLT<Eigen::MatrixXd> bent;  ///< A' A + P
-    bool at_end = false;
+    std::optional<int> at_end;
+    Eigen::VectorXd others;
   };
   struct Parts {
     int count = 0;

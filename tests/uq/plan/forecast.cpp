@@ -31,3 +31,30 @@ TEST_CASE("under errors of unknown size no word is forecast that the expected wi
   REQUIRE(left > 0.13);
   CHECK(chance(next, 1, uq::Verdict::identified) < 0.2);
 }
+
+TEST_CASE("words go on from what is known of a gain: a parameter that is identified stays so", "[plan]") {
+  // The level of a torque tells a but for a gain of 10 %; the other end of its range asks for a gain of a half.
+  const formula::Pair level{[](double a, double b, double x) { return 1.0 + 50.0 * a + 0.2 * b * x; }, formula::angle};
+  data::Study study = formula::study({0.2, 0.5, 0.8}, {26.0, 26.0, 26.0}, 0.1);
+  data::Parameter gain{.name = "gain", .target = "gain", .low = 0.2, .high = 1.8};
+  gain.prior = {.kind = data::PriorKind::normal, .low = 0.2, .high = 1.8, .mean = 1.0, .sd = 0.1};
+  study.cases[0].nuisances = {{data::NuisanceKind::gain, {}, gain}};
+  const PlanCandidate again =
+      plan_of(study, formula::emulators(0.0, level), {.candidates = {reading_of(0, 0.1)}}, {.about = "a"})
+          .candidates.front();
+  CHECK(chance(again, 0, uq::Verdict::identified) > 0.95);
+}
+
+TEST_CASE("of separate values what parts them comes first, not what narrows each", "[plan]") {
+  // The torque is the same on both sides of a = 0.5; the angle rises with a. A fine torque narrows each value fourfold.
+  const formula::Pair mirror{[](double a, double, double) { return 40.0 * (a - 0.5) * (a - 0.5); },
+                             [](double a, double, double) { return a; }};
+  const data::Study study = formula::study({0.5}, {1.6}, 0.2);
+  const data::PlanEntry fine = reading_of(0, 0.04), coarse = reading_of(1, 0.1);
+  const PlanReport plan =
+      plan_of(study, formula::emulators(0.0, mirror), {.candidates = {fine, coarse}}, {.about = "a"});
+  REQUIRE(plan.candidates.size() == 2);
+  CHECK(plan.candidates.front().outputs.front() == "angle");
+  CHECK(plan.candidates[0].parameters[0].information < plan.candidates[1].parameters[0].information);
+  CHECK_THAT(plan.sentence, Catch::Contains("part the values of a"));
+}

@@ -54,6 +54,8 @@ TEST_CASE("the surrogate's share of a width is what a surrogate without error wo
     CHECK(found.parameter == "theta");
     REQUIRE(found.shares.size() == 1);
     CHECK(found.shares.front() == found.share);
+    CHECK(found.left.front() == Approx(data_variance / (surrogate + data_variance)).margin(0.06));
+    CHECK(found.moved.front() < 0.1);
   }
 }
 

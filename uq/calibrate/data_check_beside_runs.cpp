@@ -1,0 +1,181 @@
+// Checks of a measurement beside the runs: columns that look exchanged, outputs of another magnitude than all runs have, controls
+// that would meet the runs in another unit.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/time_series.hpp"
+#include "uq/calibrate/data_columns.hpp"
+#include "uq/findings/study_units.hpp"
+
+namespace uq {
+namespace {
+
+using data::Finding;
+using data::Severity;
+
+/// Whether the meter's reading may be another multiple of the runs' output than one.
+bool is_scaled(const data::Study& study, const data::ObservationSet& set, std::size_t output) {
+  if (set.of_machine && study.scale) return true;
+  for (const data::CalibrationCase& one : study.cases) {
+    if (std::find(one.observe.begin(), one.observe.end(), set.name) == one.observe.end()) continue;
+    for (const data::Nuisance& nuisance : one.nuisances)
+      if ((nuisance.kind == data::NuisanceKind::offset || nuisance.kind == data::NuisanceKind::gain ||
+           nuisance.kind == data::NuisanceKind::scale) &&
+          (!nuisance.output || *nuisance.output == output))
+        return true;
+  }
+  return false;
+}
+
+Extent outputs_of_runs(const data::RunTable& table, const data::ObservationSet& set, std::size_t output) {
+  Extent runs;
+  for (const data::RunRow& row : table.rows)
+    if (!row.left_out && row.material == set.material && std::isfinite(row.outputs[output]))
+      runs.add(row.outputs[output]);
+  return runs;
+}
+
+Finding exchanged_in(const data::ObservationSet& set, const std::string& one, const std::string& other,
+                     std::string why) {
+  return {.kind = data::FindingKind::exchanged_columns,
+          .place = place_of(set, set.points.front()),
+          .severity = Severity::refusal,
+          .what = fmt::format("the columns {} and {} look exchanged: {}", one, other, why),
+          .remedy = "exchange the two names in the header",
+          .places = {}};
+}
+
+/// An output's column beside that of its standard errors, or beside a control's, where the numbers of each lie where
+/// the other's belong.
+void check_exchanged(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
+                     std::vector<Finding>& findings) {
+  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    const data::Output& output = study.outputs[set.outputs[column]];
+    const Extent runs = outputs_of_runs(table, set, set.outputs[column]);
+    Extent values, errors;
+    for (const data::Observation& point : set.points)
+      if (point.has(column)) {
+        values.add(point.values[column]);
+        errors.add(point.standard_errors[column]);
+      }
+    if (runs.values.size() < 5 || values.values.size() < 2 || is_scaled(study, set, set.outputs[column])) continue;
+    const bool outside = values.high < runs.low || values.low > runs.high;
+    if (outside && errors.low >= runs.low && errors.high <= runs.high && values.high < errors.low) {
+      findings.push_back(
+          exchanged_in(set, output.name, output.name + "_se",
+                       fmt::format("{0} lies outside all runs, and {0}_se among what they give, {1:.4g} to {2:.4g}{3}",
+                                   output.name, output.unit.from_si(runs.low), output.unit.from_si(runs.high),
+                                   behind_number(output.unit.symbol))));
+      continue;
+    }
+    for (std::size_t c = 0; c < study.controls.size(); ++c) {
+      const data::Control& control = study.controls[c];
+      Extent seen;
+      for (const data::Observation& point : set.points) seen.add(control.unit.from_si(point.controls[c]));
+      const double low = control.unit.from_si(control.low), high = control.unit.from_si(control.high);
+      const bool control_off = seen.high < low || seen.low > high;
+      if (outside && control_off && output.unit.from_si(values.low) >= low &&
+          output.unit.from_si(values.high) <= high && seen.low >= output.unit.from_si(runs.low) &&
+          seen.high <= output.unit.from_si(runs.high))
+        findings.push_back(exchanged_in(set, control.name, output.name,
+                                        fmt::format("{} lies among what the runs give of {}, and {} in the range of {}",
+                                                    control.name, output.name, output.name, control.name)));
+    }
+  }
+}
+
+/// Observed outputs beside those of all runs of the material.
+void check_magnitude(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
+                     std::vector<Finding>& findings) {
+  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    const data::Output& output = study.outputs[set.outputs[column]];
+    const Extent runs = outputs_of_runs(table, set, set.outputs[column]);
+    Extent seen;
+    for (const data::Observation& point : set.points)
+      if (point.has(column)) seen.add(point.values[column]);
+    if (runs.values.size() < 5 || seen.values.empty() || is_scaled(study, set, set.outputs[column])) continue;
+    const double reach = runs.high - runs.low;
+    const double ratio = data::median_of(seen.values) / data::median_of(runs.values);
+    const bool apart = seen.high < runs.low || seen.low > runs.high;
+    const bool far = seen.high < runs.low - reach || seen.low > runs.high + reach || !(ratio > 0.2 && ratio < 5.0);
+    if (!(reach > 0.0) || !apart || !far) continue;
+    const auto shown = [&](double si) { return output.unit.from_si(si); };
+    const std::string unit = behind_number(output.unit.symbol);
+    Finding finding{
+        .kind = data::FindingKind::unit,
+        .place = place_of(set, set.points.front()) + ": " + output.name,
+        .severity = Severity::warning,
+        .what = fmt::format("observed {:.4g}{}{} lie{} outside all runs, {:.4g} to {:.4g}{}", shown(seen.low),
+                            seen.low < seen.high ? fmt::format(" to {:.4g}", shown(seen.high)) : "", unit,
+                            seen.low < seen.high ? "" : "s", shown(runs.low), shown(runs.high), unit),
+        .remedy = "",
+        .places = {}};
+    if (const auto known = known_factor(output.unit, data::median_of(seen.values), data::median_of(runs.values), 2.0))
+      finding.what += fmt::format(": {:.3g} times the runs'. Is another unit meant, {}?", ratio, known->between);
+    finding.remedy = fmt::format(
+        "check the unit of {} in {} and in the run table, the fill and the geometry; where they are "
+        "right, the model as it was run does not reach this",
+        output.name, file_of(set));
+    findings.push_back(std::move(finding));
+  }
+}
+
+/// Observed controls beside the study's range and the runs, where a factor between units would explain that they do not
+/// meet.
+void check_control_unit(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
+                        std::vector<Finding>& findings) {
+  for (std::size_t c = 0; c < study.controls.size(); ++c) {
+    const data::Control& control = study.controls[c];
+    Extent runs, seen;
+    for (const data::RunRow& row : table.rows)
+      if (!row.left_out && row.material == set.material) runs.add(row.inputs[input_column(table, control.name)]);
+    for (const data::Observation& point : set.points) seen.add(point.controls[c]);
+    if (runs.values.empty() || seen.values.empty()) continue;
+    constexpr double least_factor = 1.5;  // units differ by more
+    const double slack = 0.1 * (control.high - control.low);
+    const double typical = data::median_of(runs.values);
+    if (typical < control.low || typical > control.high) continue;  // then it is the runs' column that is odd
+    const auto met = std::count_if(seen.values.begin(), seen.values.end(), [&](double value) {
+      return value >= std::min(runs.low, control.low) - 0.2 * slack &&
+             value <= std::max(runs.high, control.high) + 0.2 * slack;
+    });
+    if (2 * static_cast<std::size_t>(met) >= seen.values.size()) continue;
+    const double middle = data::median_of(seen.values);
+    if (middle < least_factor * runs.high && least_factor * middle > runs.low) continue;
+    const UnitFactor* known = nullptr;  // that takes all readings into the range
+    const std::vector<UnitFactor> factors = unit_factors(control.unit);
+    for (const UnitFactor& candidate : factors)
+      for (const double factor : {candidate.factor, 1.0 / candidate.factor})
+        if (known == nullptr && factor * seen.low > control.low - 0.2 * slack &&
+            factor * seen.high < control.high + 0.2 * slack)
+          known = &candidate;
+    if (known == nullptr) continue;
+    findings.push_back(
+        {.kind = data::FindingKind::unit,
+         .place = place_of(set, set.points.front()) + ": " + control.name,
+         .severity = Severity::warning,
+         .what = fmt::format(
+             "observed from {:.4g} to {:.4g}{}, the runs from {:.4g} to {:.4g}. Is another unit meant, {}?",
+             control.unit.from_si(seen.low), control.unit.from_si(seen.high), behind_number(control.unit.symbol),
+             control.unit.from_si(runs.low), control.unit.from_si(runs.high), known->between),
+         .remedy = fmt::format("write both in the study's unit, or set controls.{}.unit", control.name),
+         .places = {}});
+  }
+}
+
+}  // namespace
+
+std::string place_of(const data::ObservationSet& set, const data::Observation& point) {
+  return fmt::format("{}:{}", file_of(set), point.line);
+}
+
+void check_beside_runs(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
+                       std::vector<data::Finding>& findings) {
+  check_exchanged(study, table, set, findings);
+  check_magnitude(study, table, set, findings);
+  check_control_unit(study, table, set, findings);
+}
+
+}  // namespace uq
