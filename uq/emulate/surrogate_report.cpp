@@ -247,7 +247,8 @@ void add_better_scale(SurrogateReport& report, const data::Study& study, const F
   }
   report.verdict = SurrogateWord::caution;
   report.finding += " Its errors are not the same all over the range.";
-  report.consequence = "Where the response bends, its intervals are too narrow, and so are posteriors that lie there.";
+  report.consequence =
+      "Where the response bends, its intervals may be too narrow, and so may posteriors that lie there.";
   report.remedy = advice;
 }
 
