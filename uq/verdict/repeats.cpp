@@ -104,7 +104,7 @@ std::pair<bool, bool> PathWords::ends_by_another(const Eigen::VectorXd& deviance
   const auto ended_between = [&](int inside, int outside, int further_in) {
     const Local &in = points_[inside], &out = points_[outside];
     const int other = out.at_end.value();
-    double at = out.u, rise = -1.0;  // where the other ends; of the root of the deviance with u, outwards
+    double at = out.u, rise = -HUGE_VAL;  // where the other ends; of the root of the deviance with u, outwards
     if (further_in >= 0 && further_in < static_cast<int>(points_.size())) {
       const Local& before = points_[further_in];
       const double course = (in.others[other] - before.others[other]) / (in.u - before.u);
@@ -113,8 +113,9 @@ std::pair<bool, bool> PathWords::ends_by_another(const Eigen::VectorXd& deviance
       rise = (std::sqrt(deviance[inside]) - std::sqrt(deviance[further_in])) / std::abs(in.u - before.u);
     }
     const double within = std::min(std::abs(at - in.u), std::abs(out.u - in.u));
-    // Past the least deviance; else along a straight line to the next point.
-    if (rise <= 0.0) rise = (std::sqrt(deviance[outside]) - std::sqrt(deviance[inside])) / std::abs(out.u - in.u);
+    // The least deviance lies between: it rises outwards as inwards, and no faster than to the next point, where the end bends it up.
+    const double straight = (std::sqrt(deviance[outside]) - std::sqrt(deviance[inside])) / std::abs(out.u - in.u);
+    if (rise <= 0.0) rise = std::min(straight, further_in < 0 ? straight : -rise);
     return std::sqrt(deviance[inside]) + rise * within < std::sqrt(drop);
   };
   const auto end_of = [&](int first, int last, int outwards) {
