@@ -71,6 +71,16 @@ PlanCandidate describe(const PlanBasis& basis, std::size_t i) {
   return one;
 }
 
+/// Whether the parameter asked for has separate values and one of the candidates is expected to part them.
+bool is_parted(const PlanBasis& basis, const std::vector<PlanCandidate>& all) {
+  constexpr double parted = 0.7;  // of the width over all, at most
+  const auto k = static_cast<std::size_t>(basis.about);
+  return basis.found && basis.found->parameters[k].verdict == Verdict::several_values &&
+         std::any_of(all.begin(), all.end(), [k](const PlanCandidate& one) {
+           return one.parameters[k].sd_after < parted * one.parameters[k].sd_now;
+         });
+}
+
 /// The candidates ranked by what they are worth to the question, per cost. Candidates whose output need not mean
 /// the same in the powder come last.
 std::vector<std::size_t> ranked(const PlanBasis& basis, const std::vector<PlanCandidate>& all) {
@@ -161,7 +171,7 @@ void add_arrows(const PlanBasis& basis, PlanReport& report, const std::vector<st
 
 PlanReport make_plan(const Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
                      const SampledCase& sampled, const data::PlanSection& section, const PlanOptions& options) {
-  const PlanBasis basis(study, emulators, case_index, sampled, section, options);
+  PlanBasis basis(study, emulators, case_index, sampled, section, options);
   PlanReport report{.about = basis.name_of(basis.about),
                     .prior = options.prior,
                     .cost_unit = section.cost_unit,
@@ -176,6 +186,7 @@ PlanReport make_plan(const Study& study, const std::vector<Emulator>& emulators,
     report.candidates[i] = describe(basis, static_cast<std::size_t>(i));
     basis.tell(0.3 + 0.5 * ++done / static_cast<double>(basis.candidates.size()));
   });
+  basis.by_width = is_parted(basis, report.candidates);
   const std::vector<std::size_t> order = ranked(basis, report.candidates);
   const bool open = basis.found && basis.found->parameters[basis.about].verdict != Verdict::identified;
   if (open) count_readings(basis, report.candidates, order);

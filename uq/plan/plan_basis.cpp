@@ -116,12 +116,8 @@ std::string PlanBasis::name_of(int parameter) const { return sampled.model->unkn
 const data::Unit& PlanBasis::unit_of(int parameter) const {
   return sampled.model->unknowns[parameter].prior.parameter().unit;
 }
-bool PlanBasis::has_several_values() const {
-  return found && found->parameters[static_cast<std::size_t>(about)].verdict == Verdict::several_values;
-}
-
 double PlanBasis::worth(double information, double sd_now, double sd_after) const {
-  return has_several_values() && sd_after > 0.0 ? std::log(sd_now / sd_after) : information;
+  return by_width && sd_after > 0.0 ? std::log(sd_now / sd_after) : information;
 }
 
 void PlanBasis::tell(double share) const {

@@ -32,11 +32,8 @@ struct PlanBasis {
   Information information_of(const std::vector<Eigen::Index>& rows) const;
   /// Posterior sd of a parameter before the reading, in the study's unit.
   double sd_now(int parameter) const;
-  /// Whether the data leave separate values of the parameter asked for open.
-  bool has_several_values() const;
-  /// What an expectation is worth to the question, nats: the information about the parameter asked for. Where it has separate
-  /// values, a reading may narrow each and leave both open, so the width counts there, log (sd now / sd after), which only what
-  /// parts them takes down.
+  /// What an expectation is worth to the question, nats: the information about the parameter asked for, or, `by_width`,
+  /// log (sd now / sd after).
   double worth(double information, double sd_now, double sd_after) const;
   void tell(double share) const;  ///< reports progress
 
@@ -47,6 +44,9 @@ struct PlanBasis {
   Eigen::VectorXd centre;               ///< in u: the best fit, or the prior's means
   std::optional<Identification> found;  ///< none before a measurement
   int about = 0;                        ///< the parameter asked for
+  /// The parameter has separate values, and something parts them. A reading may narrow each value and leave both open, which is
+  /// information; only what parts them takes down the width over all.
+  bool by_width = false;
   std::vector<Candidate> candidates;
   ExtendedCase extended;
   std::vector<Outlook> outlooks;       ///< one, or one for each scrambling of the prior's draws

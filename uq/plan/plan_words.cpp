@@ -37,8 +37,7 @@ std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
   const bool identified = basis.found && basis.found->parameters[k].verdict == Verdict::identified;
   std::string text;
   if (identified) text = fmt::format("{} is identified already (+- {}). ", report.about, width(gain, gain.sd_now));
-  const bool parts = basis.has_several_values() && basis.worth(0.0, gain.sd_now, gain.sd_after) > least_information;
-  if (best.teaches && parts)
+  if (best.teaches && basis.by_width)
     text += fmt::format(
         "Measure {}{} next: it is expected to part the values of {}, from +- {} over all to +- {} ({:.2f} "
         "nats).",
@@ -61,8 +60,10 @@ std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
   const auto repeat = std::find_if(report.candidates.begin(), report.candidates.end(),
                                    [](const PlanCandidate& one) { return one.kind == CandidateKind::repeat; });
   if (best.teaches && repeat != report.candidates.end() && repeat != report.candidates.begin())
-    text += fmt::format(" The best of what is measured already, once more ({}), gives {:.2f} nats.", repeat->name,
-                        repeat->parameters[k].information);
+    text += fmt::format(
+        " The best of what is measured already, once more ({}), gives {:.2f} nats{}.", repeat->name,
+        repeat->parameters[k].information,
+        basis.by_width ? fmt::format(" and leaves +- {}", width(gain, repeat->parameters[k].sd_after)) : "");
   const auto other = std::max_element(
       report.candidates.begin(), report.candidates.end(),
       [&](const auto& a, const auto& b) { return a.parameters[k].information < b.parameters[k].information; });
