@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <string>
 
 #include "data/error.hpp"
 #include "data/number_text.hpp"
@@ -93,10 +93,12 @@ class Reader {
   int line_;
 };
 
-/// R's write.table names no column of row names: every row has one field more than the heading.
+/// R's write.table names no column of row names: every row has one field more than the heading. The names are words, or
+/// count from 1; where they are other numbers, it may as well be the last column that has no name.
 void name_column_of_row_names(std::vector<CsvRecord>& records) {
+  const auto is_number = [](const std::string& field) { return plain_number(field, DecimalMark::point).has_value(); };
   CsvRecord* heading = nullptr;
-  std::set<std::string> names;
+  bool words = true, counted = true;
   std::size_t rows = 0;
   for (CsvRecord& record : records) {
     if (record.comment) continue;
@@ -104,12 +106,12 @@ void name_column_of_row_names(std::vector<CsvRecord>& records) {
       heading = &record;
       continue;
     }
-    if (record.fields.size() != heading->fields.size() + 1) return;
-    names.insert(record.fields.front());
+    if (record.fields.size() != heading->fields.size() + 1 || record.fields.back().empty()) return;
     ++rows;
+    words = words && !is_number(record.fields.front());
+    counted = counted && record.fields.front() == std::to_string(rows);
   }
-  const auto is_number = [](const std::string& field) { return plain_number(field, DecimalMark::point).has_value(); };
-  if (rows < 2 || names.size() < rows || std::any_of(heading->fields.begin(), heading->fields.end(), is_number)) return;
+  if (rows < 2 || !(words || counted) || std::any_of(heading->fields.begin(), heading->fields.end(), is_number)) return;
   heading->fields.insert(heading->fields.begin(), "");
 }
 

@@ -170,6 +170,14 @@ TEST_CASE("a column of another error than the standard error, or with an unknown
   CHECK_THAT(missing("speed,torque (%FS),n", "torque"), Catch::Contains("the unit in 'torque (%FS)' is unknown"));
 }
 
+TEST_CASE(
+    "a row with one field more than the heading is no row with a name, unless its first one counts or is a word") {
+  CHECK(data::parse_csv("a\tb\nx\t1\t2\ny\t3\t4\n", "t.txt").columns.size() == 3);
+  CHECK(data::parse_csv("a\tb\n1\t1\t2\n2\t3\t4\n", "t.txt").columns.size() == 3);
+  CHECK(data::parse_csv("a\tb\n1\t2\t\n3\t4\t\n", "t.txt").columns.size() == 2);
+  CHECK_THROWS_WITH(data::parse_csv("a\tb\n0.1\t1\t2\n0.2\t3\t4\n", "t.txt"), Catch::Contains("3 fields"));
+}
+
 TEST_CASE("a per cent in the row of units is a unit, and in a comment it begins one") {
   CHECK(data::parse_csv("share,torque\n%,mN m\n40,2\n", "t.csv").units == std::vector<std::string>{"%", "mN m"});
   CHECK(data::parse_csv("% by hand\nshare,torque\n40,2\n", "t.csv").comments == std::vector<std::string>{"by hand"});
