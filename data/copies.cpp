@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "data/log_gamma.hpp"
+
 namespace data {
 
 namespace {
@@ -14,7 +16,7 @@ double at_least(double count, double mean) {
   if (!(mean > 0.0)) return 0.0;
   if (count > mean + 10.0 * std::sqrt(mean) + 10.0) return 0.0;
   double below = 0.0;
-  for (double k = 0.0; k < count; k += 1.0) below += std::exp(k * std::log(mean) - mean - std::lgamma(k + 1.0));
+  for (double k = 0.0; k < count; k += 1.0) below += std::exp(k * std::log(mean) - mean - log_gamma(k + 1.0));
   return 1.0 - below;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "data/log_gamma.hpp"
 #include "uq/infer/factor.hpp"
 
 namespace uq {
@@ -145,7 +146,8 @@ Eigen::ArrayXXd responsibilities(const Mixture& before, const Eigen::MatrixXd& p
 /// Divides the weights by their total, and sets the constants of the densities.
 void weigh(Mixture& mixture, double total) {
   const double dimension = static_cast<double>(mixture.components.front().mean.size());
-  const double constant = std::lgamma(0.5 * (degrees_of_freedom + dimension)) - std::lgamma(0.5 * degrees_of_freedom) -
+  const double constant = data::log_gamma(0.5 * (degrees_of_freedom + dimension)) -
+                          data::log_gamma(0.5 * degrees_of_freedom) -
                           0.5 * dimension * std::log(degrees_of_freedom * std::numbers::pi);
   for (auto& component : mixture.components) {
     component.weight /= total;

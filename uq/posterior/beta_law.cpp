@@ -4,10 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "data/log_gamma.hpp"
+
 namespace uq {
 namespace {
 
-double log_beta(BetaShapes s) { return std::lgamma(s.alpha) + std::lgamma(s.beta) - std::lgamma(s.alpha + s.beta); }
+double log_beta(BetaShapes s) {
+  return data::log_gamma(s.alpha) + data::log_gamma(s.beta) - data::log_gamma(s.alpha + s.beta);
+}
 
 /// I_s(a, b) by the continued fraction, which converges fast for s < (a + 1) / (a + b + 2). `log_share`, `log_rest`: of
 /// s and of 1 - s.
