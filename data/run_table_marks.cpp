@@ -12,6 +12,7 @@
 #include "data/copies.hpp"
 #include "data/number_text.hpp"
 #include "data/run_table_files.hpp"
+#include "data/time_series.hpp"
 
 namespace data {
 namespace {
@@ -45,13 +46,38 @@ void leave_out_named(TableRead& read, const Study& study) {
   read.findings.push_back(std::move(finding));
 }
 
+/// Takes an output out of rows in which it is no result of a run, and says so. A row without any other result is left out.
+/// `others`: where the others lie; `kind`: what it is, and left out.
+void take_out(TableRead& read, std::size_t output, const std::vector<RunRow*>& rows, const char* because,
+              const std::string& value, const std::string& others, const std::string& kind) {
+  std::vector<std::string> places;
+  for (RunRow* row : rows) {
+    places.push_back(row->place);
+    row->outputs[output] = NAN;
+    row->standard_errors[output] = NAN;
+    if (std::none_of(row->outputs.begin(), row->outputs.end(), [](double one) { return std::abs(one) > 0.0; }))
+      row->left_out = {LeftOut::Because::it_failed, because};
+  }
+  Finding finding = about_rows(FindingKind::failed_runs, Severity::warning, places);
+  finding.what = fmt::format("{} {} of {} {}, where {}: {}, and left out", rows.size(),
+                             rows.size() == 1 ? "row gives a value" : "rows give a value",
+                             read.table.outputs[output].name, value, others, kind);
+  finding.remedy = "remove them, write nan, or name them in [training] leave_out";
+  read.findings.push_back(std::move(finding));
+}
+
+/// "4 to 9 mN m", of SI values.
+std::string from_to(const Column& column, double low, double high) {
+  return fmt::format("{:.4g} to {:.4g}{}", column.unit.from_si(low), column.unit.from_si(high),
+                     behind_number(column.unit.symbol));
+}
+
 /// Runs that did not want to be: 0 with a standard error of 0, where most others have one above 0.
 void leave_out_zeros(TableRead& read) {
   RunTable& table = read.table;
   for (std::size_t k = 0; k < table.outputs.size(); ++k) {
     std::size_t others = 0, with_error = 0;
     std::vector<RunRow*> zeros;
-    std::vector<std::string> places;
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (RunRow& row : table.rows) {
       if (row.left_out || !std::isfinite(row.outputs[k])) continue;
@@ -65,25 +91,9 @@ void leave_out_zeros(TableRead& read) {
       high = std::max(high, row.outputs[k]);
     }
     if (zeros.empty() || 2 * with_error <= others || zeros.size() > others) continue;
-    const bool all_zero = table.outputs.size() == 1;
-    for (RunRow* row : zeros) {
-      places.push_back(row->place);
-      const bool nothing_else =
-          std::all_of(row->outputs.begin(), row->outputs.end(), [](double value) { return !(std::abs(value) > 0.0); });
-      row->outputs[k] = NAN;
-      row->standard_errors[k] = NAN;
-      if (all_zero || nothing_else)
-        row->left_out = {LeftOut::Because::it_failed, "0 with a standard error of 0: a run that failed"};
-    }
-    const Column& column = table.outputs[k];
-    Finding finding = about_rows(FindingKind::failed_runs, Severity::warning, places);
-    finding.what = fmt::format(
-        "{} {} of {} exactly 0 with a standard error of exactly 0, where the others lie from {:.4g} to {:.4g}{}: runs "
-        "that failed, and left out",
-        zeros.size(), zeros.size() == 1 ? "row gives a value" : "rows give a value", column.name,
-        column.unit.from_si(low), column.unit.from_si(high), behind_number(column.unit.symbol));
-    finding.remedy = "remove them, write nan, or name them in [training] leave_out";
-    read.findings.push_back(std::move(finding));
+    take_out(read, k, zeros, "0 with a standard error of 0: a run that failed",
+             "exactly 0 with a standard error of exactly 0",
+             "the others lie from " + from_to(table.outputs[k], low, high), "runs that failed");
   }
 }
 
@@ -133,9 +143,17 @@ void leave_out_stand_ins(TableRead& read) {
   RunTable& table = read.table;
   for (std::size_t k = 0; k < table.outputs.size(); ++k) {
     std::map<double, std::vector<RunRow*>> rows_of;
+    std::vector<double> sizes;
     for (RunRow& row : table.rows)
-      if (!row.left_out && std::isfinite(row.outputs[k])) rows_of[row.outputs[k]].push_back(&row);
+      if (!row.left_out && std::isfinite(row.outputs[k])) {
+        rows_of[row.outputs[k]].push_back(&row);
+        sizes.push_back(std::abs(row.outputs[k]));
+      }
+    const double typical = median_of(std::move(sizes));
     for (auto& [value, rows] : rows_of) {
+      // Few values are looked at beside all others: those that many rows have, and the least and the largest.
+      const bool extreme = value == rows_of.begin()->first || value == rows_of.rbegin()->first;
+      if ((rows.size() < several && !extreme) || (value != 0.0 && std::abs(value) <= far * typical)) continue;
       const OtherRuns others = runs_beside(table, k, value);
       if (others.count < several || rows.size() > others.count) continue;
       const bool beyond = std::abs(value) > (rows.size() < several ? absurd : far) * others.largest;
@@ -144,24 +162,10 @@ void leave_out_stand_ins(TableRead& read) {
       std::set<std::vector<double>> points;
       for (const RunRow* row : rows) points.insert(row->inputs);
       if (!(beyond || nothing) || (rows.size() >= several && points.size() < several)) continue;
-      std::vector<std::string> places;
-      for (RunRow* row : rows) {
-        places.push_back(row->place);
-        row->outputs[k] = NAN;
-        row->standard_errors[k] = NAN;
-        if (std::all_of(row->outputs.begin(), row->outputs.end(), [](double one) { return !std::isfinite(one); }))
-          row->left_out = {LeftOut::Because::it_failed, "one number in the place of a result: a run that failed"};
-      }
-      const Column& column = table.outputs[k];
-      Finding finding = about_rows(FindingKind::failed_runs, Severity::warning, places);
-      finding.what = fmt::format(
-          "{} {} of {} {:.6g}, where the magnitudes of the others lie from {:.4g} to {:.4g}{}: no result of a run, and left "
-          "out",
-          rows.size(), rows.size() == 1 ? "row gives a value" : "rows give a value", column.name,
-          column.unit.from_si(value), column.unit.from_si(others.least), column.unit.from_si(others.largest),
-          behind_number(column.unit.symbol));
-      finding.remedy = "remove them, write nan, or name them in [training] leave_out";
-      read.findings.push_back(std::move(finding));
+      take_out(read, k, rows, "one number in the place of a result: a run that failed",
+               fmt::format("{:.6g}", table.outputs[k].unit.from_si(value)),
+               "the magnitudes of the others lie from " + from_to(table.outputs[k], others.least, others.largest),
+               "no result of a run");
     }
   }
 }
