@@ -152,6 +152,13 @@ std::vector<BoundHit> find_bound_hits(const Objective& objective, const Eigen::V
 
 }  // namespace
 
+FitOptions quick(FitOptions options) {
+  options.starts = std::min(options.starts, 2);
+  options.hyper_uncertainty = HyperUncertainty::plug_in;
+  options.first_start = {};
+  return options;
+}
+
 GaussianProcess fit(const TrainingSet& training, const FitOptions& options) {
   Standardised data = standardise(training, options.scale, centre_of(options.mean));
   const int d = static_cast<int>(data.active.size()), p = flat_coefficients(options.mean, d);

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "uq/calibrate/data_columns.hpp"
-#include "uq/emulate/scale_hint.hpp"
 #include "uq/findings/study_units.hpp"
 
 namespace uq {
@@ -90,10 +89,6 @@ void say_misfit(Words& words, const CaseReport& report, const data::Study& study
     words.finding += " " + sets.finding;
     words.remedies.insert(words.remedies.begin(), sets.remedy);
   }
-  for (const RowGroup& group : model.groups)
-    if (const std::string hint = scale_hint(study, group.emulator.control_range);
-        !hint.empty() && shown_remedy(words).find(hint) == std::string::npos)
-      words.remedies.push_back(hint);
 }
 
 void say_lone_reading(CaseReport& report, Words& words, const data::Study& study, const LoneReading& lone) {

@@ -12,6 +12,7 @@
 
 #include "data/study.hpp"
 #include "surrogate/gaussian_process.hpp"
+#include "surrogate/stretch.hpp"
 
 namespace uq {
 
@@ -19,8 +20,12 @@ enum class InputKind { parameter, control };
 
 struct EmulatorInput {
   InputKind kind = InputKind::parameter;
-  std::size_t index = 0;  ///< index into Study::parameters or Study::controls
+  std::size_t index = 0;            ///< index into Study::parameters or Study::controls
+  surrogate::Stretch stretch = {};  ///< from the study's unit interval to that on which the runs are learnt
 };
+
+/// Points of the unit cube on the scales on which the runs are learnt.
+Eigen::MatrixXd learnt_points(const std::vector<EmulatorInput>& inputs, Eigen::MatrixXd points);
 
 /// The study's input; it refers to the study.
 inline data::Input input_of(const data::Study& study, const EmulatorInput& input) {
@@ -35,7 +40,8 @@ inline data::Input input_of(const data::Study& study, const EmulatorInput& input
 /// The runs that an emulator has learnt from, as far as uq/posterior/support.hpp needs them.
 struct RunCloud {
   Eigen::MatrixXd points;         ///< unit cube, one per row, both levels where there are two
-  Eigen::VectorXd length_scales;  ///< unit cube
+  Eigen::MatrixXd learnt;         ///< the same on the scales on which they are learnt
+  Eigen::VectorXd length_scales;  ///< of `learnt`
   double prior_variance = 0.0;    ///< variance of the process without any runs: SI^2, or of the logarithm
   bool logarithmic = false;       ///< the output is learnt as a logarithm
 };
@@ -59,7 +65,10 @@ struct Emulator {
   std::string doubt = {};                     ///< why no verdict can rest on the emulator; empty: one can
 };
 
-/// A process of the surrogate layer as an emulator; it is shared, not copied.
+/// An emulator of points of the unit cube, from one whose functions take learnt points.
+Emulator on_study_scales(Emulator emulator);
+
+/// A process of the surrogate layer as an emulator of the unit cube; it is shared, not copied.
 template <class Process>
 Emulator make_emulator(std::shared_ptr<const Process> process, std::string material, std::size_t output,
                        std::vector<EmulatorInput> inputs) {
@@ -82,7 +91,7 @@ Emulator make_emulator(std::shared_ptr<const Process> process, std::string mater
   emulator.predict_batch = [process](const Eigen::MatrixXd& points, int group) -> std::vector<surrogate::Prediction> {
     return process->predict_batch(points, group);
   };
-  return emulator;
+  return on_study_scales(std::move(emulator));
 }
 
 }  // namespace uq

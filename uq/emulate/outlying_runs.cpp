@@ -85,13 +85,9 @@ std::vector<int> repeated_outputs(const surrogate::TrainingSet& training) {
 /// A process of the runs kept, if there can be one.
 std::optional<surrogate::GaussianProcess> fitted_to(const surrogate::TrainingSet& training,
                                                     const std::vector<int>& kept, const surrogate::FitOptions& fit) {
-  surrogate::FitOptions quick = fit;
-  quick.starts = std::min(fit.starts, 2);
-  quick.hyper_uncertainty = surrogate::HyperUncertainty::plug_in;
-  quick.first_start = {};
   const VectorXd noise = training.noise_variance.size() > 0 ? VectorXd(training.noise_variance(kept)) : VectorXd();
   try {
-    return surrogate::fit({training.x(kept, Eigen::all), training.y(kept), noise}, quick);
+    return surrogate::fit({training.x(kept, Eigen::all), training.y(kept), noise}, quick(fit));
   } catch (const data::InputError&) {
     return {};
   }

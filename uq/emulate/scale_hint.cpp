@@ -17,12 +17,9 @@ bool log_is_worth_a_try(data::Scale scale, std::pair<double, double> covered) {
 
 /// Whether none of the accused is outlying for a process that learns these data; its leave-one-out error, if so.
 std::optional<double> clears(const surrogate::TrainingSet& training, const std::vector<int>& accused,
-                             surrogate::FitOptions fit) {
-  fit.starts = std::min(fit.starts, 2);
-  fit.hyper_uncertainty = surrogate::HyperUncertainty::plug_in;
-  fit.first_start = {};
+                             const surrogate::FitOptions& fit) {
   try {
-    const surrogate::GaussianProcess process = surrogate::fit(training, fit);
+    const surrogate::GaussianProcess process = surrogate::fit(training, quick(fit));
     const OutlyingRuns found = find_outlying(training, process, fit);
     for (const int run : accused)
       if (std::find(found.runs.begin(), found.runs.end(), run) != found.runs.end()) return {};
@@ -42,6 +39,7 @@ std::optional<TriedScale> best_log_scale(const data::Study& study, const Trainin
                                          const std::vector<int>& accused, const surrogate::FitOptions& fit) {
   std::optional<TriedScale> best;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
+    if (!rows.inputs[k].stretch.is_none()) continue;
     const data::Input input = input_of(study, rows.inputs[k]);
     surrogate::TrainingSet other = rows.set;
     auto column = other.x.col(static_cast<Eigen::Index>(k));
@@ -68,25 +66,12 @@ std::optional<TriedScale> best_log_scale(const data::Study& study, const Trainin
   return best;
 }
 
-std::string scale_hint(const data::Study& study, const std::map<std::size_t, std::pair<double, double>>& covered) {
-  std::string text;
-  for (const auto& [index, range] : covered) {
-    const data::Control& control = study.controls[index];
-    if (!log_is_worth_a_try(control.scale, range)) continue;
-    text += fmt::format(
-        "{}If the response bends at low {}, the surrogate misses that on a linear scale: try [controls.{}] scale = "
-        "\"log\".",
-        text.empty() ? "" : " ", control.name, control.name);
-  }
-  return text;
-}
-
 std::string bend_hint(const data::Study& study, const EmulatorInput& input, std::pair<double, double> covered,
                       bool low) {
   const bool control = input.kind == InputKind::control;
   const std::string& name = control ? study.controls[input.index].name : study.parameters[input.index].name;
   const data::Scale scale = control ? study.controls[input.index].scale : study.parameters[input.index].scale;
-  if (low && log_is_worth_a_try(scale, covered))
+  if (low && input.stretch.is_none() && log_is_worth_a_try(scale, covered))
     return fmt::format("Try [{}.{}] scale = \"log\" first.", control ? "controls" : "parameters", name);
   return fmt::format("Make more runs at {} {} first.", low ? "low" : "high", name);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Controls that a surrogate might learn better on a log scale.
+// Scales on which a surrogate might learn better than on those that it has chosen itself (surrogate/stretch.hpp).
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -16,10 +16,6 @@ namespace uq {
 /// that goes with a power of the control bends most at the control's low end, where a stationary process goes wrong
 /// first.
 inline constexpr double wide_control = 5.0;
-
-/// A sentence that names the controls for which a log scale is worth a try; empty where there are none. `covered`: the
-/// range of each control that the runs cover [SI].
-std::string scale_hint(const data::Study& study, const std::map<std::size_t, std::pair<double, double>>& covered);
 
 /// A sentence about what might let the surrogate bend at one end of an input. At the low end of an input that covers a
 /// wide range on a linear scale it is a log scale, else more runs.

@@ -69,6 +69,7 @@ SavedSurrogates load_surrogates(const std::string& path, const data::Study& stud
                            .process = std::make_shared<const surrogate::GaussianProcess>(saved.process),
                            .two_level = {},
                            .report = surrogate_report_from(saved.remarks, path)};
+      stretch_rows(item.rows, item.report.stretches);
       if (saved.high) item.two_level = std::make_shared<const surrogate::TwoLevelProcess>(saved.process, *saved.high);
       result.fitted.push_back(std::move(item));
     }

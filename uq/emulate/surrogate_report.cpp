@@ -107,9 +107,9 @@ std::string point_text(const data::Study& study, const TrainingRows& rows, const
   std::string text;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     const data::Input input = input_of(study, rows.inputs[k]);
+    const double place = study_place(rows.inputs[k], point[static_cast<Eigen::Index>(k)]);
     text += fmt::format("{}{} {:.3g}{}", text.empty() ? "" : ", ", input.name,
-                        input.unit.from_si(input.axis.from_unit(point[static_cast<Eigen::Index>(k)])),
-                        behind_number(input.unit.symbol));
+                        input.unit.from_si(input.axis.from_unit(place)), behind_number(input.unit.symbol));
   }
   return text;
 }
@@ -137,6 +137,27 @@ void note_gaps(SurrogateReport& report, const data::Study& study, const FittedSu
         "Runs there would show it. Where the response is known to be smooth, [surrogate] "
         "between_runs = \"trusted\" takes the doubt away",
         values.size(), input_of(study, fitted.rows.inputs[input]).name, at_end ? "beyond" : "between", 100.0 * widest));
+  }
+}
+
+/// Says on which scales inputs are learnt, where these are not the study's own.
+void note_scales(SurrogateReport& report, const data::Study& study, const TrainingRows& rows) {
+  for (const EmulatorInput& one : rows.inputs) {
+    if (one.stretch.is_none()) continue;
+    const data::Input input = input_of(study, one);
+    const double r = one.stretch.ratio;
+    std::string scale = "a log scale whose " + std::string(r > 1.0 ? "low" : "high") + " end is stretched";
+    if (input.axis.scale == data::Scale::linear) {
+      const double shift = input.unit.differences().from_si((input.axis.high - r * input.axis.low) / (r - 1.0));
+      const double size = input.unit.differences().from_si(input.axis.high - input.axis.low);
+      scale = std::abs(shift) < 1e-9 * std::abs(size) ? fmt::format("log({})", input.name)
+              : r > 1.0 ? fmt::format("log({} {} {:.3g}{})", input.name, shift > 0.0 ? "+" : "-", std::abs(shift),
+                                      behind_number(input.unit.symbol))
+                        : fmt::format("log({:.3g}{} - {})", -shift, behind_number(input.unit.symbol), input.name);
+    }
+    report.notes.push_back(fmt::format(
+        "{} is learnt as {}: the response bends more at the {} end of its range, and on this scale alike all over",
+        input.name, scale, r > 1.0 ? "low" : "high"));
   }
 }
 
@@ -195,6 +216,7 @@ void add_hyper_parameters(SurrogateReport& report, const data::Study& study, con
   report.nugget_sd = nugget_sd / study.outputs[rows.output].unit.factor;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     report.inputs.push_back(input_of(study, rows.inputs[k]).name);
+    report.stretches.push_back(rows.inputs[k].stretch.ratio);
     report.length_scales.push_back(hyper.length_scales[k]);
   }
   report.converged =
@@ -279,6 +301,7 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
   report.remedy += points_in_words(study, rows, found);
   add_hyper_parameters(report, study, fitted, fit_options.scale);
   add_sensitivity(report, fitted, options.fit.seed);
+  note_scales(report, study, rows);
   note_gaps(report, study, fitted);
   if (fitted.two_level) {
     add_levels(report, fitted, output);
@@ -300,6 +323,8 @@ std::vector<std::string> extrapolation_notes(const data::Study& study, const Tra
       low = std::min(low, column.minCoeff());
       high = std::max(high, column.maxCoeff());
     }
+    low = study_place(input, low);
+    high = study_place(input, high);
     if (input.kind == InputKind::parameter) {
       // A scrambled design of a few dozen runs stops several percent short of its range's ends.
       constexpr double slack = 0.1;

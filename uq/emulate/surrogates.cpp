@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uq/emulate/outlying_runs.hpp"
 #include "uq/emulate/surrogate_report.hpp"
 #include "uq/findings/study_units.hpp"
 
@@ -24,6 +25,32 @@ bool is_observed(const data::Study& study, const TrainingRows& rows) {
   return some(study.cases) || some(study.unused_data);
 }
 
+/// Runs without those that all others contradict. One wrong run can look like a bend.
+surrogate::TrainingSet without_outlying(const surrogate::TrainingSet& runs, const surrogate::FitOptions& fit) {
+  const OutlyingRuns found = find_outlying(runs, surrogate::fit(runs, quick(fit)), fit);
+  std::vector<int> kept;
+  for (int run = 0; run < runs.y.size(); ++run)
+    if (std::find(found.runs.begin(), found.runs.end(), run) == found.runs.end()) kept.push_back(run);
+  return surrogate::chosen(runs, kept);
+}
+
+/// The scales on which the runs are learnt best; those of the cheaper level where there are two, since they are many.
+std::vector<double> chosen_ratios(const data::Study& study, const TrainingRows& rows,
+                                  const surrogate::FitOptions& fit) {
+  const surrogate::TrainingSet& runs = rows.low ? *rows.low : rows.set;
+  std::vector<double> own, ratios;
+  for (const EmulatorInput& input : rows.inputs) {
+    const data::Axis axis = input_of(study, input).axis;
+    own.push_back(axis.scale == data::Scale::linear && axis.low > 0.0 ? axis.high / axis.low : 1.0);
+  }
+  const auto is_none = [](const surrogate::Stretch& stretch) { return stretch.is_none(); };
+  std::vector<surrogate::Stretch> stretches = surrogate::choose_stretches(runs, fit, own);
+  if (!std::all_of(stretches.begin(), stretches.end(), is_none))
+    stretches = surrogate::choose_stretches(without_outlying(runs, fit), fit, own);
+  for (const surrogate::Stretch& stretch : stretches) ratios.push_back(stretch.ratio);
+  return ratios;
+}
+
 FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const SurrogateOptions& options) {
   const surrogate::FitOptions fit_options = options_for(study, rows, options);
   FittedSurrogate fitted{.rows = std::move(rows), .process = {}, .two_level = {}, .report = {}};
@@ -39,6 +66,7 @@ FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const Surro
       places = std::move(left);
     }
   }
+  stretch_rows(fitted.rows, chosen_ratios(study, fitted.rows, fit_options));
   const surrogate::TrainingSet& base = fitted.rows.low ? *fitted.rows.low : fitted.rows.set;
   fitted.process = std::make_shared<const surrogate::GaussianProcess>(surrogate::fit(base, fit_options));
   if (fitted.rows.low)
@@ -70,17 +98,21 @@ std::string described(const SurrogateReport& report) {
 std::shared_ptr<const RunCloud> cloud_of(const FittedSurrogate& fitted) {
   const surrogate::HyperParameters hyper = fitted.process->hyper_parameters();
   auto cloud = std::make_shared<RunCloud>();
-  cloud->points = fitted.rows.set.x;
+  cloud->learnt = fitted.rows.set.x;
   cloud->length_scales = hyper.length_scales;
   cloud->prior_variance = hyper.signal_sd * hyper.signal_sd;
   cloud->logarithmic = fitted.process->data().scale == surrogate::OutputScale::log;
   if (fitted.two_level) {
     const Eigen::MatrixXd& low = fitted.rows.low->x;
-    cloud->points.conservativeResize(fitted.rows.set.x.rows() + low.rows(), Eigen::NoChange);
-    cloud->points.bottomRows(low.rows()) = low;
+    cloud->learnt.conservativeResize(fitted.rows.set.x.rows() + low.rows(), Eigen::NoChange);
+    cloud->learnt.bottomRows(low.rows()) = low;
     const surrogate::TwoLevelParameters& two = fitted.two_level->parameters();
     cloud->prior_variance = two.rho * two.rho * cloud->prior_variance + two.discrepancy_sd * two.discrepancy_sd;
   }
+  cloud->points = cloud->learnt;
+  for (std::size_t k = 0; k < fitted.rows.inputs.size(); ++k)
+    for (double& place : cloud->points.col(static_cast<Eigen::Index>(k)))
+      place = study_place(fitted.rows.inputs[k], place);
   return cloud;
 }
 
@@ -109,6 +141,16 @@ std::string outlying_warning(const SurrogateReport& report) {
 }
 
 }  // namespace
+
+void stretch_rows(TrainingRows& rows, const std::vector<double>& ratios) {
+  for (std::size_t k = 0; k < std::min(ratios.size(), rows.inputs.size()); ++k) {
+    rows.inputs[k].stretch.ratio = ratios[k];
+    const auto column = static_cast<Eigen::Index>(k);
+    for (double& u : rows.set.x.col(column)) u = rows.inputs[k].stretch.place(u);
+    if (!rows.low) continue;
+    for (double& u : rows.low->x.col(column)) u = rows.inputs[k].stretch.place(u);
+  }
+}
 
 std::string leave_out_key(const std::vector<OutlyingRun>& runs) {
   std::string key;

@@ -25,10 +25,16 @@ struct TrainingRows {
   surrogate::TrainingSet set;                 ///< SI
   std::optional<surrogate::TrainingSet> low;  ///< SI, runs of the cheaper level
   std::vector<std::string> places;            ///< place of each run of `set`: "runs.csv:31"
-  std::vector<EmulatorInput> inputs;
-  std::map<std::size_t, double> constants;  ///< parameters held at one value, SI
+  std::vector<EmulatorInput> inputs;          ///< columns of the points, which lie on their learnt scales
+  std::map<std::size_t, double> constants;    ///< parameters held at one value, SI
   std::map<std::size_t, std::pair<double, double>> control_range;
 };
+
+/// The place on the study's unit interval of a point's learnt coordinate.
+inline double study_place(const EmulatorInput& input, double learnt) { return input.stretch.origin(learnt); }
+
+/// Moves the rows of all levels, which lie in the study's unit cube, to other scales; one ratio for each input.
+void stretch_rows(TrainingRows& rows, const std::vector<double>& ratios);
 
 struct FittedSurrogate {
   TrainingRows rows;

@@ -32,8 +32,9 @@ struct SurrogateReport {
   std::string unit;
   SurrogateWord verdict = SurrogateWord::unusable;
   std::string finding, consequence, remedy;
-  std::vector<std::string> inputs;                        ///< names of the active inputs
-  std::vector<double> length_scales;                      ///< in units of the input's range
+  std::vector<std::string> inputs;    ///< names of the active inputs
+  std::vector<double> stretches;      ///< how the inputs' scales are stretched (surrogate/stretch.hpp), 1: as they are
+  std::vector<double> length_scales;  ///< in units of the input's range, on the stretched scale
   std::vector<double> first_order, first_order_sd;        ///< Sobol indices of the inputs (uq/emulate/sensitivity.hpp)
   std::vector<double> total_order, total_order_sd;        ///< with their sd from the surrogate's uncertainty
   std::vector<double> observed, predicted, standardised;  ///< leave-one-out, per run

@@ -25,6 +25,7 @@ void visit_fields(Visit&& visit, T& s) {
   visit("nugget_sd", s.nugget_sd);
   visit("unit", s.unit);
   visit("inputs", s.inputs);
+  visit("stretches", s.stretches);
   visit("length_scales", s.length_scales);
   visit.table("sobol", [&](auto& sobol) {
     sobol("first", s.first_order);

@@ -142,9 +142,9 @@ struct RunsAround {
 
 RunsAround runs_around(const Ground& ground, const VectorXd& u, const SupportThresholds& t) {
   const Emulator& emulator = ground.group->emulator;
-  const MatrixXd points = points_at(ground, u);
+  const MatrixXd points = points_at(ground, u), learnt = learnt_points(emulator.inputs, points);
   const VectorXd ratios = variance_ratio(emulator, points);
-  const MatrixXd scaled = emulator.runs->points.array().rowwise() / emulator.runs->length_scales.transpose().array();
+  const MatrixXd scaled = emulator.runs->learnt.array().rowwise() / emulator.runs->length_scales.transpose().array();
   const Index rows = points.rows(), inputs = points.cols();
   std::vector<Index> outside(static_cast<std::size_t>(inputs), 0), gap(outside);
   RunsAround met{.outside = {}, .gap = std::vector<int>(static_cast<std::size_t>(inputs), -1)};
@@ -177,7 +177,7 @@ RunsAround runs_around(const Ground& ground, const VectorXd& u, const SupportThr
     empty += hole;
     uncertain += ratios[i] > t.uncertain;
     any += bad || hole || ratios[i] > t.uncertain;
-    const VectorXd here = points.row(i).transpose().array() / emulator.runs->length_scales.array();
+    const VectorXd here = learnt.row(i).transpose().array() / emulator.runs->length_scales.array();
     met.distance += std::sqrt((scaled.rowwise() - here.transpose()).rowwise().squaredNorm().minCoeff());
   }
   for (Index k = 0; k < inputs; ++k) {
