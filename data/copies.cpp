@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "data/log_gamma.hpp"
 
@@ -20,9 +21,8 @@ double at_least(double count, double mean) {
   return 1.0 - below;
 }
 
-}  // namespace
-
-double resolution(const std::vector<double>& numbers) {
+/// The last decimal that any of the numbers uses.
+double last_decimal(const std::vector<double>& numbers) {
   double step = 1.0;
   for (int decimals = 0; decimals < 12; ++decimals, step /= 10.0) {
     const bool whole = std::all_of(numbers.begin(), numbers.end(), [&](double number) {
@@ -32,6 +32,30 @@ double resolution(const std::vector<double>& numbers) {
     if (whole) return step;
   }
   return step;
+}
+
+/// The step of a grid on which all numbers lie to within their last decimal; none where they lie on none, or are few.
+std::optional<double> grid_step(const std::vector<double>& numbers, double decimal) {
+  constexpr std::size_t few = 6;
+  const std::set<double> sorted(numbers.begin(), numbers.end());
+  if (sorted.size() < few) return {};
+  const std::vector<double> values(sorted.begin(), sorted.end());
+  double step = values.back() - values.front();
+  for (std::size_t i = 1; i < values.size(); ++i) step = std::min(step, values[i] - values[i - 1]);
+  if (step < 3.0 * decimal) return {};
+  for (const double value : values) {
+    const double steps = std::round((value - values.front()) / step);
+    if (std::abs(value - values.front() - steps * step) > 1.01 * decimal) return {};
+    if (steps > 0.0) step = (value - values.front()) / steps;  // known the better the farther off
+  }
+  return step;
+}
+
+}  // namespace
+
+double resolution(const std::vector<double>& numbers) {
+  const double decimal = last_decimal(numbers);
+  return std::max(decimal, grid_step(numbers, decimal).value_or(0.0));
 }
 
 std::vector<std::optional<std::size_t>> copies_of(const std::vector<RepeatableRow>& rows) {

@@ -166,6 +166,40 @@ std::vector<std::size_t> points_with(const ObservationSet& set, std::size_t colu
   return found;
 }
 
+std::vector<std::pair<std::size_t, std::size_t>> points_at_same_settings(const Study& study, const ObservationSet& set,
+                                                                         const ObservationSet& other) {
+  struct Pair {
+    double apart;
+    std::size_t point, other;
+  };
+  const auto apart = [&](const Observation& a, const Observation& b) {
+    double largest = 0.0;
+    for (std::size_t c = 0; c < study.controls.size(); ++c) {
+      const Axis axis = study.controls[c].axis();
+      largest = std::max(largest, std::abs(axis.to_unit(a.controls[c]) - axis.to_unit(b.controls[c])));
+    }
+    return largest;
+  };
+  std::vector<Pair> near;
+  for (std::size_t i = 0; i < set.points.size(); ++i)
+    for (std::size_t j = 0; j < other.points.size(); ++j)
+      if (const double distance = apart(set.points[i], other.points[j]); distance <= same_setting)
+        near.push_back({distance, i, j});
+  // Equal to rounding is equal: replicates keep the order of the files.
+  constexpr double rounding = 1e-9;
+  std::stable_sort(near.begin(), near.end(), [](const Pair& a, const Pair& b) {
+    return std::floor(a.apart / rounding) < std::floor(b.apart / rounding);
+  });
+  std::vector<bool> taken(set.points.size(), false), other_taken(other.points.size(), false);
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (const Pair& pair : near) {
+    if (taken[pair.point] || other_taken[pair.other]) continue;
+    taken[pair.point] = other_taken[pair.other] = true;
+    pairs.emplace_back(pair.point, pair.other);
+  }
+  return pairs;
+}
+
 const Nuisance* noise_instead(const Study& study, const ObservationSet& set, std::size_t output) {
   const Nuisance* instead = nullptr;
   const auto reads = [&](const std::vector<std::string>& observe) {

@@ -63,8 +63,13 @@ PlanEntry read_entry(const Section& section, const Study& study) {
     std::vector<std::string> meters;
     for (const ObservationSet& set : study.observations)
       if (!set.meter.empty()) meters.push_back(set.meter);
-    index_of(section, "meter", entry.meter, meters, "meter");
-    if (entry.common_error)
+    if (std::find(meters.begin(), meters.end(), entry.meter) == meters.end())
+      section.problem("meter", fmt::format("'{}' has read none of the study's measurements", entry.meter),
+                      meters.empty()
+                          ? "leave it out: a new meter needs no name here"
+                          : fmt::format("name one that has ({}), or leave it out: a new meter needs no name here",
+                                        fmt::join(meters, ", ")));
+    else if (entry.common_error)
       section.problem("common_error",
                       fmt::format("is stated, but that of '{}' stands with its measurements", entry.meter),
                       "leave one of the two out");

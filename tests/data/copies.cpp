@@ -1,6 +1,7 @@
 #include "data/copies.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 using data::copies_of;
 using data::RepeatableRow;
@@ -9,6 +10,27 @@ TEST_CASE("the resolution of numbers is the last decimal that any of them uses")
   CHECK(data::resolution({3.0, 40.0}) == 1.0);
   CHECK(data::resolution({3.1, 2.25, 4.0}) == Approx(0.01));
   CHECK(data::resolution({1.0 / 3.0}) == Approx(1e-12));
+}
+
+TEST_CASE("numbers of a meter of few bits have its step, whatever the digits they are written with") {
+  CHECK(data::resolution({0.05, 0.15, 0.2, 0.45, 0.8, 1.0}) == Approx(0.05));
+  // Twelve bits of 100 mN m, to four decimals.
+  std::vector<double> readings;
+  for (const double steps : {7.0, 8.0, 11.0, 40.0, 41.0, 300.0, 301.0, 2047.0})
+    readings.push_back(std::round(1e4 * steps * 100.0 / 4096.0) / 1e4);
+  CHECK(data::resolution(readings) == Approx(100.0 / 4096.0).epsilon(1e-3));
+  // Five numbers lie on a grid by chance, and others on none.
+  CHECK(data::resolution({0.05, 0.15, 0.2, 0.45, 0.8}) == Approx(0.01));
+  CHECK(data::resolution({0.05, 0.15, 0.2, 0.45, 0.8, 1.0, 1.03}) == Approx(0.01));
+}
+
+TEST_CASE("replicates of a coarse meter agree by chance") {
+  // Steps of 0.05 at an error of 0.06: two readings agree with probability 0.24.
+  const std::vector<double> readings{1.00, 1.05, 1.05, 1.10, 0.95, 1.05, 1.10, 1.00, 1.20, 1.15, 1.05, 1.25};
+  std::vector<RepeatableRow> rows;
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    rows.push_back({{static_cast<double>(i / 4)}, {readings[i]}, {0.06}});
+  for (const auto& copy : copies_of(rows)) CHECK_FALSE(copy);
 }
 
 TEST_CASE("a row that is equal in all digits to a reading of the same point is a copy of the first of them") {

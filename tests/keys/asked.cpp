@@ -73,6 +73,7 @@ estimate = "maximum a posteriori"
 hyper_parameters = "plugged in"
 between_runs = "doubted"
 nugget = true
+stretch = true
 starts = 4
 runs_most = 1000
 log_outputs = []

@@ -28,6 +28,11 @@ void add_findings(CalibrationReport& report, const std::vector<data::Finding>& f
     (finding.severity == data::Severity::note ? report.cautions : report.warnings).push_back(data::describe(finding));
 }
 
+/// The remedies of a case behind one that comes before them; "None needed." is none.
+std::string before_remedy(const std::string& first, const std::string& remedy) {
+  return remedy.starts_with("None needed") ? first : first + " Then: " + remedy;
+}
+
 /// Puts suspicions about units and errors before any other remedy.
 void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& findings) {
   using enum data::FindingKind;
@@ -35,8 +40,9 @@ void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& 
     if (finding.severity == data::Severity::warning &&
         (finding.kind == unit || (finding.kind == standard_errors && report.lone_reading.empty()) ||
          finding.kind == no_response)) {
-      report.remedy = fmt::format("First settle what is said of the data ({}: {}). Then: {}", to_text(finding.kind),
-                                  finding.place, report.remedy);
+      report.remedy = before_remedy(
+          fmt::format("First settle what is said of the data ({}: {}).", to_text(finding.kind), finding.place),
+          report.remedy);
       return;
     }
 }
@@ -45,10 +51,11 @@ void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& 
 void put_failed_prediction_first(CaseReport& report, const std::string& name) {
   report.consequence =
       fmt::format("The values describe the data that they come from, and not {}. {}", name, report.consequence);
-  report.remedy = fmt::format(
-      "First find out what differs at {}: calibrate with it, too; where nothing fits both, the "
-      "model lacks what acts there. Then: {}",
-      name, report.remedy);
+  report.remedy = before_remedy(
+      fmt::format("First find out what differs at {}: calibrate with it, too; where nothing fits both, the "
+                  "model lacks what acts there.",
+                  name),
+      report.remedy);
 }
 
 /// The surrogates again without the runs that the others contradict; none where there are no such runs, or too few

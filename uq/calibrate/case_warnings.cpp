@@ -46,7 +46,7 @@ void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const E
 }
 
 void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled) {
-  if (of == DoubtOf::support || of == DoubtOf::runs)
+  if (of == DoubtOf::support || of == DoubtOf::runs || of == DoubtOf::source)
     report.warnings.push_back(fmt::format("case {}: {}", report.name, report.doubt));
   if (!sampled.draws.converged)
     report.warnings.push_back(

@@ -53,6 +53,9 @@ void say_doubt(CaseReport& report, DoubtOf of, Words& words, const data::Study& 
     words.consequence = "The values are those of draws that do not agree yet, and no results.";
     words.remedies = {
         "Fix what the data say nothing of, or try the other sampler (--sampler nuts, --sampler mixture)."};
+  } else if (of == DoubtOf::source) {
+    words.consequence = "What rests on that case is no result either.";
+    words.remedies = {"Follow the remedy of that case first; then calibrate again."};
   } else {
     words.consequence = "The values with and without those runs are both shown; neither is a result yet.";
     words.remedies = {"Correct the runs or leave them out ([training] leave_out), and calibrate again."};

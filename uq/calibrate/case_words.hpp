@@ -4,6 +4,7 @@
 #include <string>
 
 #include "data/study.hpp"
+#include "uq/calibrate/doubt.hpp"
 #include "uq/calibrate/misfit.hpp"
 #include "uq/findings/results.hpp"
 #include "uq/verdict/contradiction.hpp"
@@ -14,10 +15,7 @@
 
 namespace uq {
 
-/// The part of the case that cannot carry a verdict.
-enum class DoubtOf { nothing, surrogate, support, draws, runs };
-
-/// Makes it the finding that the runs or the draws cannot carry a verdict; what is printed beside it is then no result.
+/// Makes it the finding that the runs, the draws or the case's source cannot carry a verdict; what is printed beside it is then no result.
 void say_doubt(CaseReport& report, DoubtOf of, Words& words, const data::Study& study);
 
 /// Words for a fit that is not refused, but which data drawn from the model itself would seldom give.

@@ -34,8 +34,8 @@ std::string plain_error(double error) {
 }
 
 /// The evidence on each side is the mean over the torques that the surrogate allows, so its doubt is in the Bayes
-/// factor, and the words follow from that. What a sharper surrogate, that is one of these torques alone, may change is
-/// said beside it.
+/// factor. What a sharper surrogate, that is one of these torques alone, may change is said beside it, and where that
+/// could turn the factor round nothing is decided.
 std::string in_words(const ModelComparison& found, const std::string& names) {
   std::string number =
       fmt::format("ln Bayes factor {:.1f} +- {}", found.log_bayes_factor, plain_error(found.sampling_error));
@@ -43,7 +43,7 @@ std::string in_words(const ModelComparison& found, const std::string& names) {
     number += fmt::format(", the mean over all that the surrogate leaves open; a sharper one may move it by {}",
                           plain_error(found.surrogate_error));
   constexpr const char* caveat = "a wider prior range of what is held would lower it";
-  if (std::abs(found.log_bayes_factor) < 1.0 + 2.0 * found.sampling_error)
+  if (std::abs(found.log_bayes_factor) < std::max(1.0 + 2.0 * found.sampling_error, found.surrogate_error))
     return fmt::format("The data do not decide between {} and {} free ({}; {}).", found.held, names, number, caveat);
   const bool free = found.log_bayes_factor > 0.0;
   return fmt::format("The data favour {} over {}: {} evidence ({}; {}).", free ? names + " free" : found.held,

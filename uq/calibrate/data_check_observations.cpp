@@ -265,6 +265,31 @@ void check_readings(const data::Study& study, const data::ObservationSet& set, s
   findings.push_back(std::move(finding));
 }
 
+/// Readings whose errors are said to go with another set's, which has none at their settings.
+void check_correlations(const data::Study& study, const data::ObservationSet& set, std::vector<Finding>& findings) {
+  for (const data::ErrorCorrelation& stated : set.correlations) {
+    const data::ObservationSet& other = study.observations[study.observation_index(stated.other_set).value()];
+    const std::optional<std::size_t> column = set.column_of(stated.output),
+                                     other_column = other.column_of(stated.other_output);
+    if (!column || !other_column) continue;
+    std::size_t joined = 0;
+    for (const auto& [point, other_point] : data::points_at_same_settings(study, set, other))
+      joined += set.points[point].has(*column) && other.points[other_point].has(*other_column);
+    const std::size_t readings = data::points_with(set, *column).size();
+    if (joined == readings) continue;
+    const Severity severity = joined == 0 ? Severity::warning : Severity::note;
+    Finding finding = data::about_rows(data::FindingKind::errors_apart, severity, {stated.place});
+    finding.what = fmt::format(
+        "{} of {} readings of {} have no reading of {} at their setting in '{}': their errors are "
+        "taken as independent",
+        readings - joined, readings, study.outputs[stated.output].name, study.outputs[stated.other_output].name,
+        other.name);
+    finding.remedy =
+        fmt::format("give both the same settings, to {:g} % of a control's range", 100.0 * data::same_setting);
+    findings.push_back(std::move(finding));
+  }
+}
+
 }  // namespace
 
 std::vector<Finding> check_observations(const data::Study& study, const data::RunTable& table,
@@ -278,6 +303,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
     check_beside_runs(study, table, set, findings);
     check_errors(study, set, thresholds, findings);
     check_readings(study, set, findings);
+    check_correlations(study, set, findings);
     check_idle_error(study, set, findings);
   }
   check_meters(study, findings);

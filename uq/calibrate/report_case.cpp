@@ -7,6 +7,7 @@
 #include "uq/calibrate/calibrate.hpp"
 #include "uq/calibrate/case_warnings.hpp"
 #include "uq/calibrate/case_words.hpp"
+#include "uq/calibrate/doubt.hpp"
 #include "uq/calibrate/misfit.hpp"
 #include "uq/findings/study_units.hpp"
 #include "uq/infer/diagnostics.hpp"
@@ -120,42 +121,6 @@ std::string search_in_words(const Draws& draws) {
       draws.scouts, draws.searched_starts, found, 100.0 * (1.0 - std::pow(0.05, 1.0 / draws.scouts)));
 }
 
-/// Takes the verdicts on cut parameters from their own cases.
-void take_cut_verdicts(Identification& found, const SampledCase& sampled, const CalibrateOptions& options) {
-  for (const auto& source : sampled.cut_sources) {
-    const Identification of_source = identify(*source->model, source->draws.pooled(), options.identify);
-    for (std::size_t k = 0; k < found.parameters.size(); ++k) {
-      if (sampled.model->unknowns[k].cut_from != source->model->name) continue;
-      for (const ParameterReport& known : of_source.parameters)
-        if (known.name == found.parameters[k].name) {
-          found.parameters[k] = known;
-          found.parameters[k].sentence += fmt::format(
-              " This is the posterior of case {}, cut: the data of this case do not change it.", source->model->name);
-        }
-    }
-  }
-}
-
-/// The part that cannot carry a verdict, and the reason for each parameter, in words (as IdentifyOptions has it).
-struct Doubt {
-  DoubtOf of = DoubtOf::nothing;
-  std::vector<std::string> unsupported;
-};
-
-Doubt doubt_about(const SampledCase& sampled, const std::vector<std::string>& already) {
-  const CaseModel& model = *sampled.model;
-  const bool unusable = !doubt_of(model).empty(), supported = sampled.support.supported;
-  Doubt found{.of = DoubtOf::nothing, .unsupported = already};
-  if (found.unsupported.empty()) found.unsupported = unsupported_parameters(model, sampled.support);
-  if (!found.unsupported.empty()) {
-    found.of = unusable ? DoubtOf::surrogate : supported ? DoubtOf::runs : DoubtOf::support;
-  } else if (!sampled.draws.converged) {
-    found.of = DoubtOf::draws;
-    found.unsupported.assign(static_cast<std::size_t>(model.own_count()), "the sampler has not converged");
-  }
-  return found;
-}
-
 /// The report as far as it is known before the case's draws are looked at.
 CaseReport begun(const data::Study& study, const SampledCase& sampled) {
   const CaseModel& model = *sampled.model;
@@ -255,12 +220,13 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   if (sampled.draws.chains.empty()) return without_draws(std::move(report), sampled.draws.reason);
 
   const Eigen::MatrixXd draws = sampled.draws.pooled();
-  const Doubt doubt = doubt_about(sampled, options.identify.unsupported);
+  const std::vector<JudgedSource> sources = judge_sources(sampled, options.identify);
+  const Doubt doubt = doubt_about(sampled, sources, options.identify.unsupported);
   IdentifyOptions judged = options.identify;
   judged.unsupported = doubt.unsupported;
   if (!judged.unsupported.empty()) report.doubt = judged.unsupported.front();
   Identification found = identify(model, draws, judged);
-  take_cut_verdicts(found, sampled, options);
+  take_cut_verdicts(found, sampled, sources);
   add_identification(report, study, model, found);
   add_modes(report, model, found);
   add_diagnostics(report, sampled);

@@ -100,7 +100,7 @@ SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& e
       return sampled;
     }
     const Eigen::VectorXd u = source.draws.pooled().col(unknown_of(*source.model, unknown.label));
-    unknown.cut = NormalLaw{.mean = u.mean(), .sd = std::sqrt((u.array() - u.mean()).square().mean())};
+    unknown.cut = cut_law(u, seed_of(study, options));
   }
   sampled.model = std::make_shared<const CaseModel>(std::move(model));
   refuse_excluding_priors(study, *sampled.model);

@@ -70,8 +70,8 @@ std::string bend_hint(const data::Study& study, const EmulatorInput& input, std:
                       bool low) {
   const bool control = input.kind == InputKind::control;
   const std::string& name = control ? study.controls[input.index].name : study.parameters[input.index].name;
-  const data::Scale scale = control ? study.controls[input.index].scale : study.parameters[input.index].scale;
-  if (low && input.stretch.is_none() && log_is_worth_a_try(scale, covered))
+  const data::Axis axis = input_of(study, input).axis;
+  if (low && input.stretch.is_none() && axis.low > 0.0 && log_is_worth_a_try(axis.scale, covered))
     return fmt::format("Try [{}.{}] scale = \"log\" first.", control ? "controls" : "parameters", name);
   return fmt::format("Make more runs at {} {} first.", low ? "low" : "high", name);
 }

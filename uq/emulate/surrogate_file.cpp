@@ -24,6 +24,7 @@ surrogate::SurrogateKey key_of(const data::Study& study, const data::RunTable& t
       fmt::format("{} {} {} {} {} {} {} {}\n", to_text(fit.kernel), to_text(fit.mean), to_text(fit.scale), fit.nugget,
                   fit.starts, fit.seed, static_cast<int>(fit.estimate), static_cast<int>(fit.hyper_uncertainty));
   text += fmt::format("between runs {}, at most {}\n", static_cast<int>(fit.between_runs), options.runs_most);
+  if (!options.stretch) text += "inputs on their own scales\n";
   for (const std::string& name : options.log_outputs) text += "log " + name + "\n";
   return {.study_hash = data::hash_text(text),
           .table_hash = table_hash(table) + (options.low ? " over " + table_hash(*options.low) : "")};

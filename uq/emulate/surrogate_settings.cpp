@@ -19,6 +19,7 @@ SurrogateOptions read_surrogate_options(const data::StudyFile& file, const data:
   fit.nugget = section.flag("nugget", fit.nugget);
   fit.starts = static_cast<int>(section.integer("starts", {.low = 1, .high = 1000}, fit.starts));
   options.runs_most = static_cast<int>(section.integer("runs_most", {.low = 20, .high = 100000}, options.runs_most));
+  options.stretch = section.flag("stretch", options.stretch);
   options.log_outputs = section.texts("log_outputs");
   for (const std::string& name : options.log_outputs) {
     if (std::none_of(study.outputs.begin(), study.outputs.end(), [&](const auto& o) { return o.name == name; }))

@@ -3,6 +3,7 @@
 //   [surrogate]
 //   kernel = "matern 5/2"               # also "matern 3/2", "squared exponential"
 //   mean = "constant"                   # also "zero", "linear", "quadratic", "trend" (surrogate/mean_basis.hpp)
+//   stretch = true                      # also false: inputs are learnt on the scales that the study gives them
 //   log_outputs = ["torque"]            # outputs that are learnt as logarithms; they must be positive
 //   nugget = true                       # run-to-run scatter beyond the stated standard errors
 //   estimate = "maximum a posteriori"   # also "maximum likelihood"

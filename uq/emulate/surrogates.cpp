@@ -66,7 +66,7 @@ FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const Surro
       places = std::move(left);
     }
   }
-  stretch_rows(fitted.rows, chosen_ratios(study, fitted.rows, fit_options));
+  if (options.stretch) stretch_rows(fitted.rows, chosen_ratios(study, fitted.rows, fit_options));
   const surrogate::TrainingSet& base = fitted.rows.low ? *fitted.rows.low : fitted.rows.set;
   fitted.process = std::make_shared<const surrogate::GaussianProcess>(surrogate::fit(base, fit_options));
   if (fitted.rows.low)

@@ -48,6 +48,7 @@ struct SurrogateOptions {
   /// between the runs: surrogate/COVERAGE.md says why.
   surrogate::FitOptions fit = {.hyper_uncertainty = surrogate::HyperUncertainty::integrated_if_few,
                                .between_runs = surrogate::BetweenRuns::doubted};
+  bool stretch = true;                           ///< inputs may be learnt on stretched scales (surrogate/stretch.hpp)
   std::vector<std::string> log_outputs = {};     ///< outputs that are learnt as logarithms, whatever fit.scale
   surrogate::ValidationOptions validation = {};  ///< options whose seed is that of the fit
   int runs_most = 1000;                          ///< most runs that train; a larger table is thinned at random

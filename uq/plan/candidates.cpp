@@ -19,20 +19,37 @@ namespace {
 
 using data::Study;
 
-/// The relative error of the case's readings of an output: their median; none where it reads none.
-std::optional<double> stated_error(const Study& study, const std::vector<std::size_t>& sets, std::size_t output) {
-  std::vector<double> shares;
+/// Standard deviation of the logarithms of positive numbers.
+double log_spread(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0;
+  for (const double value : values) {
+    sum += std::log(value);
+    squares += std::pow(std::log(value), 2);
+  }
+  const double n = static_cast<double>(values.size());
+  return std::sqrt(std::max(squares / n - std::pow(sum / n, 2), 0.0));
+}
+
+/// The error of the case's readings of an output: their median, in the output's unit or as a share of the value, whichever
+/// differs less from reading to reading. None where the case reads none.
+std::optional<data::Spread> stated_error(const Study& study, const std::vector<std::size_t>& sets, std::size_t output) {
+  std::vector<double> errors, shares;
   for (const std::size_t index : sets) {
     const data::ObservationSet& set = study.observations[index];
     if (set.assumed) continue;
     const std::optional<std::size_t> c = set.column_of(output);
     if (!c) continue;
     for (const data::Observation& point : set.points)
-      if (point.has(*c) && point.values[*c] != 0.0)
-        shares.push_back(std::abs(point.standard_errors[*c] / point.values[*c]));
+      if (point.has(*c) && point.standard_errors[*c] > 0.0) {
+        errors.push_back(point.standard_errors[*c]);
+        if (point.values[*c] != 0.0) shares.push_back(std::abs(point.standard_errors[*c] / point.values[*c]));
+      }
   }
-  if (shares.empty()) return {};
-  return data::median_of(std::move(shares));
+  if (errors.empty()) return {};
+  constexpr double clearly = 1e-6;  // readings of one value do not tell the two apart
+  const bool absolute = shares.size() < errors.size() || log_spread(errors) + clearly < log_spread(shares);
+  if (absolute) return data::Spread{.absolute = data::median_of(std::move(errors))};
+  return data::Spread{.relative = data::median_of(std::move(shares))};
 }
 
 /// Settings at which a set has a reading of an output.
@@ -122,12 +139,12 @@ class Usual {
 
   void add_output(const std::string& material, std::size_t output, const Emulator& emulator, const Observed& observed) {
     const bool known = !observed.of_this.empty();
-    const std::optional<double> stated = stated_error(study_, sets_, output);
+    const std::optional<data::Spread> stated = stated_error(study_, sets_, output);
     std::set<std::vector<double>> taken;
     const auto add_all = [&](const std::vector<std::vector<double>>& settings, CandidateKind kind) {
       Candidate one{.kind = kind, .material = material, .outputs = {output}, .settings = settings};
       one.cost = static_cast<double>(settings.size());
-      one.error = {{.relative = stated.value_or(options_.assumed_error)}};
+      one.error = {stated.value_or(data::Spread{.relative = options_.assumed_error})};
       one.assumed_error = !stated;
       one.model_only = only_of_model(study_, sets_, output, material, options_);
       found_.push_back(std::move(one));
@@ -213,12 +230,13 @@ class Entry {
     base.stated_error = entry_.error.has_value();
     bool measured = false;
     for (const std::size_t output : base.outputs) {
-      const std::optional<double> stated = stated_error(study_, sets_, output);
+      const std::optional<data::Spread> stated = stated_error(study_, sets_, output);
       measured = measured || stated;
       if (!entry_.error && !stated)
         problem(fmt::format("no error of {} is known: the case does not measure it", study_.outputs[output].name),
                 "state error = \"3 %\", or a value with its unit");
-      base.error.push_back(entry_.error.value_or(data::Spread{.relative = stated.value_or(options_.assumed_error)}));
+      base.error.push_back(entry_.error ? *entry_.error
+                                        : stated.value_or(data::Spread{.relative = options_.assumed_error}));
       base.model_only = base.model_only || only_of_model(study_, sets_, output, base.material, options_);
       if (emulator_of(emulators_, base.material, output) == nullptr)
         problem(fmt::format("there are no runs of material '{}' with {}", base.material, study_.outputs[output].name),

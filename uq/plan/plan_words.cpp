@@ -136,6 +136,17 @@ std::vector<std::string> level_notes(const PlanReport& report) {
   return notes;
 }
 
+/// "torque 3 %, tilt 1 degree": the errors with which candidates were judged, but for those that are assumed.
+std::string errors_of_readings(const PlanReport& report) {
+  std::vector<std::string> parts;
+  for (const PlanCandidate& one : report.candidates) {
+    if (one.assumed_error) continue;
+    const std::string text = fmt::format("{} {}", fmt::join(one.outputs, " and "), one.error);
+    if (std::find(parts.begin(), parts.end(), text) == parts.end()) parts.push_back(text);
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 }  // namespace
 
 std::vector<std::string> notes_of(const PlanBasis& basis, const PlanReport& report) {
@@ -144,6 +155,8 @@ std::vector<std::string> notes_of(const PlanBasis& basis, const PlanReport& repo
     return std::any_of(report.candidates.begin(), report.candidates.end(),
                        [&](const PlanCandidate& one) { return one.*member; });
   };
+  if (const std::string errors = errors_of_readings(report); !errors.empty())
+    notes.push_back(fmt::format("Readings are taken with these errors: {}.", errors));
   if (some(&PlanCandidate::assumed_error))
     notes.push_back(
         fmt::format("Nobody stated the error of an output that the case has not measured; {:g} % is assumed. "

@@ -267,7 +267,8 @@ class Builder {
     for (const std::size_t set : used_sets_)
       for (const data::ErrorCorrelation& stated : study_.observations[set].correlations) {
         const std::size_t other = study_.observation_index(stated.other_set).value();
-        for (const auto& [point, other_point] : same_settings(set, other)) {
+        for (const auto& [point, other_point] :
+             data::points_at_same_settings(study_, study_.observations[set], study_.observations[other])) {
           const auto first = row_of.find({set, point, stated.output});
           const auto second = row_of.find({other, other_point, stated.other_output});
           if (first == row_of.end() || second == row_of.end()) continue;
@@ -321,21 +322,6 @@ class Builder {
                                          .second_row = b.rows->first,
                                          .same = same_level(a.shift->level, b.shift->level)});
       }
-  }
-
-  /// Points of two sets at equal settings, the first of one with the first of the other, and so on.
-  std::vector<std::pair<std::size_t, std::size_t>> same_settings(std::size_t set, std::size_t other) const {
-    std::map<std::vector<double>, std::vector<std::size_t>> points;
-    for (std::size_t i = 0; i < study_.observations[other].points.size(); ++i)
-      points[study_.observations[other].points[i].controls].push_back(i);
-    std::map<std::vector<double>, std::size_t> seen;
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    for (std::size_t i = 0; i < study_.observations[set].points.size(); ++i) {
-      const std::vector<double>& controls = study_.observations[set].points[i].controls;
-      const std::size_t rank = seen[controls]++;
-      if (rank < points[controls].size()) pairs.emplace_back(i, points[controls][rank]);
-    }
-    return pairs;
   }
 
   void check_unknowns_used(const CaseModel& model) {

@@ -17,7 +17,7 @@ std::optional<Eigen::MatrixXd> curvature(const CaseModel& model, const Eigen::Ve
   for (Eigen::Index s = 0; s < u.size(); ++s) {
     const Unknown& unknown = model.unknowns[s];
     if (beside == KnownBeside::all || unknown.nuisance) found(s, s) += 1.0 / std::pow(unknown.prior.sd(), 2);
-    if (beside == KnownBeside::nuisances && unknown.cut) found(s, s) += 1.0 / std::pow(unknown.cut->sd, 2);
+    if (beside == KnownBeside::nuisances && unknown.cut) found(s, s) += unknown.cut->precision(u[s]);
   }
   return found;
 }

@@ -260,9 +260,8 @@ Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u) {
       sum.value += unknown.prior.log_density(u[s]);
       sum.gradient[s] = unknown.prior.slope(u[s]);
     } else if (unknown.cut) {
-      const double z = (u[s] - unknown.cut->mean) / unknown.cut->sd;
-      sum.value -= 0.5 * z * z;
-      sum.gradient[s] = -z / unknown.cut->sd;
+      sum.value += unknown.cut->log_density(u[s]);
+      sum.gradient[s] = unknown.cut->slope(u[s]);
     }
   }
   return sum;

@@ -81,7 +81,7 @@ double chi_squared(const CaseModel& model, const Eigen::VectorXd& u);
 double chi_squared(const CaseModel& model, const std::vector<GroupLaw>& laws, const Eigen::VectorXd& u);
 
 /// Log density of knowledge that is no measurement of this case: the priors of the nuisances, such as a calibration
-/// certificate, and the normal law of each unknown that was cut from another case. A profile adds it to the likelihood,
+/// certificate, and the law of each unknown that was cut from another case. A profile adds it to the likelihood,
 /// so that these unknowns stay where they are known to be.
 Evaluation log_certificates(const CaseModel& model, const Eigen::VectorXd& u);
 

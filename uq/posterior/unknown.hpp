@@ -5,14 +5,10 @@
 #include <string>
 
 #include "data/study.hpp"
+#include "uq/posterior/cut_law.hpp"
 #include "uq/posterior/prior.hpp"
 
 namespace uq {
-
-/// A normal law of one unknown, in u.
-struct NormalLaw {
-  double mean = 0.0, sd = 1.0;
-};
 
 struct Unknown {
   std::string label;  ///< the parameter's name, with the case's in front for another case's own
@@ -20,7 +16,7 @@ struct Unknown {
   bool own = true;  ///< a parameter that is free in the case itself; false: another case's, or a nuisance
   std::optional<data::NuisanceKind> nuisance = {};  ///< kind of nuisance of the measurement; none: a parameter
   std::string cut_from = {};                        ///< case whose posterior it has, without feedback
-  std::optional<NormalLaw> cut;                     ///< that posterior's moments, known once that case is sampled
+  std::optional<CutLaw> cut;                        ///< that posterior's law, known once that case is sampled
 
   /// Whether it is a nuisance that acts on the spread of readings alone, not on their mean.
   bool only_widens() const {

@@ -161,12 +161,25 @@ Remedies run_beyond(const CaseFacts& facts, const SortedParameters& sorted) {
                                         listed(sorted.wanted_runs), facts.own_engine ? "" : " with your code")}};
 }
 
-Remedies widen_range_of_other(const CaseFacts&, const SortedParameters& sorted) {
+Remedies widen_range_of_other(const CaseFacts& facts, const SortedParameters& sorted) {
   const bool widened = std::all_of(sorted.ends_of.begin(), sorted.ends_of.end(), [&](const std::string& name) {
     return std::find(sorted.one_sided.begin(), sorted.one_sided.end(), name) != sorted.one_sided.end();
   });
   if (sorted.conditional.empty() || widened) return {};
-  return {{sorted.of_range, fmt::format("Widen the range of {}, with training runs there.", listed(sorted.ends_of))}};
+  Names parameters, nuisances;  // no run varies a nuisance of the measurement
+  for (const std::string& name : sorted.ends_of) {
+    const bool parameter = std::any_of(facts.parameters.begin(), facts.parameters.end(),
+                                       [&](const ParameterReport& one) { return one.name == name; });
+    add_name(parameter ? parameters : nuisances, name);
+  }
+  Remedies remedies;
+  if (!parameters.empty())
+    remedies.push_back(
+        {sorted.of_range, fmt::format("Widen the range of {}, with training runs there.", listed(parameters))});
+  if (!nuisances.empty())
+    remedies.push_back({sorted.of_range, fmt::format("Widen the range of {}, or find {} by a calibration of the meter.",
+                                                     listed(nuisances), one_or(nuisances, "it", "them"))});
+  return remedies;
 }
 
 Remedies move_bound(const CaseFacts&, const SortedParameters& sorted) {

@@ -114,6 +114,22 @@ TEST_CASE("a factor's error holds what the surrogate does not know", "[uq]") {
   CHECK(part(false) < 0.01 * exact);
 }
 
+TEST_CASE("a factor that a sharper surrogate could turn round decides nothing", "[uq]") {
+  const TemporaryFolder folder;
+  const data::Study study = linked(folder, "compare = { cohesion = 0.2 }\n");
+  std::vector<Emulator> uncertain = formula(0.0);
+  uncertain[0].predict = [known = uncertain[0].predict](const Eigen::MatrixXd& points) {
+    surrogate::Prediction found = known(points);
+    const Eigen::VectorXd error = 0.02 * points.col(2);
+    found.covariance = error * error.transpose();
+    return found;
+  };
+  const std::vector<ModelComparison> found = compare_models(study, sample_case(study, uncertain, 1), 1);
+  REQUIRE(found.size() == 1);
+  REQUIRE(found[0].surrogate_error > std::abs(found[0].log_bayes_factor));
+  CHECK_THAT(found[0].sentence, Catch::StartsWith("The data do not decide"));
+}
+
 TEST_CASE("a comparison whose held value the data rule out is a finding, not an end", "[uq]") {
   const TemporaryFolder folder;
   const data::Study study = linked(folder, "compare = { friction = 1 }\n");

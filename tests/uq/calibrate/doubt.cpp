@@ -1,0 +1,89 @@
+// What a case takes without feedback from another, it takes with the other's faults. The torque is
+// 1 + 2 |friction - 0.5| friction + cohesion speed, so that up to three frictions give the same torque at speed 0.
+#include "uq/calibrate/doubt.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/temporary.hpp"
+
+using namespace uq;
+
+namespace {
+
+std::vector<Emulator> valley() {
+  Emulator emulator{.material = "",
+                    .output = 0,
+                    .inputs = {{InputKind::parameter, 0}, {InputKind::parameter, 1}, {InputKind::control, 0}},
+                    .constants = {},
+                    .control_range = {},
+                    .predict = {}};
+  emulator.predict = [](const Eigen::MatrixXd& points) -> surrogate::Prediction {
+    return {.mean = 1.0 + 2.0 * (points.col(0).array() - 0.5).abs() * points.col(0).array() +
+                    points.col(1).array() * points.col(2).array(),
+            .covariance = Eigen::MatrixXd::Zero(points.rows(), points.rows())};
+  };
+  return {emulator};
+}
+
+/// Cases "first" (friction alone), "second" (cohesion, friction cut from first), "third" (cohesion cut from second).
+data::Study chain(const TemporaryFolder& folder, const std::string& first_rows) {
+  folder.write("first.csv", "speed,torque,torque_se\n" + first_rows);
+  folder.write("second.csv", "speed,torque,torque_se\n1,1.4,0.005\n1,1.405,0.005\n");
+  folder.write("third.csv", "speed,torque,torque_se\n1,1.4,0.005\n");
+  const data::StudyFile file = data::StudyFile::open(folder.write(
+      "study.toml",
+      "[study]\nname = \"s\"\nseed = 5\n[parameters.friction]\nlow = 0\nhigh = 1\n[parameters.cohesion]\nlow = 0\nhigh "
+      "= 1\n[training]\ntable = \"runs.csv\"\n[outputs.torque]\nunit = \"N m\"\n"
+      "[controls.speed]\nlow = 0\nhigh = 1\n"
+      "[[observe]]\nname = \"first\"\nfile = \"first.csv\"\n[[observe]]\nname = \"second\"\nfile = \"second.csv\"\n"
+      "[[observe]]\nname = \"third\"\nfile = \"third.csv\"\n"
+      "[[calibrate]]\nname = \"first\"\nobserve = [\"first\"]\nfree = [\"friction\"]\nfixed = { cohesion = 0 }\n"
+      "[[calibrate]]\nname = \"second\"\nobserve = [\"second\"]\nfree = [\"friction\", \"cohesion\"]\n"
+      "priors = { friction = { posterior = \"first\", cut = true } }\n"
+      "[[calibrate]]\nname = \"third\"\nobserve = [\"third\"]\nfree = [\"friction\", \"cohesion\"]\n"
+      "priors = { cohesion = { posterior = \"second\", cut = true } }\n"));
+  data::Study study = data::read_study(file);
+  file.finish();
+  return study;
+}
+
+CaseReport judged(const data::Study& study, std::size_t index) {
+  return report_case(study, sample_case(study, valley(), index), {});
+}
+
+}  // namespace
+
+TEST_CASE("nothing is identified by what comes cut from a case that does not fit, at once or over another case",
+          "[uq]") {
+  const TemporaryFolder folder;
+  const data::Study study = chain(folder, "0,1.2,0.005\n0,1.3,0.005\n");  // 14 standard errors apart
+  REQUIRE_FALSE(judged(study, 0).fits);
+  const CaseReport second = judged(study, 1), third = judged(study, 2);
+  CHECK_THAT(second.doubt, Catch::Contains("friction comes from case first, which does not fit its data"));
+  CHECK_THAT(third.doubt, Catch::Contains("cohesion comes from case second"));
+  for (const CaseReport* report : {&second, &third})
+    for (const ParameterReport& parameter : report->parameters) {
+      CAPTURE(report->name, parameter.name);
+      CHECK(parameter.verdict != Verdict::identified);
+      CHECK(parameter.verdict != Verdict::weakly_identified);
+    }
+  CHECK_FALSE(second.warnings.empty());
+}
+
+TEST_CASE("a friction cut with two values gives the cohesion two, and none between them", "[uq]") {
+  const TemporaryFolder folder;
+  // 2 |f - 1/2| f = 0.1 at f = 0.5854 and, on the other side, at 0.1382 and 0.3618: three frictions.
+  const data::Study study = chain(folder, "0,1.1,0.005\n0,1.1005,0.005\n");
+  const CaseReport second = judged(study, 1);
+  CHECK(second.doubt.empty());
+  REQUIRE(second.parameters.size() == 2);
+  const ParameterReport& friction = second.parameters[0];
+  CHECK(friction.verdict == Verdict::several_values);
+  CHECK(friction.intervals.size() == 3);
+  // All three give the same torque, so the cohesion is one: 0.3.
+  const ParameterReport& cohesion = second.parameters[1];
+  REQUIRE(cohesion.intervals.size() == 1);
+  CHECK(cohesion.intervals[0].low > 0.28);
+  CHECK(cohesion.intervals[0].high < 0.33);
+}

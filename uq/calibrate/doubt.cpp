@@ -1,0 +1,78 @@
+#include "uq/calibrate/doubt.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "uq/posterior/support.hpp"
+
+namespace uq {
+namespace {
+
+/// Why nothing can rest on a case, as a predicate.
+std::string predicate_of(const Identification& found, const Doubt& doubt) {
+  if (!doubt.unsupported.empty()) return "has no verdict itself: " + doubt.unsupported.front();
+  if (!found.fits) return fmt::format("does not fit its data (p {:.2g})", found.check.best_fit_p);
+  return "";
+}
+
+/// "mu comes from case glass, which does not fit its data"; empty where all sources can be rested on.
+std::string doubtful_source(const CaseModel& model, const std::vector<JudgedSource>& sources) {
+  for (const Unknown& unknown : model.unknowns)
+    for (const JudgedSource& source : sources)
+      if (unknown.cut_from == source.name && !source.doubt.empty())
+        return fmt::format("{} comes from case {}, which {}", unknown.label, source.name, source.doubt);
+  return "";
+}
+
+}  // namespace
+
+std::vector<JudgedSource> judge_sources(const SampledCase& sampled, const IdentifyOptions& options) {
+  std::vector<JudgedSource> judged;
+  for (const auto& source : sampled.cut_sources) {
+    const std::vector<JudgedSource> beyond = judge_sources(*source, options);
+    const Doubt doubt = doubt_about(*source, beyond, options.unsupported);
+    IdentifyOptions own = options;
+    own.unsupported = doubt.unsupported;
+    JudgedSource one{
+        .name = source->model->name, .found = identify(*source->model, source->draws.pooled(), own), .doubt = {}};
+    take_cut_verdicts(one.found, *source, beyond);
+    one.doubt = predicate_of(one.found, doubt);
+    judged.push_back(std::move(one));
+  }
+  return judged;
+}
+
+Doubt doubt_about(const SampledCase& sampled, const std::vector<JudgedSource>& sources,
+                  const std::vector<std::string>& already) {
+  const CaseModel& model = *sampled.model;
+  const auto of_all = [&](DoubtOf of, std::string reason) {
+    return Doubt{.of = of, .unsupported = std::vector(static_cast<std::size_t>(model.own_count()), std::move(reason))};
+  };
+  const bool unusable = !doubt_of(model).empty(), supported = sampled.support.supported;
+  Doubt found{.of = DoubtOf::nothing, .unsupported = already};
+  if (found.unsupported.empty()) found.unsupported = unsupported_parameters(model, sampled.support);
+  if (!found.unsupported.empty()) {
+    found.of = unusable ? DoubtOf::surrogate : supported ? DoubtOf::runs : DoubtOf::support;
+    return found;
+  }
+  if (!sampled.draws.converged) return of_all(DoubtOf::draws, "the sampler has not converged");
+  if (std::string source = doubtful_source(model, sources); !source.empty())
+    return of_all(DoubtOf::source, std::move(source));
+  return found;
+}
+
+void take_cut_verdicts(Identification& found, const SampledCase& sampled, const std::vector<JudgedSource>& sources) {
+  for (const JudgedSource& source : sources)
+    for (std::size_t k = 0; k < found.parameters.size(); ++k) {
+      if (sampled.model->unknowns[k].cut_from != source.name) continue;
+      for (const ParameterReport& known : source.found.parameters)
+        if (known.name == found.parameters[k].name) {
+          found.parameters[k] = known;
+          found.parameters[k].sentence += fmt::format(
+              " This is the posterior of case {}, cut: the data of this case do not change it.", source.name);
+        }
+    }
+}
+
+}  // namespace uq
