@@ -34,16 +34,18 @@ std::string plain_error(double error) {
 }
 
 /// The evidence on each side is the mean over the torques that the surrogate allows, so its doubt is in the Bayes
-/// factor. What a sharper surrogate, that is one of these torques alone, may change is said beside it, and where that
-/// could turn the factor round nothing is decided.
+/// factor. What a sharper surrogate, that is one of these torques alone, would find is said beside it, and where that
+/// may have the other sign nothing is decided.
 std::string in_words(const ModelComparison& found, const std::string& names) {
   std::string number =
       fmt::format("ln Bayes factor {:.1f} +- {}", found.log_bayes_factor, plain_error(found.sampling_error));
   if (found.surrogate_error > std::max(found.sampling_error, 0.1 * std::abs(found.log_bayes_factor)))
-    number += fmt::format(", the mean over all that the surrogate leaves open; a sharper one may move it by {}",
-                          plain_error(found.surrogate_error));
+    number += fmt::format(", the mean over all that the surrogate leaves open; a sharper one would find {:.0f} +- {}",
+                          found.sharper_factor, plain_error(found.surrogate_error));
   constexpr const char* caveat = "a wider prior range of what is held would lower it";
-  if (std::abs(found.log_bayes_factor) < std::max(1.0 + 2.0 * found.sampling_error, found.surrogate_error))
+  const double sign = found.log_bayes_factor > 0.0 ? 1.0 : -1.0;
+  if (std::abs(found.log_bayes_factor) < 1.0 + 2.0 * found.sampling_error ||
+      sign * found.sharper_factor < found.surrogate_error)
     return fmt::format("The data do not decide between {} and {} free ({}; {}).", found.held, names, number, caveat);
   const bool free = found.log_bayes_factor > 0.0;
   return fmt::format("The data favour {} over {}: {} evidence ({}; {}).", free ? names + " free" : found.held,
@@ -84,8 +86,10 @@ std::vector<ModelComparison> compare_models(const data::Study& study, const Samp
   found.sampling_error = std::hypot(sampled.draws.log_evidence_error, beside.log_evidence_error);
   const int unknowns = sampled.model->dimension();
   const Eigen::VectorXd best = with_held(highest(beside).transpose(), held).row(0).transpose();
-  found.surrogate_error = surrogate_part(*sampled.model, {highest(sampled.draws), unknowns_left(unknowns, {})},
-                                         {best, unknowns_left(unknowns, held)});
+  const SharperFactor sharper = sharper_factor(
+      *sampled.model, {highest(sampled.draws), unknowns_left(unknowns, {})}, {best, unknowns_left(unknowns, held)});
+  found.surrogate_error = sharper.sd;
+  found.sharper_factor = found.log_bayes_factor + sharper.shift;
   found.error = std::hypot(found.sampling_error, found.surrogate_error);
   found.sentence = in_words(found, names);
   if (!beside.converged)

@@ -39,6 +39,7 @@ void visit_fields(Visit&& visit, T& m) {
   visit("error", m.error);
   visit("sampling_error", m.sampling_error);
   visit("surrogate_error", m.surrogate_error);
+  visit("sharper_factor", m.sharper_factor);
   visit("sentence", m.sentence);
 }
 

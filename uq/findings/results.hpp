@@ -249,6 +249,7 @@ struct ModelComparison {
   double error = 0.0;             ///< standard error, of both kinds together
   double sampling_error = 0.0;    ///< part of the error from Monte Carlo sampling
   double surrogate_error = 0.0;   ///< part of the error from the surrogate; more runs would make it smaller
+  double sharper_factor = 0.0;    ///< mean of the ln Bayes factors that surrogates without error would give
   std::string sentence;           ///< the finding in words
 };
 

@@ -43,7 +43,18 @@ Side side_at(const CaseModel& exact, const RowGroup& group, const ComparedSide& 
 struct Form {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd linear;
+  double square = 0.0;  ///< r' M r
 };
+
+/// The log of the mean of exp(form) over delta ~ N(0, C), without the constant that the two have in common.
+double log_mean_of(const Form& form, const Eigen::MatrixXd& covariance) {
+  const Eigen::MatrixXd seen =
+      Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()) + covariance * form.matrix;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factors(seen);
+  // r' (I + M C)^-1 M r = r' M r - (M r)' (I + C M)^-1 C (M r)
+  const double square = form.square - form.linear.dot(factors.solve(covariance * form.linear));
+  return -0.5 * square - 0.5 * factors.matrixLU().diagonal().array().abs().log().sum();
+}
 
 Form form_of(const std::vector<Side>& groups) {
   Eigen::Index rows = 0;
@@ -63,6 +74,7 @@ Form form_of(const std::vector<Side>& groups) {
   }
   form.matrix -= weighted * information.llt().solve(weighted.transpose());
   form.linear = form.matrix * residual;
+  form.square = residual.dot(form.linear);
   return form;
 }
 
@@ -113,7 +125,7 @@ Target held_target(const std::shared_ptr<const CaseModel>& model, const std::vec
   return target;
 }
 
-double surrogate_part(const CaseModel& full, const ComparedSide& first, const ComparedSide& second) {
+SharperFactor sharper_factor(const CaseModel& full, const ComparedSide& first, const ComparedSide& second) {
   const CaseModel& model = distinct_rows(full);
   const CaseModel exact = without_surrogate_error(model);
   std::vector<Side> one, other;
@@ -146,10 +158,13 @@ double surrogate_part(const CaseModel& full, const ComparedSide& first, const Co
   seen.leftCols(rows) += covariance.leftCols(rows) * a.matrix;
   const Eigen::MatrixXd left = seen.partialPivLu().solve(covariance);
   const Eigen::VectorXd mean = left.leftCols(rows) * a.linear;
-  slope += 2.0 * form * mean;
   const Eigen::MatrixXd spread = form * left;
+  const double of_mean_evidences = log_mean_of(a, covariance.topLeftCorner(rows, rows)) -
+                                   log_mean_of(b, covariance.bottomRightCorner(rows, rows));
+  const double of_form = mean.dot(form * mean) + spread.trace() + slope.dot(mean) - 0.5 * (a.square - b.square);
+  slope += 2.0 * form * mean;
   const double variance = slope.dot(left * slope) + 2.0 * spread.cwiseProduct(spread.transpose()).sum();
-  return std::sqrt(std::max(0.0, variance));
+  return {.shift = of_form - of_mean_evidences, .sd = std::sqrt(std::max(0.0, variance))};
 }
 
 }  // namespace uq

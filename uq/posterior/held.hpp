@@ -12,7 +12,12 @@
 //   M = S^-1 - S^-1 J (J' S^-1 J + I)^-1 J' S^-1,            S: the measurement's covariance,
 // I for the priors, which are about as wide as the unit cube. The data say something of delta, too: given them and the
 // first side it is normal with covariance C' = (C^-1 + M)^-1 and mean m = C' M r. The difference of two such forms,
-// delta' A delta + g' delta + const, has the variance h' C' h + 2 tr(A C' A C'), h = g + 2 A m.
+// D = delta' A delta + g' delta + const, then has
+//   mean      m' A m + tr(A C') + g' m + const,
+//   variance  h' C' h + 2 tr(A C' A C'),   h = g + 2 A m.
+// The constant follows from the factor of the mean evidences, since a form's mean over delta ~ N(0, C) is known:
+//   ln E Z = -1/2 r' (I + M C)^-1 M r - 1/2 log|I + C M|,   with -1/2 r' M r as the form's own constant.
+// A factor with f known lies as a rule farther from zero than that of the mean evidences.
 #include <memory>
 #include <vector>
 
@@ -34,8 +39,14 @@ struct ComparedSide {
   std::vector<int> free;
 };
 
-/// Standard deviation of the log Bayes factor over the surrogates' functions; zero for an emulator without error.
-double surrogate_part(const CaseModel& model, const ComparedSide& first, const ComparedSide& second);
+/// The log Bayes factor that would be found with the surrogates' functions known.
+struct SharperFactor {
+  double shift = 0.0;  ///< its mean less the factor of the mean evidences
+  double sd = 0.0;
+};
+
+/// Both are zero for an emulator without error.
+SharperFactor sharper_factor(const CaseModel& model, const ComparedSide& first, const ComparedSide& second);
 
 /// Unknowns that are not held.
 std::vector<int> unknowns_left(int dimension, const std::vector<Held>& held);
