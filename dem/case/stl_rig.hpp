@@ -45,6 +45,8 @@ struct StlRig {
   std::vector<std::uint8_t> frozen;   ///< per sphere packed, 1: keeps its velocity whatever the load; empty: none
   std::vector<std::string> warnings;  ///< warnings of the meshes' check
   std::string content;                ///< hash of meshes and packing
+  std::vector<double> diameter;       ///< m, of the packing's spheres, largest first, of one size in the order of the
+                                      ///< mixture's components; empty: all are the bed's one size
 };
 
 /// Edges of the box along its periodic axes [m].

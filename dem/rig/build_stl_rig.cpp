@@ -83,8 +83,9 @@ class Cells {
 };
 
 /// Given positions must keep clear of each other, but for what ends a run. Spheres that are held press on nothing.
-void check_overlaps(const StlRig& rig, double radius, double limit) {
-  const Cells cells(rig, 2.0 * radius);
+void check_overlaps(const StlRig& rig, const std::vector<double>& radii, double limit) {
+  const auto radius = [&](std::size_t k) { return radii[radii.size() == 1 ? 0 : k]; };
+  const Cells cells(rig, 2.0 * radius(0));
   std::unordered_map<std::int64_t, std::vector<std::size_t>> in;
   const auto held = [&](std::size_t k) { return !rig.frozen.empty() && rig.frozen[k] != 0; };
   for (std::size_t k = 0; k < rig.packing.size(); ++k) {
@@ -95,7 +96,8 @@ void check_overlaps(const StlRig& rig, double radius, double limit) {
       const auto there = key ? in.find(*key) : in.end();
       if (there == in.end()) continue;
       for (const std::size_t other : there->second) {
-        const double overlap = 2.0 - cells.distance(p, rig.packing[other]) / radius;
+        const double mean = 0.5 * (radius(k) + radius(other));
+        const double overlap = 2.0 - cells.distance(p, rig.packing[other]) / mean;
         if (!(overlap > limit) || (held(k) && held(other))) continue;
         fail(
             "rig.packing",
@@ -109,20 +111,35 @@ void check_overlaps(const StlRig& rig, double radius, double limit) {
   }
 }
 
+/// Given diameters must be those of the bed that the materials make.
+void check_diameters(const StlRig& rig, const std::vector<double>& radii) {
+  for (std::size_t k = 0; k < rig.diameter.size(); ++k) {
+    const double here = rig.diameter[k], wanted = 2.0 * radii[radii.size() == 1 ? 0 : k];
+    if (std::abs(here - wanted) > 1e-6 * wanted)
+      fail("rig.packing",
+           fmt::format("has a sphere of {:g} m in line {}, where the bed of these materials has one of {:g} m", here,
+                       rig.packing_line[k], wanted),
+           "correct the diameters, or the materials' sizes and mass fractions");
+  }
+}
+
 /// Given positions must lie in the box and clear of the meshes, but for a tenth of a radius.
-void check_packing(const StlRig& rig, std::span<const Body> bodies, double radius) {
+void check_packing(const StlRig& rig, std::span<const Body> bodies, const std::vector<double>& radii) {
   std::vector<Surface> surfaces;
-  for (const Body& b : bodies) surfaces.push_back(make_surface(b.mesh, radius));
+  for (const Body& b : bodies) surfaces.push_back(make_surface(b.mesh, radii[0]));
   for (std::size_t k = 0; k < rig.packing.size(); ++k) {
     const Vec3 p = rig.packing[k];
+    const double radius = radii[radii.size() == 1 ? 0 : k];
     if (outside(rig, p)) {
-      fail("rig.packing", fmt::format("has sphere {} at {} m, outside the box", k + 1, short_text(p)),
+      fail("rig.packing",
+           fmt::format("has sphere {} (line {}) at {} m, outside the box", k + 1, rig.packing_line[k], short_text(p)),
            "move it inside, or make rig.box larger");
     }
     const double depth = depth_in_bodies(bodies, surfaces, p, radius);
     if (depth > 0.1 * radius) {
       fail("rig.packing",
-           fmt::format("has sphere {} at {} m, {:.2g} of a radius inside a mesh", k + 1, short_text(p), depth / radius),
+           fmt::format("has sphere {} (line {}) at {} m, {:.2g} of a radius inside a mesh", k + 1, rig.packing_line[k],
+                       short_text(p), depth / radius),
            "move it clear of the meshes");
     }
   }
@@ -273,8 +290,9 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
     fill(c, seed, built);
   } else {
     built.grains = draw_grains(c, seed);
-    check_packing(rig, built.bodies, built.grains.radius[0]);
-    check_overlaps(rig, built.grains.radius[0], c.run.overlap_limit);
+    check_diameters(rig, built.grains.radius);
+    check_packing(rig, built.bodies, built.grains.radius);
+    check_overlaps(rig, built.grains.radius, c.run.overlap_limit);
     built.position = rig.packing;
     built.velocity = rig.velocity;
     built.frozen = rig.frozen;
@@ -322,9 +340,9 @@ std::vector<data::Problem> problems_of(const Case& c) {
   }
   if (driven && c.rig.angular_velocity == 0.0)
     found.push_back({"rig.rpm", "is zero: a mixer at rest has no torque to measure", "give a speed"});
-  if (!rig.packing.empty() && !bed.equal) {
-    found.push_back({"rig.packing", "says where spheres of one size start, and those of the bed differ",
-                     "remove packing, and give a fill"});
+  if (!rig.packing.empty() && !bed.equal && rig.diameter.empty()) {
+    found.push_back({"rig.packing", "does not say which sphere is how large, and those of the bed differ",
+                     "give it a column diameter, or remove packing, and give a fill"});
   } else if (!rig.packing.empty() && bed.spheres != rig.packing.size()) {
     found.push_back({"rig.fill",
                      fmt::format("makes {} spheres, but rig.packing has {} positions", bed.spheres, rig.packing.size()),

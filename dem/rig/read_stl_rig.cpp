@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "data/csv.hpp"
@@ -156,6 +157,24 @@ void read_region(const Section& s, StlRig& r) {
   }
 }
 
+/// Spheres of several sizes come largest first, as those of a bed do (dem/case/grains.hpp).
+void sort_by_size(StlRig& r) {
+  std::vector<std::size_t> order(r.diameter.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return r.diameter[a] > r.diameter[b]; });
+  const auto sort = [&](auto& rows) {
+    auto sorted = rows;
+    for (std::size_t k = 0; k < rows.size(); ++k) sorted[k] = rows[order[k]];
+    rows = std::move(sorted);
+  };
+  sort(r.packing);
+  sort(r.packing_line);
+  sort(r.velocity);
+  sort(r.frozen);
+  sort(r.diameter);
+}
+
 void read_packing(const Section& s, const std::string& folder, StlRig& r) {
   const data::Unit usual = read_unit(s, "packing_unit", "m");
   const std::string file = s.text("packing", "");
@@ -181,11 +200,13 @@ void read_packing(const Section& s, const std::string& folder, StlRig& r) {
     const std::array<Column, 3> place = columns("", usual);
     const bool moving = csv.find("vx") || csv.find("vy") || csv.find("vz");
     const std::array<Column, 3> speed = moving ? columns("v", data::parse_unit("m/s")) : place;
-    const std::optional<std::size_t> frozen = csv.find("frozen");
+    const std::optional<std::size_t> frozen = csv.find("frozen"), size = csv.find("diameter");
+    const data::Unit size_unit = size ? csv.unit(*size, usual) : usual;
     for (const data::CsvRow& row : csv.rows) {
       r.packing.push_back(vector(row, place));
       r.packing_line.push_back(row.line);
       if (moving) r.velocity.push_back(vector(row, speed));
+      if (size) r.diameter.push_back(size_unit.to_si(csv.number(row, *size)));
       if (!frozen) continue;
       const double flag = csv.number(row, *frozen);
       if (flag != 0.0 && flag != 1.0)
@@ -194,6 +215,7 @@ void read_packing(const Section& s, const std::string& folder, StlRig& r) {
     }
     if (r.packing.empty())
       s.problem("packing", fmt::format("{} has no row", file), "give positions in columns x, y, z");
+    if (size) sort_by_size(r);
   } catch (const data::InputError& error) {
     record(s, "packing", error);
   }

@@ -1,10 +1,12 @@
 // Rigs of the user's own meshes: what a study says reaches the run, packings keep clear, mistakes are named.
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
+#include <tuple>
 
 #include "data/error.hpp"
 #include "dem/bed/setup.hpp"
 #include "dem/case/stl_rig.hpp"
+#include "dem/reading/prepare.hpp"
 #include "dem/reading/read_case.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/slice.hpp"
@@ -181,6 +183,37 @@ TEST_CASE("a packing is read in the units of its headings, and in packing_unit a
   CHECK(with.velocity[0].z == Approx(5e-2));
   folder.write("at.csv", "x,y,z,vx [mm],vy,vz\n6,5.5,2,3,4,5\n");
   CHECK_THAT(said(folder, text), Catch::Contains("at.csv:1: vx") && Catch::Contains("does not measure"));
+}
+
+TEST_CASE("a packing of several sizes says which sphere is how large, as the materials make them") {
+  const SliceFolder folder;
+  std::string text = replaced(rig, "fill = 400", "packing = \"at.csv\"\npacking_unit = \"mm\"") + rest;
+  text = replaced(
+      text, "diameter = \"1.4 mm\"",
+      "sizes = [{ diameter = \"1.4 mm\", mass_fraction = 0.8 }, { diameter = \"0.7 mm\", mass_fraction = 0.2 }]");
+  const auto build = [&](const std::string& rows) {
+    folder.write("at.csv", rows);
+    return dem::build_rig(dem::read_case(folder.study(text), "steel"), 1);
+  };
+  const std::string heading = "x,y,z,vx,vy,vz,diameter\n", small = "6,5.5,10,1,0,0,0.7\n", large = "6,0,20,2,0,0,1.4\n";
+  const dem::BuiltRig built = build(heading + small + large + "6,-5.5,30,3,0,0,0.7\n");
+  REQUIRE(built.position.size() == 3);  // 0.8 of the mass in one sphere and 0.2 in two, each an eighth of it
+  for (const auto& [at, z, speed, radius] :
+       {std::tuple{0, 20e-3, 2.0, 0.7e-3}, {1, 10e-3, 1.0, 0.35e-3}, {2, 30e-3, 3.0, 0.35e-3}}) {
+    CHECK(built.position[at].z == Approx(z));
+    CHECK(built.velocity[at].x == Approx(speed));
+    CHECK(built.grains.radius[at] == Approx(radius));
+  }
+  using Catch::Contains;
+  CHECK_THROWS_WITH(build(heading + small + large + "6,-5.5,30,3,0,0,0.8\n"),
+                    Contains("of 0.0008 m in line 4") && Contains("0.0007 m"));
+  CHECK_NOTHROW(build(heading + small + large + "6,1.0,20,0,0,0,0.7\n"));  // touching at 1.05 mm
+  CHECK_THROWS_WITH(build(heading + small + large + "6,0.98,20,0,0,0,0.7\n"),
+                    Contains("(lines 3 and 4)") && Contains("0.133 of a radius"));
+  folder.write("at.csv", "x,y,z\n6,5.5,10\n6,0,20\n6,-5.5,30\n");
+  const std::vector<data::Problem> found = dem::problems(dem::read_case(folder.study(text), "steel"));
+  REQUIRE(found.size() == 1);
+  CHECK_THAT(found[0].remedy, Contains("give it a column diameter"));
 }
 
 TEST_CASE("spheres of a packing that overlap are named with their lines, also over a periodic face") {
