@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <stdexcept>
 
 #include "data/edit_distance.hpp"
 
@@ -52,6 +53,16 @@ std::string escaped(std::string_view text) {
 bool is_header(const StudyKey& key) { return key.example.starts_with("[["); }
 
 }  // namespace
+
+std::vector<std::string> words_of(std::string_view name) {
+  const std::vector<StudyKey>& keys = study_keys();
+  const auto key = std::find_if(keys.begin(), keys.end(), [&](const StudyKey& one) { return one.name == name; });
+  if (key == keys.end()) throw std::out_of_range(fmt::format("no key named {}", name));
+  std::vector<std::string> words;
+  std::istringstream stream{std::string(key->range)};
+  for (std::string word; std::getline(stream >> std::ws, word, ',');) words.push_back(word);
+  return words;
+}
 
 std::vector<StudyKey> find_study_keys(const std::string& words) {
   const std::vector<std::string> wanted = parts_of(bare(words));

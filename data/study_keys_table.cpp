@@ -2,6 +2,11 @@
 #include "data/study_keys.hpp"
 
 namespace data {
+namespace {
+
+constexpr std::string_view rig_kinds = "slice, machine, drum, stl";
+
+}  // namespace
 
 const std::vector<StudyKey>& study_keys() {
   // name, type, unit, range, default; meaning; example
@@ -59,7 +64,7 @@ const std::vector<StudyKey>& study_keys() {
        "\"shared\""},
       {"outputs.NAME.unit", "text", "", "", "N m",
        "unit of the output's column and of the report; NAME is torque unless more is measured", "\"mN m\""},
-      {"rig.kind", "choice", "", "slice, machine, drum, stl", "slice",
+      {"rig.kind", "choice", "", rig_kinds, "slice",
        "a built-in auger slice, a machine of two augers that circulate the powder, a drum without lifters, or meshes "
        "of your own",
        "\"stl\""},
@@ -335,7 +340,7 @@ const std::vector<StudyKey>& study_keys() {
        "material that was measured, where the study has several", "\"carrier\""},
       {"observe.file", "text", "", "", "", "CSV of the measurement: columns of the controls, outputs and OUTPUT_se",
        "\"bench.csv\""},
-      {"observe.rig", "choice", "", "slice, machine, drum, stl", "rig.kind",
+      {"observe.rig", "choice", "", rig_kinds, "rig.kind",
        "what was measured, where the runs simulate a slice of it; machine needs rig.scale", "\"machine\""},
       {"observe.settings", "table", "", "", "", "controls that the file has no column of", "{ fill = 2400 }"},
       {"observe.settings.NAME", "quantity", "own", "", "", "value of the control at all points of the file",

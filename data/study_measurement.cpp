@@ -192,7 +192,7 @@ void read_measurement(const Section& root, const Section& section, const Study& 
   // A machine's torque says nothing of a slice's until a scale joins them.
   if (root.has("rig")) {
     const std::string simulated = root.child("rig").text("kind", "slice");
-    const std::string measured = section.choice("rig", {"slice", "machine", "drum", "stl"}, simulated);
+    const std::string measured = section.choice("rig", words_of("rig.kind"), simulated);
     set.of_machine = simulated == "slice" && measured != "slice";
     if (set.of_machine && !study.scale)
       section.problem("rig", "is the whole machine, but the runs simulate a slice of it, and nothing says how many",

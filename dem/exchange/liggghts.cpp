@@ -339,13 +339,10 @@ std::vector<data::Problem> not_in_liggghts(const Case& c) {
   }
   if (any([](const PairCoefficients& p) { return p.twisting_friction; }))
     refuse("contact.twisting_friction", "friction against twisting", "the nearest is 0");
-  if (c.rig.stl) {
-    for (const RigMesh& mesh : c.rig.stl->meshes) {
-      const Motion m = motion_of(mesh, c.rig.angular_velocity);
-      if (m.programme.size() > 1 || !m.oscillations.empty())
-        refuse("rig.mesh", fmt::format("motion like that of '{}' in one command", mesh.name),
-               "the nearest is one constant speed (speed_ratio)");
-    }
+  for (const RigBody& body : rig_bodies(c)) {
+    if (body.motion.programme.size() > 1 || !body.motion.oscillations.empty())
+      refuse("rig.mesh", fmt::format("motion like that of '{}' in one command", body.label.name),
+             "the nearest is one constant speed (speed_ratio)");
   }
   return found;
 }

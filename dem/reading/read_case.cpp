@@ -66,12 +66,12 @@ void read_fill(const Section& s, Case& c) {
 }
 
 void read_rig(const Section& s, const std::string& folder, Case& c) {
-  const auto kinds = rig_kinds();
   std::vector<std::string> names;
-  for (const RigKind* one : kinds) names.emplace_back(one->name);
+  for (const RigKind* one : rig_kinds) names.emplace_back(one->name);
   const std::string name = s.choice("kind", names, names.front());
-  const auto found = std::find_if(kinds.begin(), kinds.end(), [&](const RigKind* one) { return one->name == name; });
-  const RigKind& kind = found == kinds.end() ? *kinds.front() : **found;
+  const auto found =
+      std::find_if(rig_kinds.begin(), rig_kinds.end(), [&](const RigKind* one) { return one->name == name; });
+  const RigKind& kind = found == rig_kinds.end() ? *rig_kinds.front() : **found;
   kind.read(s, folder, c);
   for (const RigQuantity& one : kind.quantities) read(s, "rig", one.key, c);
   read(s, "rig", "rpm", c);

@@ -41,7 +41,7 @@ std::string unused_of_rig(const Case& c, std::string_view key) {
   };
   if (has(kind_of(c))) return "";
   std::vector<std::string> names;
-  for (const RigKind* kind : rig_kinds())
+  for (const RigKind* kind : rig_kinds)
     if (has(*kind)) names.push_back(fmt::format("\"{}\"", kind->name));
   return fmt::format("belongs to rigs of kind {} only", fmt::join(names, " and "));
 }
@@ -123,7 +123,7 @@ std::vector<Binding> make_bindings() {
   add_contact(contact.subspan(first_coefficients));
   all.push_back(of_log_normal_sizes());
   add_rig(drum_rig);
-  for (const RigKind* kind : rig_kinds()) add_rig(*kind);
+  for (const RigKind* kind : rig_kinds) add_rig(*kind);
   return all;
 }
 
@@ -300,12 +300,7 @@ std::string unused_because(const Case& c, std::string_view name) { return bindin
 
 std::string without_effect(const Case& c, std::string_view name) {
   const std::string full = target(name).name;
-  if (full == "rig.rpm" && c.rig.stl) {
-    const std::vector<RigMesh>& meshes = c.rig.stl->meshes;
-    const bool driven =
-        std::any_of(meshes.begin(), meshes.end(), [](const RigMesh& m) { return m.speed_ratio != 0.0; });
-    return driven ? "" : "drives no mesh of this rig: none has a speed_ratio";
-  }
+  if (full == "rig.rpm") return drives_a_body(c) ? "" : "drives no mesh of this rig: none has a speed_ratio";
   constexpr std::string_view of_walls = "contact.wall_";
   if (!full.starts_with(of_walls)) return "";
   const auto key = std::find_if(std::begin(pair_keys), std::end(pair_keys),

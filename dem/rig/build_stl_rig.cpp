@@ -158,9 +158,16 @@ Vec3 offset_between(const Motion& first, const Motion& second) {
 
 bool parallel(Vec3 a, Vec3 b) { return length(cross(a, b)) < 1e-6; }
 
+std::vector<RigBody> bodies(const Case& c) {
+  std::vector<RigBody> all;
+  for (const RigMesh& m : c.rig.stl->meshes)
+    all.push_back({{m.name, m.material}, motion_of(m, c.rig.angular_velocity), m.speed_ratio != 0.0});
+  return all;
+}
+
 /// The measured meshes; a rig without meshes has none.
-std::vector<std::size_t> measured_meshes(const StlRig& rig) {
-  return rig.meshes.empty() ? std::vector<std::size_t>{} : rig.measured;
+std::vector<std::size_t> measured(const Case& c) {
+  return c.rig.stl->meshes.empty() ? std::vector<std::size_t>{} : c.rig.stl->measured;
 }
 
 /// How the k-th measured mesh moves.
@@ -193,6 +200,13 @@ Channels channels(const Case& c) {
   found.from = found.flow_from = dot(middle, first.axis) - half;
   found.to = found.flow_to = dot(middle, first.axis) + half;
   return found;
+}
+
+bool shows_picture(const Case& c) {
+  const StlRig& rig = *c.rig.stl;
+  if (rig.meshes.empty()) return true;
+  const Motion motion = measured_motion(c, 0);
+  return shows_bed(picture_along(motion.axis, motion.point, rig.down), rig.periodic);
 }
 
 void fill(const Case& c, std::uint64_t seed, BuiltRig& built) {
@@ -283,9 +297,10 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
   built.high = rig.high;
   built.periodic = rig.periodic;
   built.down = rig.down;
-  for (const RigMesh& m : rig.meshes)
-    built.bodies.push_back(
-        {m.name, with_copies(m.mesh, periods(rig), m.tolerance), motion_of(m, c.rig.angular_velocity)});
+  for (RigBody& body : bodies(c)) {
+    const RigMesh& m = rig.meshes[built.bodies.size()];
+    built.bodies.push_back({m.name, with_copies(m.mesh, periods(rig), m.tolerance), std::move(body.motion)});
+  }
   if (rig.packing.empty()) {
     fill(c, seed, built);
   } else {
@@ -298,7 +313,7 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
     built.frozen = rig.frozen;
   }
   Sensor& sensor = built.sensor;
-  for (const std::size_t k : measured_meshes(rig)) {
+  for (const std::size_t k : measured(c)) {
     const Motion& motion = built.bodies[k].motion;
     sensor.driven.push_back({k, drive_sign(motion, c.run) * motion.axis});
   }
@@ -332,13 +347,11 @@ std::vector<data::Problem> problems_of(const Case& c) {
                      "join meshes that move together into one file"});
   }
   if (!found.empty()) return found;
-  bool driven = false;
   for (const RigMesh& m : rig.meshes) {
     check_mesh_in_box(m, c, found);
     check_motion(m, c, found);
-    driven = driven || m.speed_ratio != 0.0;
   }
-  if (driven && c.rig.angular_velocity == 0.0)
+  if (drives_a_body(c) && c.rig.angular_velocity == 0.0)
     found.push_back({"rig.rpm", "is zero: a mixer at rest has no torque to measure", "give a speed"});
   if (!rig.packing.empty() && !bed.equal && rig.diameter.empty()) {
     found.push_back({"rig.packing", "does not say which sphere is how large, and those of the bed differ",
@@ -368,9 +381,9 @@ std::string settings(const Case& c) {
     }
     lines += "\n";
   }
-  std::vector<std::string> measured;
-  for (const std::size_t k : measured_meshes(rig)) measured.push_back(rig.meshes[k].name);
-  lines += fmt::format("rig.torque_of = {}\n", fmt::join(measured, ", "));
+  std::vector<std::string> names;
+  for (const std::size_t k : measured(c)) names.push_back(rig.meshes[k].name);
+  lines += fmt::format("rig.torque_of = {}\n", fmt::join(names, ", "));
   const FillRegion& r = rig.region;
   if (!rig.packing.empty()) return lines;
   if (r.shape == FillRegion::Shape::box)
@@ -382,12 +395,6 @@ std::string settings(const Case& c) {
 std::vector<NamedMesh> meshes(const Case& c) {
   std::vector<NamedMesh> all;
   for (const RigMesh& m : c.rig.stl->meshes) all.push_back({m.name, m.mesh});
-  return all;
-}
-
-std::vector<BodyLabel> labels(const Case& c) {
-  std::vector<BodyLabel> all;
-  for (const RigMesh& m : c.rig.stl->meshes) all.push_back({m.name, m.material});
   return all;
 }
 
@@ -416,9 +423,10 @@ const RigKind stl_rig{.name = "stl",
                       .warnings = [](const Case& c) { return c.rig.stl->warnings; },
                       .problems = problems_of,
                       .settings = settings,
-                      .labels = labels,
-                      .measured_bodies = [](const Case& c) { return measured_meshes(*c.rig.stl).size(); },
+                      .bodies = bodies,
+                      .measured = measured,
                       .channels = channels,
+                      .has_picture = shows_picture,
                       .tool_speed = [](const Case& c) { return mesh_speed(*c.rig.stl, c.rig.angular_velocity); },
                       .fill_depth = fill_depth,
                       .outlook = nullptr};

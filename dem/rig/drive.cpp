@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
+
+#include "dem/rig/rig.hpp"
 
 namespace dem {
 
@@ -15,30 +18,29 @@ double drive_sign(const Motion& motion, const RunControl& run) {
 }
 
 bool drive_sign_corrected(const Case& c) {
-  if (!c.rig.stl || c.rig.stl->meshes.empty()) return false;
-  const StlRig& rig = *c.rig.stl;
-  return std::any_of(rig.measured.begin(), rig.measured.end(), [&](std::size_t k) {
-    const Motion motion = motion_of(rig.meshes[k], c.rig.angular_velocity);
+  const std::vector<RigBody> bodies = rig_bodies(c);
+  const std::vector<std::size_t> measured = measured_bodies(c);
+  return std::any_of(measured.begin(), measured.end(), [&](std::size_t k) {
+    const Motion& motion = bodies[k].motion;
     const double at_last = programme_speed(motion, std::numeric_limits<double>::max()) > 0.0 ? -1.0 : 1.0;
     return drive_sign(motion, c.run) != at_last;
   });
 }
 
 double turn_of(const Case& c) {
-  if (c.rig.stl && !c.rig.stl->meshes.empty()) {
-    const StlRig& rig = *c.rig.stl;
-    if (const double own = period(motion_of(rig.meshes[rig.measured.front()], c.rig.angular_velocity)); own > 0.0)
-      return own;
-    double slowest = 0.0, slowest_swing = 0.0;
-    for (const RigMesh& m : rig.meshes) {
-      const Motion motion = motion_of(m, c.rig.angular_velocity);
-      double& longest = motion.programme.empty() ? slowest_swing : slowest;
-      longest = std::max(longest, period(motion));
-    }
-    return slowest > 0.0 ? slowest : slowest_swing;
+  const std::vector<RigBody> bodies = rig_bodies(c);
+  const std::vector<std::size_t> measured = measured_bodies(c);
+  if (measured.empty()) {
+    const double speed = std::abs(c.rig.angular_velocity);
+    return speed > 0.0 ? 2.0 * std::numbers::pi / speed : 0.0;
   }
-  const double speed = std::abs(c.rig.angular_velocity);
-  return speed > 0.0 ? 2.0 * std::numbers::pi / speed : 0.0;
+  if (const double own = period(bodies[measured.front()].motion); own > 0.0) return own;
+  double slowest = 0.0, slowest_swing = 0.0;
+  for (const RigBody& body : bodies) {
+    double& longest = body.motion.programme.empty() ? slowest_swing : slowest;
+    longest = std::max(longest, period(body.motion));
+  }
+  return slowest > 0.0 ? slowest : slowest_swing;
 }
 
 }  // namespace dem

@@ -76,6 +76,28 @@ double froude_number(const Case& c) {
 
 namespace {
 
+std::vector<RigBody> bodies(const Case& c) {
+  const Motion turning{.axis = {0.0, -1.0, 0.0}, .programme = {{0.0, c.rig.angular_velocity}}};
+  const Motion resting{.axis = turning.axis};
+  std::vector<RigBody> all{{{"shell", "wall"}, turning, true}};
+  switch (c.rig.drum->end_plates) {
+    case EndPlates::turning:
+      all.push_back({{"plates", "wall"}, turning, true});
+      break;
+    case EndPlates::resting:
+      all.push_back({{"plates", "wall"}, resting});
+      break;
+    case EndPlates::none:
+      break;
+  }
+  return all;
+}
+
+std::vector<std::size_t> measured(const Case& c) {
+  return c.rig.drum->end_plates == EndPlates::turning ? std::vector<std::size_t>{shell, plates}
+                                                      : std::vector<std::size_t>{shell};
+}
+
 BuiltRig build(const Case& c, std::uint64_t seed) {
   const Drum& drum = *c.rig.drum;
   const BedSummary bed = summarise_bed(c);
@@ -84,19 +106,13 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
   built.low = {-drum.radius, 0.0, -drum.radius};
   built.high = {drum.radius, drum.length, drum.radius};
   built.periodic = {false, open, false};
-  TriangleMesh wall = shell_mesh(drum, bed.smallest);
-  if (open) wall = with_copies(wall, {{0.0, drum.length, 0.0}}, 1e-9 * drum.radius);
-  built.bodies.push_back({"shell", std::move(wall), {}});
-  if (!open) built.bodies.push_back({"plates", end_plates_mesh(drum), {}});
-  const Vec3 axis{0.0, -1.0, 0.0}, turning = c.rig.angular_velocity < 0.0 ? -axis : axis;
-  for (std::size_t k = 0; k < built.bodies.size(); ++k) {
-    Motion& motion = built.bodies[k].motion;
-    motion.axis = axis;
-    if (k == shell || drum.end_plates == EndPlates::turning) {
-      motion.programme = {{0.0, c.rig.angular_velocity}};
-      built.sensor.driven.push_back({k, -turning});
-    }
+  for (RigBody& body : bodies(c)) {
+    TriangleMesh mesh = built.bodies.size() == shell ? shell_mesh(drum, bed.smallest) : end_plates_mesh(drum);
+    if (open) mesh = with_copies(mesh, {{0.0, drum.length, 0.0}}, 1e-9 * drum.radius);
+    built.bodies.push_back({body.label.name, std::move(mesh), std::move(body.motion)});
   }
+  const Vec3 axis = built.bodies[shell].motion.axis, turning = c.rig.angular_velocity < 0.0 ? -axis : axis;
+  for (const std::size_t k : measured(c)) built.sensor.driven.push_back({k, -turning});
   built.sensor.flow_axis = {0.0, 1.0, 0.0};
   built.sensor.flow_length = drum.length;
   built.sensor.period = period(built.bodies[shell].motion);
@@ -155,12 +171,6 @@ std::vector<NamedMesh> meshes(const Case& c) {
   return all;
 }
 
-std::vector<BodyLabel> labels(const Case& c) {
-  std::vector<BodyLabel> all{{"shell", "wall"}};
-  if (c.rig.drum->end_plates != EndPlates::none) all.push_back({"plates", "wall"});
-  return all;
-}
-
 RigOutlook outlook(const Case& c) {
   const Drum& drum = *c.rig.drum;
   const DrumFill fill = fill_of_drum(c);
@@ -214,10 +224,10 @@ const RigKind drum_rig{
     .problems = problems_of,
     .settings =
         [](const Case& c) { return fmt::format("rig.end_plates = {}\n", data::to_text(c.rig.drum->end_plates)); },
-    .labels = labels,
-    .measured_bodies =
-        [](const Case& c) { return std::size_t{c.rig.drum->end_plates == EndPlates::turning ? 2u : 1u}; },
+    .bodies = bodies,
+    .measured = measured,
     .channels = [](const Case&) { return Channels{}; },
+    .has_picture = [](const Case&) { return true; },
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.drum->radius; },
     .fill_depth = [](const Case& c, double volume) { return volume / (c.rig.drum->length * 2.0 * c.rig.drum->radius); },
     .outlook = outlook};

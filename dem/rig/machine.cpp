@@ -137,28 +137,35 @@ Channels channels(const Case& c) {
   return found;
 }
 
+std::vector<RigBody> bodies(const Case& c) {
+  const double y = axis_offset(c.rig);
+  const auto turning = [&](double side) {
+    return Motion{
+        .point = {0.0, side * y, 0.0}, .axis = {-side, 0.0, 0.0}, .programme = {{0.0, c.rig.angular_velocity}}};
+  };
+  return {{{"first_mixer", "wall"}, turning(-1.0), true},
+          {{"second_mixer", "wall"}, turning(1.0), true},
+          {{"trough", "wall"}}};
+}
+
+std::vector<std::size_t> measured(const Case&) { return {first_mixer, second_mixer}; }
+
 BuiltRig build(const Case& c, std::uint64_t seed) {
   const Rig& rig = c.rig;
   const Machine& m = *rig.machine;
   const BedSummary bed = summarise_bed(c);
-  const double side = axis_offset(rig) + rig.trough_radius, y = axis_offset(rig);
+  const double side = axis_offset(rig) + rig.trough_radius;
   // High enough that a grain which a blade pinches and lets go does not fly over the rim.
   const double top =
       std::max({fill_of_machine(c).surface, rig.blade_radius, m.partition_height}) + 8.0 * rig.blade_radius;
   BuiltRig built;
   built.low = {0.0, -side, -rig.trough_radius};
   built.high = {m.length, side, top};
-  for (const bool first : {true, false}) {
-    Motion motion;
-    motion.point = {0.0, first ? -y : y, 0.0};
-    motion.axis = {first ? 1.0 : -1.0, 0.0, 0.0};
-    motion.programme = {{0.0, rig.angular_velocity}};
-    const double resists = rig.angular_velocity > 0.0 ? -1.0 : 1.0;
-    built.sensor.driven.push_back({built.bodies.size(), resists * motion.axis});
-    built.bodies.push_back(
-        {first ? "first_mixer" : "second_mixer", first ? first_auger(rig) : second_auger(rig), motion});
-  }
-  built.bodies.push_back({"trough", double_trough(rig, top), {}});
+  const std::array<TriangleMesh, 3> meshes{first_auger(rig), second_auger(rig), double_trough(rig, top)};
+  for (RigBody& body : bodies(c))
+    built.bodies.push_back({body.label.name, meshes[built.bodies.size()], std::move(body.motion)});
+  const double resists = rig.angular_velocity > 0.0 ? -1.0 : 1.0;
+  for (const std::size_t k : measured(c)) built.sensor.driven.push_back({k, resists * built.bodies[k].motion.axis});
   built.channels = channels(c);
   built.sensor.flow_axis = built.channels.along;
   built.sensor.flow_length = 2.0 * (m.length - 2.0 * m.opening);
@@ -284,12 +291,10 @@ const RigKind machine_rig{
     .warnings = [](const Case&) { return std::vector<std::string>{}; },
     .problems = problems_of,
     .settings = [](const Case&) { return std::string{}; },
-    .labels =
-        [](const Case&) {
-          return std::vector<BodyLabel>{{"first_mixer", "wall"}, {"second_mixer", "wall"}, {"trough", "wall"}};
-        },
-    .measured_bodies = [](const Case&) { return std::size_t{2}; },
+    .bodies = bodies,
+    .measured = measured,
     .channels = channels,
+    .has_picture = [](const Case&) { return false; },  // two axes
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.blade_radius; },
     .fill_depth = [](const Case& c,
                      double volume) { return volume / (c.rig.machine->length * 4.0 * c.rig.trough_radius); },

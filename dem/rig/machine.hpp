@@ -37,6 +37,6 @@ TriangleMesh double_trough(const Rig& rig, double top);
 TroughFill fill_of_machine(const Case& c);
 
 /// Indices of the bodies.
-inline constexpr std::size_t first_mixer = 0, second_mixer = 1, double_trough_body = 2;
+inline constexpr std::size_t first_mixer = 0, second_mixer = 1;
 
 }  // namespace dem

@@ -22,6 +22,8 @@ struct Picture {
 /// The picture along the axis of a body that turns by the right hand about the unit vector `turning` through `point`
 /// [m].
 Picture picture_along(Vec3 turning, Vec3 point, Vec3 down);
+/// Whether a camera sees the bed so: the axis is horizontal, and the box does not repeat across it.
+bool shows_bed(const Picture& picture, const std::array<bool, 3>& periodic);
 
 /// A body whose torque is measured.
 struct Driven {
@@ -58,8 +60,25 @@ const char* rig_kind(const Case& c);
 /// Throws data::InputError (78) when the spheres do not fit or start outside.
 BuiltRig build_rig(const Case& c, std::uint64_t seed);
 
-/// How many bodies' torques make the output.
-std::size_t measured_bodies(const Case& c);
+/// Name and material of a body, by which pairs of materials know it.
+struct BodyLabel {
+  std::string name, material;
+};
+/// A body of the rig, whatever its mesh.
+struct RigBody {
+  BodyLabel label;
+  Motion motion;
+  bool driven = false;  ///< whether it turns at the rig's angular velocity, or in a ratio to it
+};
+/// The rig's bodies, in the order of BuiltRig::bodies.
+std::vector<RigBody> rig_bodies(const Case& c);
+/// Whether the rig's angular velocity turns any of them.
+bool drives_a_body(const Case& c);
+/// Indices of the bodies whose torques, together, are the output.
+std::vector<std::size_t> measured_bodies(const Case& c);
+
+/// Whether outputs can be measured on a picture of the bed.
+bool has_picture(const Case& c);
 
 /// Where the powder goes along two measured bodies side by side; of length 0 where there are not two.
 Channels channels_of(const Case& c);
@@ -80,10 +99,7 @@ std::vector<data::Problem> rig_problems(const Case& c);
 /// Settings that no target names, one "name = value" a line.
 std::string rig_settings(const Case& c);
 
-/// Name and material of each of the rig's bodies, in their order.
-struct BodyLabel {
-  std::string name, material;
-};
+/// The labels of the rig's bodies, in their order.
 std::vector<BodyLabel> body_labels(const Case& c);
 /// All words by which a pair of materials may name a body: names, materials and "wall".
 std::vector<std::string> body_names(const Case& c);

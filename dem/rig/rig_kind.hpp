@@ -1,6 +1,7 @@
 #pragma once
-// The description that every kind of rig gives of itself. A new kind is a file that defines one of these, a line below,
-// and one in rig.cpp, which lists them; its data are a member of Rig (dem/case/case.hpp).
+// The description that every kind of rig gives of itself. A new kind is a file that defines one of these and its two
+// lines at the end of this one; its data are a member of Rig (dem/case/case.hpp).
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -57,9 +58,10 @@ struct RigKind {
   std::vector<std::string> (*warnings)(const Case& c);    ///< the same for every run
   std::vector<data::Problem> (*problems)(const Case& c);  ///< problems of the rig alone
   std::string (*settings)(const Case& c);                 ///< settings that no target names, one "name = value" a line
-  std::vector<BodyLabel> (*labels)(const Case& c);        ///< labels of the bodies, in their order
-  std::size_t (*measured_bodies)(const Case& c);          ///< number of bodies whose torques make the output
+  std::vector<RigBody> (*bodies)(const Case& c);          ///< the bodies that `build` makes, in their order
+  std::vector<std::size_t> (*measured)(const Case& c);    ///< indices of the bodies whose torques make the output
   Channels (*channels)(const Case& c);                    ///< of two bodies side by side; length 0 where there are none
+  bool (*has_picture)(const Case& c);                     ///< whether the picture along its axis shows_bed
   double (*tool_speed)(const Case& c);                    ///< m/s, highest speed of any point of a moving body
   double (*fill_depth)(const Case& c, double volume);     ///< m, of a lattice of this volume in a box without bodies
   RigOutlook (*outlook)(const Case& c);                   ///< null: it is found out from the meshes
@@ -71,7 +73,7 @@ extern const RigKind drum_rig;     ///< dem/rig/drum.cpp
 extern const RigKind stl_rig;      ///< dem/rig/build_stl_rig.cpp
 
 /// All kinds of rig; the first is the kind of a study that names none.
-std::span<const RigKind* const> rig_kinds();
+inline constexpr std::array rig_kinds{&slice_rig, &machine_rig, &drum_rig, &stl_rig};
 const RigKind& kind_of(const Case& c);
 
 }  // namespace dem

@@ -108,6 +108,11 @@ TroughFill fill_of_slice(const Case& c) {
 
 namespace {
 
+std::vector<RigBody> bodies(const Case& c) {
+  const Motion turning{.programme = {{0.0, c.rig.angular_velocity}}};
+  return {{{"mixer", "wall"}, turning, true}, {{"trough", "wall"}}};
+}
+
 BuiltRig build(const Case& c, std::uint64_t seed) {
   const Rig& rig = c.rig;
   BuiltRig s;
@@ -120,10 +125,10 @@ BuiltRig build(const Case& c, std::uint64_t seed) {
   s.periodic = {true, false, false};
   s.grains = std::move(packing.grains);
   s.position = std::move(packing.position);
-  const Vec3 shift{length, 0.0, 0.0};
-  s.bodies.push_back({"mixer", with_copies(auger_mesh(rig), {shift}, 1e-9 * length), {}});
-  s.bodies[mixer].motion.programme = {{0.0, rig.angular_velocity}};
-  s.bodies.push_back({"trough", with_copies(trough_mesh(rig, top), {shift}, 1e-9 * length), {}});
+  for (const RigBody& body : bodies(c)) {
+    const TriangleMesh mesh = s.bodies.size() == mixer ? auger_mesh(rig) : trough_mesh(rig, top);
+    s.bodies.push_back({body.label.name, with_copies(mesh, {{length, 0.0, 0.0}}, 1e-9 * length), body.motion});
+  }
   const double way = rig.angular_velocity > 0.0 ? -1.0 : 1.0;
   const Vec3 axis{way, 0.0, 0.0};
   s.sensor = {{{mixer, axis}}, axis, length, period(s.bodies[mixer].motion), picture_along(-axis, {}, s.down)};
@@ -191,12 +196,10 @@ const RigKind slice_rig{
     .warnings = [](const Case&) { return std::vector<std::string>{}; },
     .problems = problems_of,
     .settings = [](const Case& c) { return fmt::format("rig.pitches = {}\n", c.rig.pitches); },
-    .labels =
-        [](const Case&) {
-          return std::vector<BodyLabel>{{"mixer", "wall"}, {"trough", "wall"}};
-        },
-    .measured_bodies = [](const Case&) { return std::size_t{1}; },
+    .bodies = bodies,
+    .measured = [](const Case&) { return std::vector<std::size_t>{mixer}; },
     .channels = [](const Case&) { return Channels{}; },
+    .has_picture = [](const Case&) { return true; },
     .tool_speed = [](const Case& c) { return std::abs(c.rig.angular_velocity) * c.rig.blade_radius; },
     .fill_depth = [](const Case& c,
                      double volume) { return volume / (c.rig.pitches * c.rig.pitch * 2.0 * c.rig.trough_radius); },

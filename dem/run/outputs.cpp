@@ -7,8 +7,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "dem/case/stl_rig.hpp"
-
 namespace dem {
 namespace {
 
@@ -28,6 +26,25 @@ double flow_of(std::size_t channel, const Sampling& of, const Simulation& now) {
 }
 
 double length_of_flow(const Sampling& of) { return of.channels.flow_to - of.channels.flow_from; }
+
+std::string no_second_torque(const Case& c) {
+  return measured_bodies(c).size() < 2
+             ? "is that of a second body, and this rig measures one: name two meshes in rig.torque_of"
+             : "";
+}
+
+std::string no_channels(const Case& c) {
+  return channels_of(c).exist() ? "" : "is that of a channel, and this rig has no two bodies that turn side by side";
+}
+
+/// Why nothing is measured on the silhouette of this rig's bed, or "".
+std::string no_silhouette(const Case& c) {
+  if (channels_of(c).exist())
+    return "is measured on the picture along one axis, and the bodies of this rig turn about two";
+  return has_picture(c) ? ""
+                        : "is measured on the picture along a horizontal axis, but this rig's axis is vertical, or its "
+                          "box repeats across it";
+}
 
 /// Mass times the distance of its centre from the axis along a direction of the picture [kg m].
 double moment(const Sampling& of, const Simulation& now, Vec3 direction) {
@@ -66,11 +83,11 @@ const std::vector<MeanOutput>& mean_outputs() {
       {"first_torque", "N m", &Series::first_torque,
        [](const Sampling& of, const Simulation& now) { return torque_of(0, of, now); }, one},
       {"second_torque", "N m", &Series::second_torque,
-       [](const Sampling& of, const Simulation& now) { return torque_of(1, of, now); }, one},
+       [](const Sampling& of, const Simulation& now) { return torque_of(1, of, now); }, one, no_second_torque},
       {"first_flow", "kg/s", &Series::first_flow,
-       [](const Sampling& of, const Simulation& now) { return flow_of(0, of, now); }, length_of_flow},
+       [](const Sampling& of, const Simulation& now) { return flow_of(0, of, now); }, length_of_flow, no_channels},
       {"second_flow", "kg/s", &Series::second_flow,
-       [](const Sampling& of, const Simulation& now) { return -flow_of(1, of, now); }, length_of_flow},
+       [](const Sampling& of, const Simulation& now) { return -flow_of(1, of, now); }, length_of_flow, no_channels},
   };
   return all;
 }
@@ -103,20 +120,6 @@ const std::vector<Output>& outputs() {
   return all;
 }
 
-namespace {
-
-bool has_picture(const Rig& rig) {
-  if (!rig.stl || rig.stl->meshes.empty()) return true;  // the axes of slice and drum are horizontal
-  const StlRig& stl = *rig.stl;
-  const Motion motion = motion_of(stl.meshes[stl.measured.front()], rig.angular_velocity);
-  constexpr double any_radius = 1.0;
-  return picture_plane(picture_along(motion.axis, motion.point, stl.down), {stl.low, stl.high, stl.periodic},
-                       any_radius)
-             .columns > 0;
-}
-
-}  // namespace
-
 bool has_output(std::string_view name) {
   return std::any_of(outputs().begin(), outputs().end(), [&](const Output& o) { return o.name == name; });
 }
@@ -126,19 +129,10 @@ const std::string& output_unit(std::string_view name) {
 }
 
 std::string no_output_because(const Case& c, std::string_view name) {
-  const auto& seen = camera_outputs();
-  const Rig& rig = c.rig;
-  if (std::any_of(seen.begin(), seen.end(), [&](const CameraOutput& o) { return o.name == name; })) {
-    if (channels_of(c).exist())
-      return "is measured on the picture along one axis, and the bodies of this rig turn about two";
-    return has_picture(rig) ? ""
-                            : "is measured on the picture along a horizontal axis, but this rig's axis is vertical, or "
-                              "its box repeats across it";
-  }
-  if (name == "second_torque" && measured_bodies(c) < 2)
-    return "is that of a second body, and this rig measures one: name two meshes in rig.torque_of";
-  if ((name == "first_flow" || name == "second_flow") && !channels_of(c).exist())
-    return "is that of a channel, and this rig has no two bodies that turn side by side";
+  for (const MeanOutput& o : mean_outputs())
+    if (o.name == name) return o.lacking != nullptr ? o.lacking(c) : "";
+  for (const CameraOutput& o : camera_outputs())
+    if (o.name == name) return no_silhouette(c);
   return "";
 }
 

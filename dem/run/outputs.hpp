@@ -3,6 +3,7 @@
 // sample's mean is divided by. A new output is a row here and a member of Series (dem/run/run.hpp), which says what it
 // means. torque_fluctuation is made of the torque's series (dem/run/summary.hpp). A second table has what is measured
 // on the silhouette of each window.
+#include <string>
 #include <vector>
 
 #include "dem/engine/simulation.hpp"
@@ -27,6 +28,7 @@ struct MeanOutput {
   std::vector<double> Series::*series;
   double (*at_step)(const Sampling& of, const Simulation& now);  ///< the value of the step just made
   double (*divisor)(const Sampling& of);
+  std::string (*lacking)(const Case& c) = nullptr;  ///< why the rig has no such output, or ""; null: every rig has it
 };
 
 /// All outputs that are means over time, torque first.

@@ -22,14 +22,6 @@ std::pair<double, double> extent(const Box& box, Vec3 origin, Vec3 direction) {
   return {at - reach, at + reach};
 }
 
-bool repeats_across(const Box& box, const Picture& picture) {
-  const auto lies = [&](Vec3 axis) {
-    return std::abs(dot(axis, picture.right)) > 1e-6 || std::abs(dot(axis, picture.up)) > 1e-6;
-  };
-  return (box.periodic[0] && lies({1.0, 0.0, 0.0})) || (box.periodic[1] && lies({0.0, 1.0, 0.0})) ||
-         (box.periodic[2] && lies({0.0, 0.0, 1.0}));
-}
-
 /// First and last cell whose centre lies within `half` of `at`, both in cells, of `cells`.
 struct Range {
   int first, last;
@@ -118,7 +110,7 @@ double fitted_slope(const Slope& slope, const PicturePlane& plane, double centre
 
 PicturePlane picture_plane(const Picture& picture, const Box& box, double smallest_radius) {
   PicturePlane plane{.picture = picture};
-  if (dot(picture.right, picture.right) == 0.0 || repeats_across(box, picture)) return plane;
+  if (!shows_bed(picture, box.periodic)) return plane;
   const auto [left, right] = extent(box, picture.origin, picture.right);
   const auto [bottom, top] = extent(box, picture.origin, picture.up);
   plane.left = left;

@@ -307,7 +307,7 @@ speed_ratio = 1
   const dem::Case both = read("[\"mixer\", \"second\"]"), one = read("\"second\"");
   REQUIRE(both.rig.stl->measured == std::vector<std::size_t>{0, 1});
   CHECK(one.rig.stl->measured == std::vector<std::size_t>{1});
-  CHECK(dem::measured_bodies(both) == 2);
+  CHECK(dem::measured_bodies(both).size() == 2);
   CHECK(dem::settings_text(both) != dem::settings_text(one));
   const dem::Channels channels = dem::channels_of(both);
   CHECK(channels.along.x == 1.0);
