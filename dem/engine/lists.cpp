@@ -208,25 +208,60 @@ void Simulation::list_halos() {
   s.load.resize(n + first.back());
 }
 
+namespace {
+
+/// The features near a chunk's spheres: slots by body, of each body by sphere.
+struct NearWalls {
+  std::vector<WallSlot> slot;  ///< features counted from the chunk's first
+  Pool<WallMemory> memory;
+  std::vector<std::uint32_t> body;    ///< first slot of each body, one more
+  std::vector<NearFeature> features;  ///< features of each slot, nearest first
+
+  /// A slot of the list until now, its memories moved into this chunk's pool.
+  WallSlot keep(const State& s, std::uint32_t w, std::size_t bodies) {
+    WallSlot kept = s.wall[w];
+    const auto after = std::upper_bound(s.chunk_wall.begin(), s.chunk_wall.end(), w);
+    const auto chunk_before = static_cast<std::size_t>(after - s.chunk_wall.begin() - 1) / bodies;
+    for (std::uint32_t k = 0; k < kept.touching; ++k) {
+      const WallMemory& m = s.wall_memory[chunk_before].rows[kept.place[k]];
+      kept.place[k] = memory.take();
+      memory.rows[kept.place[k]] = m;
+    }
+    return kept;
+  }
+
+  /// Adds a slot with its features.
+  void add(WallSlot one, const std::vector<NearFeature>& near) {
+    one.feature_first = static_cast<std::uint32_t>(features.size());
+    one.feature_count = static_cast<std::uint32_t>(near.size());
+    slot.push_back(one);
+    features.insert(features.end(), near.begin(), near.end());
+  }
+};
+
+/// The slot that each sphere had at each body, by the sphere's new place; none where it was near no feature.
+std::vector<std::uint32_t> slots_until_now(const State& s, const std::vector<std::uint32_t>& place,
+                                           std::size_t bodies) {
+  std::vector<std::uint32_t> slots(s.particles() * bodies, none);
+  for (std::size_t w = 0; w < s.wall.size(); ++w)
+    slots[place[s.wall[w].particle] * bodies + s.wall[w].body] = static_cast<std::uint32_t>(w);
+  return slots;
+}
+
+}  // namespace
+
 /// Features near each sphere, and the memory of the contacts it had.
 void Simulation::list_walls() {
   State& s = state_;
   const std::size_t chunks = s.chunks(), bodies = setup_.bodies.size();
-  std::vector<std::uint32_t> old(s.particles() * bodies, none);
-  for (std::size_t w = 0; w < s.wall.size(); ++w)
-    old[place_[s.wall[w].particle] * bodies + s.wall[w].body] = static_cast<std::uint32_t>(w);
+  const std::vector<std::uint32_t> old = slots_until_now(s, place_, bodies);
   std::vector<Pose> now;
   for (const Body& body : setup_.bodies) now.push_back(pose(body.motion, motion_time(s.step)));
 
-  struct Found {
-    std::vector<WallSlot> slot;  ///< features counted from the chunk's first
-    Pool<WallMemory> memory;
-    std::vector<std::uint32_t> body;    ///< first slot of each body, one more
-    std::vector<NearFeature> features;  ///< features of each slot, nearest first
-  };
-  std::vector<Found> found(chunks);
+  // Each chunk finds the features near its spheres.
+  std::vector<NearWalls> found(chunks);
   team_.for_each(chunks, [&](std::size_t c) {
-    Found& f = found[c];
+    NearWalls& f = found[c];
     std::vector<NearFeature> near;
     f.body.push_back(0);
     for (std::size_t b = 0; b < bodies; ++b) {
@@ -235,38 +270,29 @@ void Simulation::list_walls() {
         const Vec3 in_body = point + rotate_back(now[b].rotation, s.position[i].at - now[b].point);
         find_features(surface_[b], in_body, s.position[i].radius + range_ + setup_.skin, near);
         if (near.empty()) continue;
-        WallSlot slot;
-        if (const std::uint32_t w = old[i * bodies + b]; w != none) {
-          slot = s.wall[w];
-          const auto after = std::upper_bound(s.chunk_wall.begin(), s.chunk_wall.end(), w);
-          const auto chunk_before = static_cast<std::size_t>(after - s.chunk_wall.begin() - 1) / bodies;
-          for (std::uint32_t k = 0; k < slot.touching; ++k) {
-            const WallMemory& m = s.wall_memory[chunk_before].rows[slot.place[k]];
-            slot.place[k] = f.memory.take();
-            f.memory.rows[slot.place[k]] = m;
-          }
-        }
+        const std::uint32_t w = old[i * bodies + b];
+        WallSlot slot = w != none ? f.keep(s, w, bodies) : WallSlot{};
         slot.particle = i;
         slot.body = static_cast<std::uint32_t>(b);
-        slot.feature_first = static_cast<std::uint32_t>(f.features.size());
-        slot.feature_count = static_cast<std::uint32_t>(near.size());
-        f.slot.push_back(slot);
-        f.features.insert(f.features.end(), near.begin(), near.end());
+        f.add(slot, near);
       }
       f.body.push_back(static_cast<std::uint32_t>(f.slot.size()));
     }
   });
 
-  const std::vector<std::uint32_t> first = starts(found, [](const Found& f) { return f.slot.size(); });
-  const std::vector<std::uint32_t> first_feature = starts(found, [](const Found& f) { return f.features.size(); });
+  // The lists have room for what all chunks found.
+  const std::vector<std::uint32_t> first = starts(found, [](const NearWalls& f) { return f.slot.size(); });
+  const std::vector<std::uint32_t> first_feature = starts(found, [](const NearWalls& f) { return f.features.size(); });
   s.wall = std::vector<WallSlot>(first.back());
   s.wall_memory.clear();
-  for (Found& f : found) s.wall_memory.push_back(std::move(f.memory));
+  for (NearWalls& f : found) s.wall_memory.push_back(std::move(f.memory));
   s.features = std::vector<std::uint32_t>(first_feature.back());
   s.feature_gap = std::vector<float>(first_feature.back());
   s.chunk_wall = std::vector<std::uint32_t>(chunks * bodies + 1);
+
+  // Each chunk puts what it found in its place.
   team_.for_each(chunks, [&](std::size_t c) {
-    const Found& f = found[c];
+    const NearWalls& f = found[c];
     for (std::size_t b = 0; b < bodies; ++b) s.chunk_wall[c * bodies + b + 1] = first[c] + f.body[b + 1];
     for (std::size_t k = 0; k < f.slot.size(); ++k) {
       WallSlot& slot = s.wall[first[c] + k] = f.slot[k];
