@@ -188,24 +188,32 @@ std::string where_filled(const BuiltRig& rig) {
   return fmt::format("{} to {}", mm(low), mm(high));
 }
 
-void check_powder(const Case& c, const BuiltRig& rig, Forecast& f) {
-  const std::string place = c.rig.stl->packing.empty() ? "rig.region" : "rig.packing";
-  const Room room = make_room(rig, summarise_bed(c).smallest);
+/// How many percent of the spheres have no wall under them, of 2000 looked at.
+double percent_lost(const Room& room, const BuiltRig& rig) {
   const std::size_t every = rig.position.size() / 2000 + 1;
   std::size_t lost = 0, asked = 0;
   for (std::size_t k = 0; k < rig.position.size(); k += every, ++asked) lost += falls_out(room, rig.position[k]);
+  return 100.0 * static_cast<double>(lost) / static_cast<double>(asked);
+}
+
+/// A bed of this volume [m3], poured where the lowest sphere starts.
+Poured pour_bed(const Room& room, const BuiltRig& rig, double volume) {
   const Vec3 lowest = *std::min_element(rig.position.begin(), rig.position.end(),
                                         [&](Vec3 a, Vec3 b) { return dot(rig.down, a) > dot(rig.down, b); });
-  const double solids = summarise_bed(c).volume;
-  const Poured bed = pour(room, room.at(lowest), solids / packing_fraction);
+  return pour(room, room.at(lowest), volume);
+}
+
+/// Problems of powder that does not stay in the vessel.
+void check_held(const Case& c, const BuiltRig& rig, const Room& room, const Poured& bed, Forecast& f) {
+  const std::string place = c.rig.stl->packing.empty() ? "rig.region" : "rig.packing";
   const std::string remedy = "give a rig.region inside the vessel, close the vessel, or correct rig.down";
-  if (lost > 0) {
-    f.problems.push_back(
-        {place,
-         fmt::format("makes {:.0f} % of the spheres, which start in {}, fall out of the box: no wall "
-                     "is under them",
-                     std::max(1.0, 100.0 * static_cast<double>(lost) / static_cast<double>(asked)), where_filled(rig)),
-         remedy});
+  const double solids = summarise_bed(c).volume;
+  if (const double lost = percent_lost(room, rig); lost > 0.0) {
+    f.problems.push_back({place,
+                          fmt::format("makes {:.0f} % of the spheres, which start in {}, fall out of the box: no wall "
+                                      "is under them",
+                                      std::max(1.0, lost), where_filled(rig)),
+                          remedy});
   } else if (bed.leaves && bed.held < 0.25 * solids / packing_fraction) {
     f.problems.push_back({place,
                           fmt::format("makes spheres start in {} that nothing holds: the powder runs out of the box at "
@@ -221,30 +229,33 @@ void check_powder(const Case& c, const BuiltRig& rig, Forecast& f) {
                           fmt::format("lower the fill to {:.2g} g or less, or close the vessel",
                                       1e3 * f.mass * bed.held * packing_fraction / solids)});
   }
-  if (!f.problems.empty()) return;
-  f.fill = solids / packing_fraction / bed.held;
-  f.surface = bed.surface;
-  f.full_at = "where the vessel runs over";
-  const Vec3 up = -rig.down;
-  f.up = up.z > 0.999   ? "z"
+}
+
+/// "z", or along which direction heights are counted.
+std::string upwards(Vec3 up) {
+  return up.z > 0.999   ? "z"
          : up.y > 0.999 ? "y"
          : up.x > 0.999 ? "x"
                         : fmt::format("along ({:.3g}, {:.3g}, {:.3g})", up.x, up.y, up.z);
-  const Poured loose = pour(room, room.at(lowest), solids / loosest_bed);
+}
+
+/// Whether the meshes that move or are measured reach a bed as loose as it may come to lie.
+void check_reach(const Case& c, const BuiltRig& rig, const Room& room, Forecast& f) {
+  const Poured loose = pour_bed(room, rig, summarise_bed(c).volume / loosest_bed);
   const std::vector<RigMesh>& meshes = c.rig.stl->meshes;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
     const bool measured = is_measured(*c.rig.stl, k);
     if (!measured && !moves(rig.bodies[k].motion)) continue;
     const std::vector<Vec3> points = swept_points(rig, k, c.run);
     double lowest_point = std::numeric_limits<double>::infinity();
-    for (const Vec3 p : points) lowest_point = std::min(lowest_point, dot(up, p));
+    for (const Vec3 p : points) lowest_point = std::min(lowest_point, dot(-rig.down, p));
     if (reaches(room, loose.wet, points)) {
       if (measured) say_immersion(f, meshes[k].name, lowest_point);
       continue;
     }
     const std::string what =
         fmt::format("never touches the powder: it reaches down to {} mm, and the bed's surface will lie at {} mm ({})",
-                    mm(lowest_point), mm(bed.surface), f.up);
+                    mm(lowest_point), mm(*f.surface), f.up);
     if (measured)
       f.problems.push_back({"rig.mesh." + meshes[k].name, what + ", so its torque would be 0",
                             "raise the fill, lower the mesh, fill the chamber that it is in, or measure another mesh "
@@ -252,6 +263,20 @@ void check_powder(const Case& c, const BuiltRig& rig, Forecast& f) {
     else
       f.warnings.push_back(meshes[k].name + " " + what);
   }
+}
+
+/// Where the powder comes to rest, and what it touches there.
+void check_powder(const Case& c, const BuiltRig& rig, Forecast& f) {
+  const Room room = make_room(rig, summarise_bed(c).smallest);
+  const double volume = summarise_bed(c).volume / packing_fraction;
+  const Poured bed = pour_bed(room, rig, volume);
+  check_held(c, rig, room, bed, f);
+  if (!f.problems.empty()) return;
+  f.fill = volume / bed.held;
+  f.surface = bed.surface;
+  f.full_at = "where the vessel runs over";
+  f.up = upwards(-rig.down);
+  check_reach(c, rig, room, f);
 }
 
 }  // namespace
