@@ -87,6 +87,65 @@ void check_effects(const Workspace& workspace, const std::vector<data::Input>& i
   }
 }
 
+/// Each output must be one that the simulation has, in a unit of its dimension, and every rig must have it.
+void check_output(const data::StudyFile& file, const Workspace& workspace, const data::Output& output) {
+  const data::Section outputs = file.root().child("outputs");
+  if (!dem::has_output(output.name)) {
+    outputs.problem(output.name, fmt::format("the simulation has no output '{}'", output.name),
+                    "choose one of: " + dem::output_names());
+    return;
+  }
+  const std::string& unit = dem::output_unit(output.name);
+  if (outputs.child(output.name).has("unit") && !data::convertible(output.unit.symbol, unit))
+    outputs.child(output.name)
+        .problem("unit", fmt::format("'{}' is no unit of {}, which is in {}", output.unit.symbol, output.name, unit),
+                 "choose a unit that converts to it");
+  for (const auto& [material, of] : workspace.cases) {
+    const std::string why = dem::no_output_because(of, output.name);
+    if (why.empty()) continue;
+    outputs.problem(output.name, why, "leave it out");
+    return;
+  }
+}
+
+/// What the study says must fit the simulation.
+void check_simulated(const data::StudyFile& file, const Workspace& workspace) {
+  const data::Study& study = workspace.study;
+  const std::vector<data::Input> inputs = data::inputs_of(study);
+  std::vector<data::Section> sections;
+  for (const data::Input& input : inputs) {
+    const char* const kind = study.parameter_index(input.name) ? "parameters" : "controls";
+    sections.push_back(file.root().child(kind).child(input.name));
+    check_target(sections.back(), input);
+  }
+  check_effects(workspace, inputs, sections);
+  for (const data::Output& output : study.outputs) check_output(file, workspace, output);
+}
+
+/// How tables were read that are not plain CSV; what is wrong with them was said before.
+std::vector<std::string> how_tables_were_read(const data::Study& study) {
+  std::vector<std::string> notes;
+  const auto add = [&](const std::string& table) {
+    if (const std::string how = data::read_csv(table).took_line(); !how.empty()) notes.push_back(how);
+  };
+  for (const data::ObservationSet& set : study.observations) add(set.file);
+  if (const std::string& table = study.training.table;
+      !table.empty() && fs::path(table).extension() == ".csv" && fs::exists(table))
+    add(table);
+  return notes;
+}
+
+/// The lists of points that another program or a hand has changed.
+std::vector<std::string> changed_lists(const Workspace& workspace) {
+  std::vector<std::string> notes;
+  for (const std::string& path :
+       {design_path(workspace), next_runs_path(workspace), verify_runs_path(workspace), posterior_runs_path(workspace)})
+    if (data::origin_of(path) == data::Origin::changed)
+      notes.push_back(fmt::format("{}: was changed since demcal wrote it; its points are taken as they stand",
+                                  data::shown_path(path)));
+  return notes;
+}
+
 std::string default_out(const data::Study& study) {
   return fs::absolute(study.name + "-results").lexically_normal().string();
 }
@@ -107,50 +166,14 @@ Workspace open_workspace(const StudyOptions& options) {
   if (file.root().child("rig").exists()) {
     for (const data::Material& material : study.materials)
       workspace.cases[material.name] = dem::read_case(file, material.name);
-    const std::vector<data::Input> inputs = data::inputs_of(study);
-    std::vector<data::Section> sections;
-    for (const data::Input& input : inputs) {
-      const char* const kind = study.parameter_index(input.name) ? "parameters" : "controls";
-      sections.push_back(file.root().child(kind).child(input.name));
-      check_target(sections.back(), input);
-    }
-    check_effects(workspace, inputs, sections);
-    for (const data::Output& output : study.outputs) {
-      const data::Section outputs = file.root().child("outputs");
-      if (!dem::has_output(output.name)) {
-        outputs.problem(output.name, fmt::format("the simulation has no output '{}'", output.name),
-                        "choose one of: " + dem::output_names());
-        continue;
-      }
-      const std::string& unit = dem::output_unit(output.name);
-      if (outputs.child(output.name).has("unit") && !data::convertible(output.unit.symbol, unit))
-        outputs.child(output.name)
-            .problem("unit",
-                     fmt::format("'{}' is no unit of {}, which is in {}", output.unit.symbol, output.name, unit),
-                     "choose a unit that converts to it");
-      for (const auto& [material, of] : workspace.cases) {
-        const std::string why = dem::no_output_because(of, output.name);
-        if (why.empty()) continue;
-        outputs.problem(output.name, why, "leave it out");
-        break;
-      }
-    }
+    check_simulated(file, workspace);
   }
   workspace.unsteady = file.root().child("training").choice("unsteady", Unsteady::leave_out);
   workspace.plan = data::read_plan(file, study);
   file.finish();
-  // How tables were read that are not plain CSV; what is wrong with them was said before.
-  for (const data::ObservationSet& set : study.observations)
-    if (const std::string how = data::read_csv(set.file).took_line(); !how.empty()) workspace.notes.push_back(how);
-  if (const std::string& table = study.training.table;
-      !table.empty() && fs::path(table).extension() == ".csv" && fs::exists(table))
-    if (const std::string how = data::read_csv(table).took_line(); !how.empty()) workspace.notes.push_back(how);
   workspace.out = options.out.empty() ? default_out(study) : fs::absolute(options.out).lexically_normal().string();
-  for (const std::string& path :
-       {design_path(workspace), next_runs_path(workspace), verify_runs_path(workspace), posterior_runs_path(workspace)})
-    if (data::origin_of(path) == data::Origin::changed)
-      workspace.notes.push_back(fmt::format("{}: was changed since demcal wrote it; its points are taken as they stand",
-                                            data::shown_path(path)));
+  workspace.notes = how_tables_were_read(study);
+  for (std::string& note : changed_lists(workspace)) workspace.notes.push_back(std::move(note));
   return workspace;
 }
 
