@@ -1,10 +1,9 @@
-// Robust scales: the median and the median absolute deviation, times 1.4826 for a normal distribution's sd.
+// What is odd in a plateau (log_faults.hpp).
 #include "data/log_faults.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -13,69 +12,6 @@ namespace {
 
 /// A torque of so few values says nothing of a limit: the logger is coarse.
 constexpr std::size_t coarse_levels = 3;
-
-constexpr std::array codes{999.0,   999.9,   999.99,  9999.0, 9999.9, 9999.99, 99999.0, 99999.9, 999999.0, 9999999.0,
-                           32767.0, 32768.0, 65535.0, 1e10,   1e30,   9.9e37,  1e37,    1e38,    3.4e38};
-
-struct MedianSpread {
-  double median = 0.0, sd = 0.0;
-};
-MedianSpread spread_of(const std::vector<double>& values) {
-  MedianSpread spread{median_of(values), 0.0};
-  std::vector<double> away;
-  for (const double value : values) away.push_back(std::abs(value - spread.median));
-  spread.sd = 1.4826 * median_of(std::move(away));
-  return spread;
-}
-
-bool is_code(double value) {
-  return std::any_of(codes.begin(), codes.end(),
-                     [&](double code) { return std::abs(std::abs(value) - code) <= 1e-6 * code; });
-}
-
-/// Marks the codes among values (in the log's own unit); returns which there are, and how often.
-std::map<double, std::size_t> mark_codes(const std::vector<double>& values, std::vector<bool>& out) {
-  std::map<double, std::size_t> found;
-  const MedianSpread spread = spread_of(values);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!is_code(values[i])) continue;
-    if (std::abs(values[i] - spread.median) <= 10.0 * std::max(spread.sd, 0.1 * std::abs(spread.median))) continue;
-    out[i] = true;
-    ++found[values[i]];
-  }
-  return found;
-}
-
-/// Zeros between samples that lie far above what one sample differs from the next.
-std::size_t mark_drop_outs(const TorqueLog& log, std::vector<bool>& out) {
-  double fastest = 0.0;
-  for (std::size_t i = 0; i < log.speed.size(); ++i)
-    if (!out[i]) fastest = std::max(fastest, std::abs(log.speed[i]));
-  std::vector<double> steps;
-  double last = NAN;
-  for (std::size_t i = 0; i < log.torque.size(); ++i) {
-    if (out[i] || log.torque[i] == 0.0) continue;
-    if (std::isfinite(last)) steps.push_back(std::abs(log.torque[i] - last));
-    last = log.torque[i];
-  }
-  if (steps.empty()) return 0;
-  const double step = median_of(std::move(steps));
-  constexpr std::size_t reach = 5;
-  std::size_t found = 0;
-  std::vector<bool> zeros(out.size(), false);
-  for (std::size_t i = 0; i < log.torque.size(); ++i) {
-    if (out[i] || log.torque[i] != 0.0 || std::abs(log.speed[i]) <= 0.01 * fastest) continue;
-    double before = 0.0, after = 0.0;
-    for (std::size_t k = 1; k <= reach && k <= i && before == 0.0; ++k) before = out[i - k] ? 0.0 : log.torque[i - k];
-    for (std::size_t k = 1; k <= reach && i + k < log.torque.size() && after == 0.0; ++k)
-      after = out[i + k] ? 0.0 : log.torque[i + k];
-    if (before * after <= 0.0 || std::min(std::abs(before), std::abs(after)) <= 8.0 * step) continue;
-    zeros[i] = true;
-    ++found;
-  }
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = out[i] || zeros[i];
-  return found;
-}
 
 /// "100 rpm at 12.5 s".
 std::string place_of(const TorqueLog& log, const Plateau& plateau) {
@@ -154,34 +90,12 @@ std::pair<std::size_t, std::size_t> idle_part(const std::vector<double>& values)
 
 }  // namespace
 
-std::vector<std::string> remove_no_values(TorqueLog& log) {
-  std::vector<bool> out(log.time.size(), false);
-  std::vector<std::string> words;
-  const auto codes_in = [&](const std::vector<double>& si, const Unit& unit, const char* what) {
-    std::vector<double> values;
-    for (const double value : si) values.push_back(unit.from_si(value));
-    for (const auto& [code, count] : mark_codes(values, out))
-      words.push_back(
-          fmt::format("{} samples with a {} of {:g} {}, which looks like a code for 'no value', are left out", count,
-                      what, code, unit.symbol));
-  };
-  codes_in(log.torque, log.torque_unit, "torque");
-  codes_in(log.speed, log.speed_unit, "speed");
-  if (const std::size_t zeros = mark_drop_outs(log, out); zeros > 0)
-    words.push_back(fmt::format(
-        "{} samples with a torque of exactly 0 amid others of a turning machine are left out as drop-outs", zeros));
-  if (words.empty()) return words;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out[i]) continue;
-    log.time[kept] = log.time[i];
-    log.torque[kept] = log.torque[i];
-    log.speed[kept++] = log.speed[i];
-  }
-  log.time.resize(kept);
-  log.torque.resize(kept);
-  log.speed.resize(kept);
-  return words;
+MedianSpread spread_of(const std::vector<double>& values) {
+  MedianSpread spread{median_of(values), 0.0};
+  std::vector<double> away;
+  for (const double value : values) away.push_back(std::abs(value - spread.median));
+  spread.sd = 1.4826 * median_of(std::move(away));
+  return spread;
 }
 
 std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau, double most) {
@@ -214,78 +128,138 @@ std::optional<double> dies_at(const TorqueLog& log, const Plateau& plateau) {
 
 constexpr double coarse_speed = 0.01;  // of a speed: half a step of the tachometer
 
-std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau) {
+namespace {
+
+/// A plateau and what is known of the torques that its mean is of.
+struct Used {
+  const TorqueLog& log;
+  const Plateau& plateau;
+  std::string at;              ///< place_of
+  std::vector<double> values;  ///< N m, spikes that are left out replaced
+  std::map<double, std::size_t> levels;
+
+  double count() const { return static_cast<double>(values.size()); }
+};
+
+/// More samples at an end of the range than beside it: a limit, or a machine that was off.
+std::vector<std::string> limits_in_words(const Used& used) {
   std::vector<std::string> words;
-  const Unit& unit = log.torque_unit;
-  const std::string at = place_of(log, plateau);
-  std::vector<double> values = used_torques(log, plateau);
-  if (plateau.torque.spikes_out > 0) values = without_spikes(values).series;
-  if (values.size() < 20) return words;
-  const std::map<double, std::size_t> levels = levels_of(values);
-  const auto count = static_cast<double>(values.size());
-  const MedianSpread spread = spread_of(values);
-  if (levels.size() > 1) {
-    for (const bool largest : {false, true}) {
-      const Level level = extreme(levels, largest);
-      if (levels.size() > coarse_levels && static_cast<double>(level.count) > 0.02 * count && level.count >= 5 &&
-          level.count > 3 * level.next)
-        words.push_back(
-            level.value == 0.0
-                ? fmt::format(
-                      "{}: {:.0f} % of the samples are exactly 0: the machine or its sensor was off then, so its "
-                      "mean is too small",
-                      at, 100.0 * static_cast<double>(level.count) / count)
-                : fmt::format(
-                      "{}: {:.0f} % of the samples are exactly {:.5g} {}, and none lies {}: clipped there, so its "
-                      "mean is too {}",
-                      at, 100.0 * static_cast<double>(level.count) / count, unit.from_si(level.value), unit.symbol,
-                      largest ? "above" : "below", largest ? "small" : "large"));
-    }
-    std::vector<double> steps;
-    for (auto one = levels.begin(); std::next(one) != levels.end(); ++one)
-      steps.push_back(std::next(one)->first - one->first);
-    const double step = median_of(std::move(steps));
-    if (values.size() >= 50 && levels.size() <= std::max<std::size_t>(8, values.size() / 50) &&
-        step > 0.5 * plateau.torque.sd)
-      words.push_back(fmt::format(
-          "{}: the torque takes {} values only, {:.3g} {} apart, the logger's resolution: the mean may be off by "
-          "{:.2g} {} beyond its error",
-          at, levels.size(), step / unit.factor, unit.symbol, 0.5 * step / unit.factor, unit.symbol));
+  if (used.levels.size() <= coarse_levels) return words;
+  const Unit& unit = used.log.torque_unit;
+  for (const bool largest : {false, true}) {
+    const Level level = extreme(used.levels, largest);
+    if (!(static_cast<double>(level.count) > 0.02 * used.count() && level.count >= 5 && level.count > 3 * level.next))
+      continue;
+    words.push_back(
+        level.value == 0.0
+            ? fmt::format("{}: {:.0f} % of the samples are exactly 0: the machine or its sensor was off then, so its "
+                          "mean is too small",
+                          used.at, 100.0 * static_cast<double>(level.count) / used.count())
+            : fmt::format("{}: {:.0f} % of the samples are exactly {:.5g} {}, and none lies {}: clipped there, so its "
+                          "mean is too {}",
+                          used.at, 100.0 * static_cast<double>(level.count) / used.count(), unit.from_si(level.value),
+                          unit.symbol, largest ? "above" : "below", largest ? "small" : "large"));
   }
+  return words;
+}
+
+/// So few values that the logger's resolution moves the mean; empty where they are more.
+std::string resolution_in_words(const Used& used) {
+  const std::size_t samples = used.values.size();
+  if (used.levels.size() < 2 || samples < 50 || used.levels.size() > std::max<std::size_t>(8, samples / 50)) return "";
+  std::vector<double> steps;
+  for (auto one = used.levels.begin(); std::next(one) != used.levels.end(); ++one)
+    steps.push_back(std::next(one)->first - one->first);
+  const double step = median_of(std::move(steps));
+  if (!(step > 0.5 * used.plateau.torque.sd)) return "";
+  const Unit& unit = used.log.torque_unit;
+  return fmt::format(
+      "{}: the torque takes {} values only, {:.3g} {} apart, the logger's resolution: the mean may be off by "
+      "{:.2g} {} beyond its error",
+      used.at, used.levels.size(), step / unit.factor, unit.symbol, 0.5 * step / unit.factor, unit.symbol);
+}
+
+/// What the speed is not known by.
+std::vector<std::string> speed_in_words(const Used& used) {
+  std::vector<std::string> words;
+  const Plateau& plateau = used.plateau;
+  const Unit& unit = used.log.speed_unit;
   if (0.5 * plateau.speed_step > coarse_speed * std::abs(plateau.speed))
     words.push_back(fmt::format("{}: the tachometer counts in steps of {:.3g} {}: the speed may be off by half of one",
-                                at, plateau.speed_step / log.speed_unit.factor, log.speed_unit.symbol));
+                                used.at, plateau.speed_step / unit.factor, unit.symbol));
   if (plateau.off_speed > 0.1)
     words.push_back(
         fmt::format("{}: {:.0f} % of the samples lie off that speed by more than the tolerance: the tachometer is "
-                    "coarse or the speed "
-                    "swings, and the speed is the mean of all",
-                    at, 100.0 * plateau.off_speed));
-  if (const auto [from, to] = idle_part(values); to > from)
-    words.push_back(
-        fmt::format("{}: the torque falls to nearly nothing from {:.4g} to {:.4g} s: where the machine stood "
-                    "still, leave that out (--window FROM TO)",
-                    at, log.time[plateau.used_from + from], log.time[plateau.used_from + to - 1]));
+                    "coarse or the speed swings, and the speed is the mean of all",
+                    used.at, 100.0 * plateau.off_speed));
+  return words;
+}
+
+/// A while in which the machine stood still; empty where there is none.
+std::string idle_in_words(const Used& used) {
+  const auto [from, to] = idle_part(used.values);
+  if (to <= from) return "";
+  const std::size_t first = used.plateau.used_from;
+  return fmt::format(
+      "{}: the torque falls to nearly nothing from {:.4g} to {:.4g} s: where the machine stood still, leave that out "
+      "(--window FROM TO)",
+      used.at, used.log.time[first + from], used.log.time[first + to - 1]);
+}
+
+/// Samples farther than eight sd from the median.
+std::vector<std::size_t> spikes_of(const std::vector<double>& values, const MedianSpread& spread) {
   std::vector<std::size_t> spikes;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const bool spike = spread.sd > 0.0 && std::abs(values[i] - spread.median) > 8.0 * spread.sd;
-    if (spike) spikes.push_back(i);
-    if (!spike) sum += values[i];
-  }
-  if (const auto number = static_cast<double>(spikes.size()); number > 0.0 && number < 0.2 * count) {
-    const bool one = spikes.size() == 1;
-    words.push_back(fmt::format(
-        "{}: {}, count{} in the mean {:.4g}, which is {:.4g} without {}: if {} no torque, leave {} out "
-        "(--without-spikes)",
-        at, spikes_in_words(log, plateau, spikes, spread.median), one ? "s" : "", unit.from_si(plateau.torque.mean),
-        unit.from_si(sum / (count - number)), one ? "it" : "them", one ? "it is" : "they are", one ? "it" : "them"));
-  }
-  if (const double change = drift(values); spikes.empty() && std::abs(change) > 2.0 * plateau.torque.standard_error)
-    words.push_back(
-        fmt::format("{}: the torque drifts by {:.3g} {} from the beginning of what is used to its end: the error does "
-                    "not cover that",
-                    at, change / unit.factor, unit.symbol));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (spread.sd > 0.0 && std::abs(values[i] - spread.median) > 8.0 * spread.sd) spikes.push_back(i);
+  return spikes;
+}
+
+/// What the spikes do to the mean; empty where there are none, or so many that they are no spikes.
+std::string spikes_counted_in_words(const Used& used, const std::vector<std::size_t>& spikes, double usual) {
+  const auto number = static_cast<double>(spikes.size());
+  if (!(number > 0.0 && number < 0.2 * used.count())) return "";
+  double others = 0.0;
+  for (std::size_t i = 0; i < used.values.size(); ++i)
+    if (!std::binary_search(spikes.begin(), spikes.end(), i)) others += used.values[i];
+  const Unit& unit = used.log.torque_unit;
+  const bool one = spikes.size() == 1;
+  return fmt::format(
+      "{}: {}, count{} in the mean {:.4g}, which is {:.4g} without {}: if {} no torque, leave {} out "
+      "(--without-spikes)",
+      used.at, spikes_in_words(used.log, used.plateau, spikes, usual), one ? "s" : "",
+      unit.from_si(used.plateau.torque.mean), unit.from_si(others / (used.count() - number)), one ? "it" : "them",
+      one ? "it is" : "they are", one ? "it" : "them");
+}
+
+/// A drift that the error does not cover; empty where there is none.
+std::string drift_in_words(const Used& used) {
+  const double change = drift(used.values);
+  if (!(std::abs(change) > 2.0 * used.plateau.torque.standard_error)) return "";
+  const Unit& unit = used.log.torque_unit;
+  return fmt::format(
+      "{}: the torque drifts by {:.3g} {} from the beginning of what is used to its end: the error does not cover that",
+      used.at, change / unit.factor, unit.symbol);
+}
+
+}  // namespace
+
+std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau) {
+  std::vector<double> values = used_torques(log, plateau);
+  if (plateau.torque.spikes_out > 0) values = without_spikes(values).series;
+  constexpr std::size_t fewest = 20;
+  if (values.size() < fewest) return {};
+  const MedianSpread spread = spread_of(values);
+  const std::vector<std::size_t> spikes = spikes_of(values, spread);
+  std::map<double, std::size_t> levels = levels_of(values);
+  const Used used{log, plateau, place_of(log, plateau), std::move(values), std::move(levels)};
+
+  std::vector<std::string> words = limits_in_words(used);
+  words.push_back(resolution_in_words(used));
+  for (std::string& one : speed_in_words(used)) words.push_back(std::move(one));
+  words.push_back(idle_in_words(used));
+  words.push_back(spikes_counted_in_words(used, spikes, spread.median));
+  if (spikes.empty()) words.push_back(drift_in_words(used));
+  std::erase(words, "");
   return words;
 }
 
