@@ -1,0 +1,107 @@
+#include "data/log_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <vector>
+
+#include "data/error.hpp"
+#include "data/number_text.hpp"
+#include "data/unit_text.hpp"
+
+namespace data {
+namespace {
+
+std::string heading_place(const Csv& csv) { return fmt::format("{}:{}", csv.file, csv.header_line); }
+
+bool is_named(const std::string& name, const LogColumn& wanted) {
+  const auto same = [&](const std::string& other) { return lower_case(name) == lower_case(other); };
+  return same(wanted.name) || std::any_of(wanted.also.begin(), wanted.also.end(), same);
+}
+
+/// The size of a unit of speed in rpm, where UDUNITS-2 reads it as a multiple of rpm: 60 for Hz.
+std::optional<double> multiple_of_rpm(const Unit& unit) {
+  if (!unit.symbol.ends_with(" rpm")) return {};
+  return std::strtod(unit.symbol.c_str(), nullptr);
+}
+
+}  // namespace
+
+std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::string& option) {
+  const auto named = [&](std::size_t i, const std::string& name) {
+    return lower_case(csv.columns[i]) == lower_case(name) || lower_case(csv.headings[i]) == lower_case(name);
+  };
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < csv.columns.size(); ++i)
+    if (named(i, wanted.name)) found.push_back(i);
+  if (found.empty())
+    for (std::size_t i = 0; i < csv.columns.size(); ++i)
+      if (std::any_of(wanted.also.begin(), wanted.also.end(), [&](const std::string& name) { return named(i, name); }))
+        found.push_back(i);
+  // "t" and "T" are a time and a torque.
+  const auto as_written = [&](std::size_t i) {
+    return std::find(wanted.also.begin(), wanted.also.end(), csv.columns[i]) != wanted.also.end();
+  };
+  if (found.size() > 1 && std::count_if(found.begin(), found.end(), as_written) == 1)
+    found = {*std::find_if(found.begin(), found.end(), as_written)};
+  while (found.size() > 1 && csv.headings[found[0]] == csv.headings[found[1]] && csv.same_values(found[0], found[1]))
+    found.erase(found.begin() + 1);
+  if (found.size() == 1) return found.front();
+  if (found.size() > 1)
+    refuse_data(heading_place(csv),
+                fmt::format("both '{}' and '{}' may be the column '{}'", csv.headings[found[0]], csv.headings[found[1]],
+                            wanted.name),
+                fmt::format("say which with --{}", option));
+  if (option == "time" && !csv.no_time.empty())
+    refuse_data(csv.file, csv.no_time, "give the samples per second with --rate, if they are even all through");
+  std::string remedy = fmt::format("name it with --{}", option);
+  if (option == "rpm") remedy += ", or give the speed of the whole log with --constant-speed";
+  if (csv.columns.size() == 1)
+    remedy = "its columns are not parted by commas, semicolons, tabs or blanks, or it has one column only";
+  refuse_data(
+      heading_place(csv),
+      fmt::format("the column '{}' is missing (the columns are {})", wanted.name, fmt::join(csv.headings, ", ")),
+      remedy);
+}
+
+Unit shown_unit(const Unit& meant, const std::string& given) {
+  if (multiple_of_rpm(meant)) return parse_unit("rpm");
+  Unit unit = meant;
+  if (!unit.symbol.empty() && unit.symbol.front() >= '0' && unit.symbol.front() <= '9') unit.symbol = trimmed(given);
+  return unit;
+}
+
+Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
+               const std::pair<std::string, std::string>& of) {
+  const auto& [dimension, option] = of;
+  std::string symbol = wanted.unit.empty() ? csv.units[column] : wanted.unit;
+  if (symbol.empty()) symbol = wanted.usual;
+  if (symbol.empty())
+    refuse_data(heading_place(csv), fmt::format("the column '{}' has no unit", csv.headings[column]),
+                fmt::format("write it in the header, '{} [N m]', or give --{}-unit", wanted.name, option));
+  if (const auto unit = unit_meant(symbol, dimension)) return shown_unit(*unit, symbol);
+  refuse_data(heading_place(csv), fmt::format("'{}' is not a unit of {}", symbol, option),
+              fmt::format("a unit like '{}'; --{}-unit overrides the header", dimension, option));
+}
+
+double per_shown_unit(const Csv& csv, std::size_t column, const LogColumn& wanted) {
+  const std::string& symbol = wanted.unit.empty() ? csv.units[column] : wanted.unit;
+  const auto unit = unit_meant(symbol, "rpm");
+  return unit ? multiple_of_rpm(*unit).value_or(1.0) : 1.0;
+}
+
+void part_headings(Csv& csv, const LogColumns& columns) {
+  for (const auto& [wanted, dimension] :
+       {std::pair(&columns.time, "s"), {&columns.torque, "N m"}, {&columns.speed, "rpm"}})
+    for (std::size_t i = 0; i < csv.columns.size(); ++i) {
+      if (is_named(csv.columns[i], *wanted)) continue;
+      const auto split = heading_with_unit(csv.headings[i], dimension);
+      if (!split || !is_named(split->name, *wanted)) continue;
+      csv.columns[i] = split->name;
+      csv.units[i] = split->unit;
+    }
+}
+
+}  // namespace data
