@@ -6,20 +6,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <set>
+#include <optional>
 
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
 #include "data/error.hpp"
+#include "data/number_text.hpp"
 #include "data/provenance.hpp"
+#include "data/run_table_columns.hpp"
 #include "data/run_table_files.hpp"
-#include "data/steadiness.hpp"
-#include "data/study_parts.hpp"
 
 namespace data {
 namespace {
@@ -55,121 +54,6 @@ void check_whole(const Csv& csv, const std::string& text) {
   }
 }
 
-struct Columns {
-  std::vector<std::size_t> inputs, outputs;
-  std::vector<std::optional<std::size_t>> errors;  ///< none: nobody stated them, and 0 stands for it
-  std::optional<std::size_t> material, seed, settings, isa, origin, cpu_seconds, state, unreliable;
-  std::vector<std::size_t> status;  ///< columns that say how a run ended
-  std::vector<std::size_t> unread;  ///< columns that nobody asks for
-};
-
-/// Another code's column `state` says something else.
-bool says_steadiness(const Csv& csv, std::size_t column) {
-  return std::all_of(csv.rows.begin(), csv.rows.end(), [column](const CsvRow& row) {
-    const std::string& state = row.fields[column];
-    return state.empty() || from_text<FlowState>(state);
-  });
-}
-
-/// Whether the table has the column of an output's standard errors, or should: one of our own, or one that has another
-/// word for an error there, which may be a standard deviation.
-bool has_errors(const Csv& csv, const std::string& output) {
-  constexpr std::array words = {"se",  "sd",    "std",   "stdev", "sem",        "stderr",
-                                "err", "error", "sigma", "unc",   "uncertainty"};
-  return csv.find("settings").has_value() || std::any_of(words.begin(), words.end(), [&](const char* word) {
-           return csv.find(output + "_" + word, Csv::Capitals::any).has_value();
-         });
-}
-
-bool is_empty(const Csv& csv, std::size_t column) {
-  return std::all_of(csv.rows.begin(), csv.rows.end(),
-                     [column](const CsvRow& row) { return trimmed(row.fields[column]).empty(); });
-}
-
-Columns find_columns(const Csv& csv, const RunTable& table, const Study& study) {
-  Columns at;
-  for (const Column& column : table.parameters) at.inputs.push_back(csv.column(column.name));
-  for (const Column& column : table.controls) at.inputs.push_back(csv.column(column.name));
-  for (const Column& column : table.outputs) {
-    at.outputs.push_back(csv.column(column.name));
-    std::optional<std::size_t> errors;
-    if (has_errors(csv, column.name)) errors = csv.column(column.name + "_se");
-    if (errors && is_empty(csv, *errors)) errors.reset();
-    at.errors.push_back(errors);
-  }
-  at.material = study.materials.size() > 1 ? csv.column("material") : csv.find("material");
-  at.seed = csv.find("seed");
-  at.settings = csv.find("settings");
-  at.isa = csv.find("isa");
-  at.origin = csv.find("origin");
-  at.cpu_seconds = csv.find("cpu_seconds");
-  if (const auto column = csv.find("state"); column && says_steadiness(csv, *column)) {
-    at.state = column;
-    at.unreliable = csv.find("unreliable");
-  }
-  std::set<std::size_t> read(at.inputs.begin(), at.inputs.end());
-  read.insert(at.outputs.begin(), at.outputs.end());
-  for (const auto& error : at.errors)
-    if (error) read.insert(*error);
-  for (std::size_t i = 0; i < csv.columns.size(); ++i) {
-    if (read.contains(i) || reserved_columns().contains(csv.columns[i]) || i == at.state || i == at.unreliable)
-      continue;
-    (is_status_column(csv.columns[i]) ? at.status : at.unread).push_back(i);
-  }
-  return at;
-}
-
-/// The contents of an unread column in words: "fill (from 200 to 300)", "note (text)".
-std::string contents(const Csv& csv, std::size_t column) {
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (const CsvRow& row : csv.rows) {
-    const std::string& field = row.fields[column];
-    double value = 0.0;
-    const auto [rest, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (field.empty() || error != std::errc{} || rest != field.data() + field.size())
-      return csv.columns[column] + " (text)";
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  return low == high ? fmt::format("{} ({:.5g} everywhere)", csv.columns[column], low)
-                     : fmt::format("{} (from {:.5g} to {:.5g})", csv.columns[column], low, high);
-}
-
-/// Names the columns that do not enter, and what those of other codes' names do.
-void tell_columns(const Csv& csv, const Columns& at, TableRead& result) {
-  const std::string place = fmt::format("{}:{}", csv.file, csv.header_line);
-  std::vector<std::string> without;
-  for (std::size_t i = 0; i < at.errors.size(); ++i)
-    if (!at.errors[i]) without.push_back(result.table.outputs[i].name + "_se");
-  if (!without.empty())
-    result.findings.push_back(
-        {.kind = FindingKind::zero_standard_error,
-         .place = place,
-         .severity = Severity::note,
-         .what = fmt::format("has no {}: the runs' scatter is estimated", fmt::join(without, ", ")),
-         .remedy = "where the code states standard errors, give their column that name",
-         .places = {}});
-  if (!at.unread.empty()) {
-    std::vector<std::string> names;
-    for (const std::size_t column : at.unread) names.push_back(contents(csv, column));
-    result.findings.push_back(
-        {.kind = FindingKind::unread_columns,
-         .place = place,
-         .severity = Severity::note,
-         .what =
-             fmt::format("nothing reads the {} {}", names.size() == 1 ? "column" : "columns", fmt::join(names, ", ")),
-         .remedy = "an input among them belongs under [parameters] or [controls], an output under [outputs]"});
-  }
-  // Our own tables have settings; a seed beside none is another code's.
-  if (at.seed && !at.settings)
-    result.findings.push_back({.kind = FindingKind::seed_column,
-                               .place = place,
-                               .severity = Severity::note,
-                               .what = "the column seed is kept with the run and is no input; rows of one point are "
-                                       "replicates, whatever it says",
-                               .remedy = ""});
-}
-
 /// Rows whose own columns say that they are not to be learnt from.
 void tell_failures(TableRead& result) {
   for (const bool asked : {true, false}) {
@@ -192,7 +76,7 @@ void tell_failures(TableRead& result) {
 }
 
 /// Whether a status column, or a column by which the user chooses rows, leaves the row out.
-LeftOut left_out_by_its_columns(const Csv& csv, const CsvRow& row, const Columns& at) {
+LeftOut left_out_by_its_columns(const Csv& csv, const CsvRow& row, const TableColumns& at) {
   for (const std::size_t column : at.status) {
     if (!says_failed(csv.columns[column], row.fields[column])) continue;
     const bool chosen = is_user_column(csv.columns[column]);
@@ -274,7 +158,7 @@ struct Missing {
   std::vector<std::size_t> outputs;  ///< value or standard error, one per output: the row lacks these
 };
 
-Missing not_finite(const Csv& csv, const CsvRow& row, const Columns& at) {
+Missing not_finite(const Csv& csv, const CsvRow& row, const TableColumns& at) {
   Missing missing;
   for (const std::size_t column : at.inputs)
     if (!missing.input && !std::isfinite(csv.number(row, column))) missing.input = column;
@@ -288,6 +172,103 @@ Missing not_finite(const Csv& csv, const CsvRow& row, const Columns& at) {
   return missing;
 }
 
+/// Reads the rows of a table, each in the units of its columns.
+class RowReader {
+ public:
+  RowReader(const Csv& csv, const RunTable& table, const Study& study, std::string file_name)
+      : csv_(csv),
+        at_(find_columns(csv, table, study)),
+        study_(study),
+        inputs_(inputs_of(study)),
+        file_name_(std::move(file_name)),
+        notes_(csv) {
+    for (const std::vector<Column>* columns : {&table.parameters, &table.controls})
+      for (const Column& column : *columns)
+        input_units_.push_back(csv.unit(at_.inputs[input_units_.size()], column.unit));
+    for (std::size_t i = 0; i < table.outputs.size(); ++i) {
+      output_units_.push_back(csv.unit(at_.outputs[i], table.outputs[i].unit));
+      error_units_.push_back(
+          (at_.errors[i] ? csv.unit(*at_.errors[i], output_units_.back()) : output_units_.back()).differences());
+    }
+  }
+
+  const TableColumns& columns() const { return at_; }
+  /// What is said of rows that are left out, and of those that lack an output.
+  std::vector<std::string> notes() const { return notes_.texts(); }
+
+  /// The row; none where it is left out.
+  std::optional<RunRow> read(const CsvRow& line) {
+    if (!usable(line)) return {};
+    RunRow row;
+    row.material = read_material(csv_, line, at_.material, study_);
+    for (std::size_t i = 0; i < at_.inputs.size(); ++i)
+      row.inputs.push_back(input_units_[i].to_si(line.fields[at_.inputs[i]]));
+    for (std::size_t i = 0; i < at_.outputs.size(); ++i) {
+      const MeanWithError mean = read_mean(line, i);
+      row.outputs.push_back(mean.value);
+      row.standard_errors.push_back(mean.standard_error);
+    }
+    if (at_.seed) row.seed = whole_number<std::uint64_t>(csv_, line, *at_.seed);
+    if (at_.settings) row.settings = line.fields[*at_.settings];
+    if (at_.isa) row.isa = line.fields[*at_.isa];
+    row.origin = at_.origin ? line.fields[*at_.origin] : fmt::format("{}:{}", file_name_, line.line);
+    if (at_.cpu_seconds) row.cpu_seconds = csv_.number(line, *at_.cpu_seconds);
+    if (at_.state) row.state = line.fields[*at_.state];
+    if (at_.unreliable) row.unreliable = line.fields[*at_.unreliable];
+    row.place = fmt::format("{}:{}", file_name_, line.line);
+    row.left_out = left_out_by_its_columns(csv_, line, at_);
+    return row;
+  }
+
+ private:
+  /// Whether a row says anything; what it lacks is noted.
+  bool usable(const CsvRow& line) {
+    const Missing missing = not_finite(csv_, line, at_);
+    for (std::size_t i = 0; i < at_.inputs.size(); ++i) {
+      if (inputs_[i].axis.scale != Scale::log || !(csv_.number(line, at_.inputs[i]) <= 0.0)) continue;
+      notes_.add(line, at_.inputs[i], "which has no logarithm (scale = \"log\"), the row is left out",
+                 "which has no logarithm (scale = \"log\"), the rows are left out");
+      return false;
+    }
+    // A row of our own without any mean was a run that could not know one. It stays, or a table that is read from its
+    // CSV, as its HDF5 is damaged, would lose it.
+    const bool ours = at_.settings.has_value() && at_.state.has_value();
+    if (missing.input || (missing.outputs.size() == at_.outputs.size() && !ours)) {
+      notes_.add(line, missing.input ? *missing.input : missing.outputs.front(), "the row is left out",
+                 "the rows are left out");
+      return false;
+    }
+    for (const std::size_t column : missing.outputs)
+      notes_.add(line, column, "the row counts for the other outputs only",
+                 "the rows count for the other outputs only");
+    return true;
+  }
+
+  struct MeanWithError {
+    double value, standard_error;  ///< SI; NaN where either is missing
+  };
+  MeanWithError read_mean(const CsvRow& line, std::size_t output) const {
+    const std::size_t column = at_.outputs[output];
+    const std::optional<std::size_t> errors = at_.errors[output];
+    if (!has_number(csv_, line, column) || (errors && !has_number(csv_, line, *errors)))
+      return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    const double error = errors ? error_units_[output].to_si(line.fields[*errors]) : 0.0;
+    if (error < 0.0)
+      throw InputError(ExitStatus::bad_data,
+                       Problem{csv_.place(line, *errors), fmt::format("{} is below 0", line.fields[*errors]),
+                               "give the standard error of the run's mean, or 0 when it has none"});
+    return {output_units_[output].to_si(line.fields[column]), error};
+  }
+
+  const Csv& csv_;
+  TableColumns at_;
+  const Study& study_;
+  std::vector<Input> inputs_;
+  std::string file_name_;
+  std::vector<Unit> input_units_, output_units_, error_units_;
+  RowNotes notes_;
+};
+
 }  // namespace
 
 TableRead read_table_csv(const std::string& path, const Study& study) {
@@ -295,72 +276,11 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
   const Csv csv = parse_csv(text, shown_path(path));
   check_whole(csv, text);
   TableRead result{.table = empty_table(study)};
-  RunTable& table = result.table;
-  const Columns at = find_columns(csv, table, study);
-  const std::string file_name = std::filesystem::path(path).filename().string();
-
-  std::vector<Unit> input_units, output_units, error_units;
-  for (const std::vector<Column>* columns : {&table.parameters, &table.controls})
-    for (const Column& column : *columns) input_units.push_back(csv.unit(at.inputs[input_units.size()], column.unit));
-  for (std::size_t i = 0; i < table.outputs.size(); ++i) {
-    output_units.push_back(csv.unit(at.outputs[i], table.outputs[i].unit));
-    error_units.push_back(
-        (at.errors[i] ? csv.unit(*at.errors[i], output_units.back()) : output_units.back()).differences());
-  }
-  tell_columns(csv, at, result);
-  RowNotes notes(csv);
-  const std::vector<Input> inputs = inputs_of(study);
-  for (const CsvRow& line : csv.rows) {
-    const Missing missing = not_finite(csv, line, at);
-    std::size_t no_logarithm = at.inputs.size();
-    for (std::size_t i = at.inputs.size(); i-- > 0;)
-      if (inputs[i].axis.scale == Scale::log && csv.number(line, at.inputs[i]) <= 0.0) no_logarithm = i;
-    if (no_logarithm < at.inputs.size()) {
-      notes.add(line, at.inputs[no_logarithm], "which has no logarithm (scale = \"log\"), the row is left out",
-                "which has no logarithm (scale = \"log\"), the rows are left out");
-      continue;
-    }
-    // A row of our own without any mean was a run that could not know one. It stays, or a table that is read from its
-    // CSV, as its HDF5 is damaged, would lose it.
-    const bool ours = at.settings.has_value() && at.state.has_value();
-    if (missing.input || (missing.outputs.size() == at.outputs.size() && !ours)) {
-      notes.add(line, missing.input ? *missing.input : missing.outputs.front(), "the row is left out",
-                "the rows are left out");
-      continue;
-    }
-    for (const std::size_t column : missing.outputs)
-      notes.add(line, column, "the row counts for the other outputs only", "the rows count for the other outputs only");
-    RunRow row;
-    row.material = read_material(csv, line, at.material, study);
-    for (std::size_t i = 0; i < at.inputs.size(); ++i)
-      row.inputs.push_back(input_units[i].to_si(line.fields[at.inputs[i]]));
-    for (std::size_t i = 0; i < at.outputs.size(); ++i) {
-      if (!has_number(csv, line, at.outputs[i]) || (at.errors[i] && !has_number(csv, line, *at.errors[i]))) {
-        row.outputs.push_back(std::numeric_limits<double>::quiet_NaN());
-        row.standard_errors.push_back(std::numeric_limits<double>::quiet_NaN());
-        continue;
-      }
-      row.outputs.push_back(output_units[i].to_si(line.fields[at.outputs[i]]));
-      row.standard_errors.push_back(at.errors[i] ? error_units[i].to_si(line.fields[*at.errors[i]]) : 0.0);
-      if (row.standard_errors.back() < 0.0) {
-        throw InputError(
-            ExitStatus::bad_data,
-            Problem{csv.place(line, *at.errors[i]), fmt::format("{} is below 0", line.fields[*at.errors[i]]),
-                    "give the standard error of the run's mean, or 0 when it has none"});
-      }
-    }
-    if (at.seed) row.seed = whole_number<std::uint64_t>(csv, line, *at.seed);
-    if (at.settings) row.settings = line.fields[*at.settings];
-    if (at.isa) row.isa = line.fields[*at.isa];
-    row.origin = at.origin ? line.fields[*at.origin] : fmt::format("{}:{}", file_name, line.line);
-    if (at.cpu_seconds) row.cpu_seconds = csv.number(line, *at.cpu_seconds);
-    if (at.state) row.state = line.fields[*at.state];
-    if (at.unreliable) row.unreliable = line.fields[*at.unreliable];
-    row.place = fmt::format("{}:{}", file_name, line.line);
-    row.left_out = left_out_by_its_columns(csv, line, at);
-    table.rows.push_back(std::move(row));
-  }
-  result.left_out = notes.texts();
+  RowReader reader(csv, result.table, study, std::filesystem::path(path).filename().string());
+  result.findings = column_findings(csv, reader.columns(), result.table);
+  for (const CsvRow& line : csv.rows)
+    if (std::optional<RunRow> row = reader.read(line)) result.table.rows.push_back(*std::move(row));
+  result.left_out = reader.notes();
   tell_failures(result);
   return result;
 }

@@ -71,6 +71,88 @@ void refuse_more(const Hdf5Group& group, const std::vector<Column>& columns, con
   }
 }
 
+/// Throws InputError (65) where this is no table that was finished, and of this version.
+void check_finished(const Hdf5Group& root) {
+  if (!root.has_attribute("format") || root.text("format") != format_name) {
+    throw InputError(ExitStatus::bad_data, Problem{root.place(), "is not a run table of demcal", "name another file"});
+  }
+  if (!root.has_attribute("complete") || root.integer("complete") != 1) damaged(root.place(), "is not marked complete");
+  if (root.integer("version") > 1) {
+    throw InputError(ExitStatus::bad_data, Problem{root.place(), "was written by a newer demcal", "use that one"});
+  }
+}
+
+/// As many empty rows as the file states. They are counted first: a damaged number may ask for more than any memory
+/// holds.
+std::vector<RunRow> empty_rows(const Hdf5Group& root) {
+  const std::int64_t count = root.integer("rows");
+  if (count < 0) damaged(root.place("@rows"), fmt::format("{} is no number of rows", count));
+  const auto rows = static_cast<std::size_t>(count);
+  checked(root.group("runs"), "seed", root.group("runs").read<std::uint64_t>("seed").values, rows);
+  return std::vector<RunRow>(rows);
+}
+
+/// Reads inputs, outputs and their errors into the table's rows.
+void read_numbers(const Hdf5Group& root, RunTable& table) {
+  const Hdf5Group parameters = root.group("parameters"), controls = root.group("controls"),
+                  outputs = root.group("outputs"), errors = root.group("standard_errors");
+  refuse_more(parameters, table.parameters, "parameter");
+  refuse_more(controls, table.controls, "control");
+  const auto append = [&](const Hdf5Group& group, const Column& column, std::vector<double> RunRow::*target) {
+    const std::vector<double> values = read_column(group, column, table.rows.size());
+    for (std::size_t r = 0; r < values.size(); ++r) (table.rows[r].*target).push_back(values[r]);
+  };
+  for (const Column& column : table.parameters) append(parameters, column, &RunRow::inputs);
+  for (const Column& column : table.controls) append(controls, column, &RunRow::inputs);
+  for (const Column& column : table.outputs) {
+    append(outputs, column, &RunRow::outputs);
+    append(errors, column, &RunRow::standard_errors);
+  }
+}
+
+/// Reads into the rows how each run was made and ended.
+void read_runs(const Hdf5Group& runs, std::vector<RunRow>& rows) {
+  const auto texts = [&](const char* name) { return checked(runs, name, runs.read_texts(name), rows.size()); };
+  const auto texts_or_none = [&](const char* name) {  // tables of older versions have no such column
+    return runs.has(name) ? texts(name) : std::vector<std::string>(rows.size());
+  };
+  const auto materials = texts("material");
+  const auto seeds = checked(runs, "seed", runs.read<std::uint64_t>("seed").values, rows.size());
+  const auto settings = texts("settings"), isas = texts("isa"), origins = texts("origin"),
+             states = texts_or_none("state"), unreliable = texts_or_none("unreliable");
+  const auto seconds = checked(runs, "cpu_seconds", runs.read<double>("cpu_seconds").values, rows.size());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    RunRow& row = rows[r];
+    row.material = materials[r];
+    row.seed = seeds[r];
+    row.settings = settings[r];
+    row.isa = isas[r];
+    row.origin = origins[r];
+    row.cpu_seconds = seconds[r];
+    row.state = states[r];
+    row.unreliable = unreliable[r];
+  }
+}
+
+/// Takes out the rows with an input that has no logarithm, and says so of each.
+std::vector<std::string> leave_out_without_logarithm(const Hdf5Group& root, const Study& study, RunTable& table) {
+  std::vector<std::string> left_out;
+  std::size_t number = 0;
+  const std::vector<Input> inputs = inputs_of(study);
+  std::erase_if(table.rows, [&](const RunRow& row) {
+    ++number;
+    for (std::size_t i = 0; i < row.inputs.size(); ++i) {
+      if (inputs[i].axis.scale != Scale::log || row.inputs[i] > 0.0 || std::isnan(row.inputs[i])) continue;
+      const Hdf5Group group = root.group(i < study.parameters.size() ? "parameters" : "controls");
+      left_out.push_back(fmt::format("{}: row {} is {}, which has no logarithm (scale = \"log\"), and is left out",
+                                     group.place(inputs[i].name), number, row.inputs[i]));
+      return true;
+    }
+    return false;
+  });
+  return left_out;
+}
+
 }  // namespace
 
 void write_table_hdf5(const std::string& path, const RunTable& table, const Study& study) {
@@ -125,73 +207,17 @@ void write_table_hdf5(const std::string& path, const RunTable& table, const Stud
 
 TableRead read_table_hdf5(const std::string& path, const Study& study) {
   const Hdf5Group root = open_hdf5(path);
-  if (!root.has_attribute("format") || root.text("format") != format_name) {
-    throw InputError(ExitStatus::bad_data, Problem{root.place(), "is not a run table of demcal", "name another file"});
-  }
-  if (!root.has_attribute("complete") || root.integer("complete") != 1) damaged(root.place(), "is not marked complete");
-  if (root.integer("version") > 1) {
-    throw InputError(ExitStatus::bad_data, Problem{root.place(), "was written by a newer demcal", "use that one"});
-  }
-  const std::int64_t count = root.integer("rows");
-  if (count < 0) damaged(root.place("@rows"), fmt::format("{} is no number of rows", count));
-  const auto rows = static_cast<std::size_t>(count);
-
-  // Before room is made for them: a damaged number may ask for more rows than any memory holds.
-  checked(root.group("runs"), "seed", root.group("runs").read<std::uint64_t>("seed").values, rows);
+  check_finished(root);
   TableRead result{.table = empty_table(study)};
-  RunTable& table = result.table;
-  table.rows.resize(rows);
-  const Hdf5Group parameters = root.group("parameters"), controls = root.group("controls"),
-                  outputs = root.group("outputs"), errors = root.group("standard_errors"), runs = root.group("runs");
-  refuse_more(parameters, table.parameters, "parameter");
-  refuse_more(controls, table.controls, "control");
-  const auto append = [&](const Hdf5Group& group, const Column& column, std::vector<double> RunRow::*target) {
-    const std::vector<double> values = read_column(group, column, rows);
-    for (std::size_t r = 0; r < rows; ++r) (table.rows[r].*target).push_back(values[r]);
-  };
-  for (const Column& column : table.parameters) append(parameters, column, &RunRow::inputs);
-  for (const Column& column : table.controls) append(controls, column, &RunRow::inputs);
-  for (const Column& column : table.outputs) {
-    append(outputs, column, &RunRow::outputs);
-    append(errors, column, &RunRow::standard_errors);
-  }
-  const auto materials = checked(runs, "material", runs.read_texts("material"), rows);
-  const auto seeds = checked(runs, "seed", runs.read<std::uint64_t>("seed").values, rows);
-  const auto settings = checked(runs, "settings", runs.read_texts("settings"), rows);
-  const auto isas = checked(runs, "isa", runs.read_texts("isa"), rows);
-  const auto origins = checked(runs, "origin", runs.read_texts("origin"), rows);
-  const auto texts_or_none = [&](const char* name) {  // tables of older versions have no such column
-    return runs.has(name) ? checked(runs, name, runs.read_texts(name), rows) : std::vector<std::string>(rows);
-  };
-  const auto states = texts_or_none("state"), unreliable = texts_or_none("unreliable");
-  const auto seconds = checked(runs, "cpu_seconds", runs.read<double>("cpu_seconds").values, rows);
-  for (std::size_t r = 0; r < rows; ++r) {
-    RunRow& row = table.rows[r];
-    row.material = materials[r];
-    row.seed = seeds[r];
-    row.settings = settings[r];
-    row.isa = isas[r];
-    row.origin = origins[r];
-    row.cpu_seconds = seconds[r];
-    row.state = states[r];
-    row.unreliable = unreliable[r];
-    // The CSV beside it has the same rows, and is what a user can read.
-    row.place = fmt::format("{}.csv:{}", std::filesystem::path(path).stem().string(),
-                            static_cast<std::size_t>(run_table_head_lines) + r + 1);
-  }
-  std::size_t number = 0;
-  const std::vector<Input> inputs = inputs_of(study);
-  std::erase_if(table.rows, [&](const RunRow& row) {
-    ++number;
-    for (std::size_t i = 0; i < row.inputs.size(); ++i) {
-      if (inputs[i].axis.scale != Scale::log || row.inputs[i] > 0.0 || std::isnan(row.inputs[i])) continue;
-      const std::string place = (i < study.parameters.size() ? parameters : controls).place(inputs[i].name);
-      result.left_out.push_back(fmt::format(
-          "{}: row {} is {}, which has no logarithm (scale = \"log\"), and is left out", place, number, row.inputs[i]));
-      return true;
-    }
-    return false;
-  });
+  std::vector<RunRow>& rows = result.table.rows;
+  rows = empty_rows(root);
+  read_numbers(root, result.table);
+  read_runs(root.group("runs"), rows);
+  // The CSV beside it has the same rows, and is what a user can read.
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    rows[r].place = fmt::format("{}.csv:{}", std::filesystem::path(path).stem().string(),
+                                static_cast<std::size_t>(run_table_head_lines) + r + 1);
+  result.left_out = leave_out_without_logarithm(root, study, result.table);
   return result;
 }
 

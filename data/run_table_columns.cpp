@@ -1,0 +1,129 @@
+#include "data/run_table_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "data/number_text.hpp"
+#include "data/run_table_files.hpp"
+#include "data/steadiness.hpp"
+#include "data/study_parts.hpp"
+
+namespace data {
+namespace {
+
+/// Another code's column `state` says something else.
+bool says_steadiness(const Csv& csv, std::size_t column) {
+  return std::all_of(csv.rows.begin(), csv.rows.end(), [column](const CsvRow& row) {
+    const std::string& state = row.fields[column];
+    return state.empty() || from_text<FlowState>(state);
+  });
+}
+
+/// Whether the table has the column of an output's standard errors, or should: one of our own, or one that has another
+/// word for an error there, which may be a standard deviation.
+bool has_errors(const Csv& csv, const std::string& output) {
+  constexpr std::array error_words = {"se",  "sd",    "std",   "stdev", "sem",        "stderr",
+                                      "err", "error", "sigma", "unc",   "uncertainty"};
+  return csv.find("settings").has_value() || std::any_of(error_words.begin(), error_words.end(), [&](const char* word) {
+           return csv.find(output + "_" + word, Csv::Capitals::any).has_value();
+         });
+}
+
+bool is_empty(const Csv& csv, std::size_t column) {
+  return std::all_of(csv.rows.begin(), csv.rows.end(),
+                     [column](const CsvRow& row) { return trimmed(row.fields[column]).empty(); });
+}
+
+/// The contents of an unread column in words: "fill (from 200 to 300)", "note (text)".
+std::string contents(const Csv& csv, std::size_t column) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const CsvRow& row : csv.rows) {
+    const std::string& field = row.fields[column];
+    double value = 0.0;
+    const auto [rest, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    if (field.empty() || error != std::errc{} || rest != field.data() + field.size())
+      return csv.columns[column] + " (text)";
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  return low == high ? fmt::format("{} ({:.5g} everywhere)", csv.columns[column], low)
+                     : fmt::format("{} (from {:.5g} to {:.5g})", csv.columns[column], low, high);
+}
+
+}  // namespace
+
+TableColumns find_columns(const Csv& csv, const RunTable& table, const Study& study) {
+  TableColumns at;
+  for (const Column& column : table.parameters) at.inputs.push_back(csv.column(column.name));
+  for (const Column& column : table.controls) at.inputs.push_back(csv.column(column.name));
+  for (const Column& column : table.outputs) {
+    at.outputs.push_back(csv.column(column.name));
+    std::optional<std::size_t> errors;
+    if (has_errors(csv, column.name)) errors = csv.column(column.name + "_se");
+    if (errors && is_empty(csv, *errors)) errors.reset();
+    at.errors.push_back(errors);
+  }
+  at.material = study.materials.size() > 1 ? csv.column("material") : csv.find("material");
+  at.seed = csv.find("seed");
+  at.settings = csv.find("settings");
+  at.isa = csv.find("isa");
+  at.origin = csv.find("origin");
+  at.cpu_seconds = csv.find("cpu_seconds");
+  if (const auto column = csv.find("state"); column && says_steadiness(csv, *column)) {
+    at.state = column;
+    at.unreliable = csv.find("unreliable");
+  }
+  std::set<std::size_t> read(at.inputs.begin(), at.inputs.end());
+  read.insert(at.outputs.begin(), at.outputs.end());
+  for (const auto& error : at.errors)
+    if (error) read.insert(*error);
+  for (std::size_t i = 0; i < csv.columns.size(); ++i) {
+    if (read.contains(i) || reserved_columns().contains(csv.columns[i]) || i == at.state || i == at.unreliable)
+      continue;
+    (is_status_column(csv.columns[i]) ? at.status : at.unread).push_back(i);
+  }
+  return at;
+}
+
+std::vector<Finding> column_findings(const Csv& csv, const TableColumns& at, const RunTable& table) {
+  std::vector<Finding> findings;
+  const std::string place = fmt::format("{}:{}", csv.file, csv.header_line);
+  std::vector<std::string> without;
+  for (std::size_t i = 0; i < at.errors.size(); ++i)
+    if (!at.errors[i]) without.push_back(table.outputs[i].name + "_se");
+  if (!without.empty())
+    findings.push_back({.kind = FindingKind::zero_standard_error,
+                        .place = place,
+                        .severity = Severity::note,
+                        .what = fmt::format("has no {}: the runs' scatter is estimated", fmt::join(without, ", ")),
+                        .remedy = "where the code states standard errors, give their column that name",
+                        .places = {}});
+  if (!at.unread.empty()) {
+    std::vector<std::string> names;
+    for (const std::size_t column : at.unread) names.push_back(contents(csv, column));
+    findings.push_back(
+        {.kind = FindingKind::unread_columns,
+         .place = place,
+         .severity = Severity::note,
+         .what =
+             fmt::format("nothing reads the {} {}", names.size() == 1 ? "column" : "columns", fmt::join(names, ", ")),
+         .remedy = "an input among them belongs under [parameters] or [controls], an output under [outputs]"});
+  }
+  // Our own tables have settings; a seed beside none is another code's.
+  if (at.seed && !at.settings)
+    findings.push_back({.kind = FindingKind::seed_column,
+                        .place = place,
+                        .severity = Severity::note,
+                        .what = "the column seed is kept with the run and is no input; rows of one point are "
+                                "replicates, whatever it says",
+                        .remedy = ""});
+  return findings;
+}
+
+}  // namespace data
