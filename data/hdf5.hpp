@@ -60,7 +60,7 @@ class Hdf5Group {
   /// Hands what was written so far to the system and reports what fails; call it before the last group goes.
   void flush() const;
 
-  struct Handle;  ///< in hdf5.cpp
+  struct Handle;  ///< hdf5_handle.hpp
   explicit Hdf5Group(std::shared_ptr<Handle> handle) : handle_(std::move(handle)) {}
 
  private:
