@@ -1,5 +1,5 @@
 #pragma once
-// The inside of the study reader, shared by section.cpp and study_file.cpp only. It notes for each table which keys
+// The inside of the study reader, shared by section.cpp, study_value.cpp and study_file.cpp only. It notes for each table which keys
 // were asked for (known), which of these were there (used), and which tables were opened. A key that is there but not
 // used is an error.
 #include <fmt/format.h>
