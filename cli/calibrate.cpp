@@ -76,9 +76,54 @@ void add_rounds(const Rounds& rounds, uq::CalibrationReport& report) {
   }
 }
 
-bool all_agree(const std::vector<uq::VerificationReport>& reports) {
-  return std::all_of(reports.begin(), reports.end(),
-                     [](const uq::VerificationReport& one) { return one.agrees || one.values.empty(); });
+/// Whether the last round of every case confirms it.
+bool all_agree(const Rounds& rounds) {
+  return std::all_of(rounds.begin(), rounds.end(), [](const std::vector<uq::VerificationReport>& of_case) {
+    return of_case.empty() || of_case.back().agrees || of_case.back().values.empty();
+  });
+}
+
+/// The runs that were not made yet. One that is not of the steady flow was made, though it says nothing.
+std::vector<PlannedRun> not_made(const Workspace& workspace, const StudyRows& rows,
+                                 const std::vector<ListedRun>& listed) {
+  const HeldBack made = hold_back(workspace, rows.all, listed);
+  std::vector<PlannedRun> missing;
+  for (std::size_t i = 0; i < listed.size(); ++i)
+    if (!made.listed[i]) missing.push_back(listed[i].run);
+  return missing;
+}
+
+/// The runs of a round were made.
+struct RoundMade {
+  StudyRows rows;         ///< with them
+  bool doubtful = false;  ///< a run ended with a warning, or not at all
+  bool interrupted = false;
+};
+
+RoundMade make_round(const CalibrateCommand& options, const Workspace& workspace,
+                     const std::vector<PlannedRun>& missing, StudyRows rows, const data::InterruptGuard& interrupt) {
+  const Common& common = options.common;
+  const BatchResult batch = make_runs(common, workspace, missing, std::move(rows.all), rows.kept,
+                                      {.what = "verification runs", .jobs = options.jobs}, interrupt.token());
+  RoundMade made{.rows = rows_to_learn_from(common, workspace),
+                 .doubtful = !batch.warnings.empty() || !batch.failures.empty()};
+  say_faults(common, batch.warnings, batch.failures);
+  if (batch.error) std::rethrow_exception(batch.error);
+  made.interrupted = interrupt.interrupted();
+  if (made.interrupted)
+    say(common,
+        fmt::format("interrupted after {} of {} runs; the same command goes on", batch.finished, missing.size()));
+  return made;
+}
+
+/// Says what a round came to, case by case, and adds it to the rounds of each.
+void add_reports(const Common& common, const Workspace& workspace, const std::vector<uq::VerificationReport>& reports,
+                 Rounds& rounds) {
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    rounds[i].push_back(reports[i]);
+    if (!reports[i].sentence.empty())
+      say(common, fmt::format("case {}: {}", workspace.study.cases[i].name, reports[i].sentence));
+  }
 }
 
 data::ExitStatus calibrate_and_verify(const CalibrateCommand& options) {
@@ -101,33 +146,24 @@ data::ExitStatus calibrate_and_verify(const CalibrateCommand& options) {
   };
   std::vector<ListedRun> listed = read_verify_runs(workspace);
   for (int round = 1;; ++round) {
-    // Surrogates that have not seen the round's runs, and the runs.
+    // Surrogates that have not seen the round's runs.
     HeldBack held = hold_back(workspace, rows.table, listed);
     StudyRows unseen = rows;
     unseen.table = held.others;
     uq::Calibration result = calibrate_once(options, workspace, unseen);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
     const bool last = round > options.rounds || elapsed.count() > limit;
-    const bool agreed = round > 1 && all_agree([&] {
-                          std::vector<uq::VerificationReport> latest;
-                          for (const auto& one : rounds)
-                            if (!one.empty()) latest.push_back(one.back());
-                          return latest;
-                        }());
-    if (agreed || last) {
+    if (last || (round > 1 && all_agree(rounds))) {
       add_rounds(rounds, result.report);
       return worst(report_on(common, workspace, unseen, result));
     }
+
+    // The round's runs, where they were not made yet.
     if (listed.empty()) {
       listed = verification_runs(workspace, unseen, result, options.verify);
       write_verify_runs(workspace, listed);
-      held = hold_back(workspace, rows.table, listed);
     }
-    // A run that is not of the steady flow was made, though it says nothing.
-    const HeldBack made = hold_back(workspace, rows.all, listed);
-    std::vector<PlannedRun> missing;
-    for (std::size_t i = 0; i < listed.size(); ++i)
-      if (!made.listed[i]) missing.push_back(listed[i].run);
+    const std::vector<PlannedRun> missing = not_made(workspace, rows, listed);
     if (!missing.empty() && !own_runs) {
       answer(common, fmt::format("{} to run with your code: {}. Add what they give to {}, and give this command again",
                                  data::counted(missing.size(), "point"), verify_runs_path(workspace),
@@ -137,26 +173,15 @@ data::ExitStatus calibrate_and_verify(const CalibrateCommand& options) {
     if (!missing.empty()) {
       say(common, fmt::format("verification, round {}: {} at points of the posterior", round,
                               data::counted(missing.size(), "run")));
-      const BatchResult batch = make_runs(common, workspace, missing, std::move(rows.all), rows.kept,
-                                          {.what = "verification runs", .jobs = options.jobs}, interrupt.token());
-      rows = rows_to_learn_from(common, workspace);
-      say_faults(common, batch.warnings, batch.failures);
-      doubtful = doubtful || !batch.warnings.empty() || !batch.failures.empty();
-      if (batch.error) std::rethrow_exception(batch.error);
-      if (interrupt.interrupted()) {
-        say(common,
-            fmt::format("interrupted after {} of {} runs; the same command goes on", batch.finished, missing.size()));
-        return data::ExitStatus::interrupted;
-      }
-      held = hold_back(workspace, rows.table, listed);
+      RoundMade made = make_round(options, workspace, missing, std::move(rows), interrupt);
+      if (made.interrupted) return data::ExitStatus::interrupted;
+      doubtful = doubtful || made.doubtful;
+      rows = std::move(made.rows);
     }
-    const std::vector<uq::VerificationReport> reports = verify_cases(workspace, result.surrogates, listed, held);
-    for (std::size_t i = 0; i < reports.size(); ++i) {
-      rounds[i].push_back(reports[i]);
-      if (!reports[i].sentence.empty())
-        say(common, fmt::format("case {}: {}", workspace.study.cases[i].name, reports[i].sentence));
-    }
-    // From now on these runs teach the surrogates.
+
+    // What the runs say of the surrogates. From now on they teach them.
+    held = hold_back(workspace, rows.table, listed);
+    add_reports(common, workspace, verify_cases(workspace, result.surrogates, listed, held), rounds);
     listed.clear();
     std::error_code ignored;
     std::filesystem::remove(verify_runs_path(workspace), ignored);

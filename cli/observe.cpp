@@ -96,28 +96,56 @@ Observed find_observed(const ObserveOptions& options, const data::TorqueLog& log
   return found;
 }
 
+/// The speed of a log without a column for it [rad/s].
+std::optional<double> constant_speed_of(const ObserveOptions& options) {
+  if (!options.constant_speed) return {};
+  const std::string& symbol = options.columns.speed.unit;
+  const auto unit = data::unit_meant(symbol.empty() ? "rpm" : symbol, "rpm");
+  if (!unit)
+    throw data::InputError(data::ExitStatus::usage,
+                           data::Problem{"--rpm-unit", fmt::format("'{}' is not a unit of speed", symbol),
+                                         "give one, such as rpm, rad/s or 1/min"});
+  return unit->to_si(*options.constant_speed);
+}
+
+void check_order(const char* option, const Window& window) {
+  if (!(window.from() < window.to()))
+    throw data::InputError(data::ExitStatus::usage,
+                           {option, fmt::format("begins at {:g} s and ends at {:g} s", window.from(), window.to()),
+                            "give the earlier time first"});
+}
+
+/// Says an observation on a line, and gives it as JSON.
+nlohmann::json say_observation(const ObserveOptions& options, const data::TorqueLog& log, const data::Plateau& plateau,
+                               const data::MeanTorque& found, const data::Unit& unit) {
+  const double mean = found.value / unit.factor, error = found.error / unit.factor;
+  const uq::Rounding rounding = uq::rounding_of(mean, error);
+  const auto shown = [&](double value) { return uq::format_value(value, rounding, "", uq::Typography::ascii); };
+  answer(options.common,
+         fmt::format("{:>8.4g} {}: {} +- {} {} ({:.4g} s, {:.0f} independent samples)",
+                     log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, shown(mean), shown(error),
+                     unit.symbol, log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
+                     plateau.independent_samples()));
+  return {{options.control, log.speed_unit.from_si(plateau.speed)},
+          {options.control + "_unit", log.speed_unit.symbol},
+          {options.output, mean},
+          {options.output + "_se", error},
+          {"unit", unit.symbol},
+          {"from_s", log.time[plateau.used_from]},
+          {"left_out_s", log.time[plateau.used_from] - log.time[plateau.first]}};
+}
+
 data::ExitStatus observe(ObserveOptions options) {
   const fs::path out = options.out.empty() ? fs::path(options.log).stem().string() + "-observed.csv" : options.out;
   check_observe_targets(out, {options.log, options.idle_log});
-  if (options.constant_speed) {
-    const std::string& symbol = options.columns.speed.unit;
-    const auto unit = data::unit_meant(symbol.empty() ? "rpm" : symbol, "rpm");
-    if (!unit)
-      throw data::InputError(data::ExitStatus::usage,
-                             data::Problem{"--rpm-unit", fmt::format("'{}' is not a unit of speed", symbol),
-                                           "give one, such as rpm, rad/s or 1/min"});
-    options.columns.constant_speed = unit->to_si(*options.constant_speed);
-  }
+  options.columns.constant_speed = constant_speed_of(options);
   data::TorqueLog log = data::read_torque_log(options.log, options.columns);
   if (!log.took.empty()) say(options.common, fmt::format("{}: read as: {}", log.file, fmt::join(log.took, ", ")));
   for (const std::string& note : log.notes) say(options.common, "note: " + note);
   std::vector<std::string> warnings = log.warnings;
   for (std::string& words : data::remove_no_values(log)) warnings.push_back(std::move(words));
-  for (const auto& [name, window] : {std::pair{"--window", &options.window}, {"--idle-window", &options.idle_window}})
-    if (!(window->from() < window->to()))
-      throw data::InputError(data::ExitStatus::usage,
-                             {name, fmt::format("begins at {:g} s and ends at {:g} s", window->from(), window->to()),
-                              "give the earlier time first"});
+  check_order("--window", options.window);
+  check_order("--idle-window", options.idle_window);
   options.plateaus.from = options.window.from();
   options.plateaus.to = options.window.to();
   auto [plateaus, ramps, refused, of_plateaus] = find_observed(options, log);
@@ -133,25 +161,8 @@ data::ExitStatus observe(ObserveOptions options) {
   uq::draw(log_figure(log, plateaus, off, unit, data::file_name(out.stem().string())), folder.string(), {});
 
   nlohmann::json json{{"observations", out.string()}, {"rows", nlohmann::json::array()}};
-  for (std::size_t i = 0; i < plateaus.size(); ++i) {
-    const data::Plateau& plateau = plateaus[i];
-    const data::MeanTorque found = observed_torque(plateau, idle, i);
-    const double mean = found.value / unit.factor, error = found.error / unit.factor;
-    const uq::Rounding rounding = uq::rounding_of(mean, error);
-    const auto shown = [&](double value) { return uq::format_value(value, rounding, "", uq::Typography::ascii); };
-    answer(options.common,
-           fmt::format("{:>8.4g} {}: {} +- {} {} ({:.4g} s, {:.0f} independent samples)",
-                       log.speed_unit.from_si(plateau.speed), log.speed_unit.symbol, shown(mean), shown(error),
-                       unit.symbol, log.time[plateau.first + plateau.count - 1] - log.time[plateau.used_from],
-                       plateau.independent_samples()));
-    json["rows"].push_back({{options.control, log.speed_unit.from_si(plateau.speed)},
-                            {options.control + "_unit", log.speed_unit.symbol},
-                            {options.output, mean},
-                            {options.output + "_se", error},
-                            {"unit", unit.symbol},
-                            {"from_s", log.time[plateau.used_from]},
-                            {"left_out_s", log.time[plateau.used_from] - log.time[plateau.first]}});
-  }
+  for (std::size_t i = 0; i < plateaus.size(); ++i)
+    json["rows"].push_back(say_observation(options, log, plateaus[i], observed_torque(plateaus[i], idle, i), unit));
   if (idle.kind == Idle::Kind::none)
     if (std::string zero = standstill_reading(log, plateaus, options.plateaus); !zero.empty())
       warnings.push_back(std::move(zero));

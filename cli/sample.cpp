@@ -77,82 +77,105 @@ nlohmann::json to_json(const uq::NuisanceReport& unknown) {
           {"ess_bulk", unknown.ess_bulk}, {"ess_tail", unknown.ess_tail}};
 }
 
+struct SampleCommand {
+  Common common;
+  std::shared_ptr<std::optional<data::Sampler>> sampler;
+  int replicates = 0;  ///< of simulation-based calibration, instead of the draws; 0: none
+  bool csv = false;
+};
+
+/// What is said of a case that was sampled.
+struct Told {
+  std::vector<std::string> lines, warnings;
+  nlohmann::json json;
+};
+
+Told told_of(const uq::SampledCase& sampled, const std::string& name, const std::string& path) {
+  Told told;
+  const uq::Draws& draws = sampled.draws;
+  if (!draws.converged) told.warnings.push_back(fmt::format("case {}: not converged ({})", name, draws.reason));
+  const std::vector<std::string> doubts = uq::unsupported_parameters(*sampled.model, sampled.support);
+  if (!doubts.empty()) told.warnings.push_back(fmt::format("case {}: {}", name, doubts.front()));
+  told.lines.push_back(name + ": " +
+                       (draws.chains.empty()
+                            ? draws.reason
+                            : fmt::format("{} chains of {} draws, R-hat at most {:.3f}, bulk ESS at least {:.0f}{}: {}",
+                                          draws.chains.size(), draws.chains.front().x.rows(), draws.rhat.maxCoeff(),
+                                          draws.ess_bulk.minCoeff(),
+                                          draws.converged ? "" : ", NOT CONVERGED (" + draws.reason + ")", path)));
+  nlohmann::json unknowns = nlohmann::json::array();
+  for (int k = 0; k < sampled.model->dimension() && !draws.chains.empty(); ++k) {
+    const uq::NuisanceReport unknown = uq::summary_of(sampled, k);
+    told.lines.push_back(summary_line(unknown));
+    unknowns.push_back(to_json(unknown));
+  }
+  told.json = {{"case", name},
+               {"converged", draws.converged},
+               {"file", path},
+               {"unknowns", unknowns},
+               {"usable", draws.converged && doubts.empty()}};
+  return told;
+}
+
+data::ExitStatus sample(const SampleCommand& command) {
+  const Common& common = command.common;
+  const Workspace workspace = open_workspace(common);
+  const data::Study& study = workspace.study;
+  data::require_cases(study);
+  const StudyRows rows = rows_to_learn_from(common, workspace);
+  const auto held = hold_out(workspace, Writes::results, "sample");
+  const uq::CalibrateOptions options{
+      .surrogates = surrogate_options(common, workspace, rows), .sampler = *command.sampler, .seed = study.seed};
+  const std::vector<uq::FittedSurrogate> fitted = uq::fit_surrogates(study, rows.table, options.surrogates);
+  keep_surrogates(workspace, rows, options.surrogates, fitted);
+  if (command.replicates > 0) {
+    const bool warned = !say_warnings(common, rows, fitted).empty();
+    const data::ExitStatus status = check_width(common, workspace, uq::emulators_of(fitted), command.replicates);
+    return warned ? data::ExitStatus::warning : status;
+  }
+  nlohmann::json json = nlohmann::json::array();
+  std::vector<std::string> lines, more;
+  std::vector<uq::SupportReport> supports;
+  for (std::size_t i = 0; i < study.cases.size(); ++i) {
+    const std::string& name = study.cases[i].name;
+    const uq::SampledCase sampled = [&] {
+      JobProgress progress(common, "sampling " + name);
+      uq::CalibrateOptions own = options;
+      own.sampling_progress = [&](double share) { progress("", share); };
+      return uq::sample_case(study, uq::emulators_of(fitted), i, own);
+    }();
+    const std::string path = posterior_path(workspace, name);
+    const bool drawn = !sampled.draws.chains.empty();
+    if (drawn) uq::write_posterior(path, study, sampled, study.seed);
+    if (drawn && command.csv)
+      data::write_atomically(std::filesystem::path(path).replace_extension(".csv"), uq::draws_csv(sampled));
+    Told told = told_of(sampled, name, path);
+    lines.insert(lines.end(), told.lines.begin(), told.lines.end());
+    more.insert(more.end(), told.warnings.begin(), told.warnings.end());
+    json.push_back(std::move(told.json));
+    supports.push_back(sampled.support);
+  }
+  write_next_runs(workspace, supports);
+  const std::vector<std::string> warnings = say_warnings(common, rows, fitted, more);
+  for (const std::string& line : lines) answer(common, line);
+  print_json(common, {{"cases", json}, {"status", warnings.empty() ? "ok" : "warning"}, {"warnings", warnings}});
+  return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
+}
+
 }  // namespace
 
 Action add_sample(CLI::App& program) {
-  const auto common = std::make_shared<Common>();
-  const auto replicates = std::make_shared<int>(0);
-  const auto csv = std::make_shared<bool>(false);
+  const auto options = std::make_shared<SampleCommand>();
   CLI::App* command = add_study_command(program, "sample", "draw from the posterior of every case (posterior-CASE.nc)",
-                                        "demcal sample data/developer", *common);
-  const auto sampler = add_sampler_option(*command);
+                                        "demcal sample data/developer", options->common);
+  options->sampler = add_sampler_option(*command);
   command
-      ->add_option("--sbc", *replicates,
+      ->add_option("--sbc", options->replicates,
                    "instead: simulation-based calibration of every case with N synthetic data sets (sbc-CASE.json)")
       ->check(CLI::Range(20, 100000))
       ->type_name("N");
-  command->add_flag("--csv", *csv, "the draws as posterior-CASE.csv, too");
-  return [common, sampler, replicates, csv] {
-    const Workspace workspace = open_workspace(*common);
-    const data::Study& study = workspace.study;
-    data::require_cases(study);
-    const StudyRows rows = rows_to_learn_from(*common, workspace);
-    const auto held = hold_out(workspace, Writes::results, "sample");
-    const uq::CalibrateOptions options{
-        .surrogates = surrogate_options(*common, workspace, rows), .sampler = *sampler, .seed = study.seed};
-    const std::vector<uq::FittedSurrogate> fitted = uq::fit_surrogates(study, rows.table, options.surrogates);
-    keep_surrogates(workspace, rows, options.surrogates, fitted);
-    if (*replicates > 0) {
-      const bool warned = !say_warnings(*common, rows, fitted).empty();
-      const data::ExitStatus status = check_width(*common, workspace, uq::emulators_of(fitted), *replicates);
-      return warned ? data::ExitStatus::warning : status;
-    }
-    nlohmann::json json = nlohmann::json::array();
-    std::vector<std::string> lines, more;
-    std::vector<uq::SupportReport> supports;
-    for (std::size_t i = 0; i < study.cases.size(); ++i) {
-      const uq::SampledCase sampled = [&] {
-        JobProgress progress(*common, "sampling " + study.cases[i].name);
-        uq::CalibrateOptions own = options;
-        own.sampling_progress = [&](double share) { progress("", share); };
-        return uq::sample_case(study, uq::emulators_of(fitted), i, own);
-      }();
-      const std::string path = posterior_path(workspace, study.cases[i].name);
-      const uq::Draws& draws = sampled.draws;
-      if (!draws.chains.empty()) uq::write_posterior(path, study, sampled, study.seed);
-      if (!draws.chains.empty() && *csv)
-        data::write_atomically(std::filesystem::path(path).replace_extension(".csv"), uq::draws_csv(sampled));
-      if (!draws.converged)
-        more.push_back(fmt::format("case {}: not converged ({})", study.cases[i].name, draws.reason));
-      const std::vector<std::string> doubts = uq::unsupported_parameters(*sampled.model, sampled.support);
-      if (!doubts.empty()) more.push_back(fmt::format("case {}: {}", study.cases[i].name, doubts.front()));
-      supports.push_back(sampled.support);
-      const std::string found =
-          draws.chains.empty()
-              ? draws.reason
-              : fmt::format("{} chains of {} draws, R-hat at most {:.3f}, bulk ESS at least {:.0f}{}: {}",
-                            draws.chains.size(), draws.chains.front().x.rows(), draws.rhat.maxCoeff(),
-                            draws.ess_bulk.minCoeff(), draws.converged ? "" : ", NOT CONVERGED (" + draws.reason + ")",
-                            path);
-      lines.push_back(study.cases[i].name + ": " + found);
-      nlohmann::json unknowns = nlohmann::json::array();
-      for (int k = 0; k < sampled.model->dimension() && !draws.chains.empty(); ++k) {
-        const uq::NuisanceReport unknown = uq::summary_of(sampled, k);
-        lines.push_back(summary_line(unknown));
-        unknowns.push_back(to_json(unknown));
-      }
-      json.push_back({{"case", study.cases[i].name},
-                      {"converged", draws.converged},
-                      {"file", path},
-                      {"unknowns", unknowns},
-                      {"usable", draws.converged && doubts.empty()}});
-    }
-    write_next_runs(workspace, supports);
-    const std::vector<std::string> warnings = say_warnings(*common, rows, fitted, more);
-    for (const std::string& line : lines) answer(*common, line);
-    print_json(*common, {{"cases", json}, {"status", warnings.empty() ? "ok" : "warning"}, {"warnings", warnings}});
-    return warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
-  };
+  command->add_flag("--csv", options->csv, "the draws as posterior-CASE.csv, too");
+  return [options] { return sample(*options); };
 }
 
 }  // namespace cli

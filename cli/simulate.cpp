@@ -141,6 +141,67 @@ std::string file_of(const Workspace& workspace, const Point& point) {
   return (fs::path(workspace.out) / ("run-" + name + ".h5")).string();
 }
 
+/// The run, its progress shown.
+dem::RunResult run_with_progress(const SimulateOptions& options, const Workspace& workspace, const Point& point,
+                                 const std::string& path, std::stop_token stop) {
+  data::Progress progress(
+      "simulating (at most)", 1000,
+      {.style = options.common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic, .counted = false});
+  return run_point(workspace, point,
+                   {.path = path,
+                    .threads = options.threads,
+                    .frames = options.frames,
+                    .frames_folder = (std::filesystem::path(workspace.out) / "frames").string(),
+                    .stop = std::move(stop),
+                    .progress = [&](const dem::RunProgress& now) {
+                      progress.set(static_cast<std::uint64_t>(std::lround(1000.0 * now.fraction)));
+                    }});
+}
+
+data::ExitStatus simulate(const SimulateOptions& options) {
+  const data::InterruptGuard interrupt;
+  const Common& common = options.common;
+  const Workspace workspace = open_workspace(common);
+  require_rig(workspace);
+  const Point point = point_of(workspace, options.point);
+  std::vector<std::string> notes = outside_ranges(workspace, point);
+  const Foretold told = foretell(workspace, point);
+  require_memory(workspace, told, 1);
+  for (const std::string& warning : told.forecast.warnings) notes.push_back(warning);
+  for (const std::string& warning : dem::rig_warnings(told.prepared.given())) notes.push_back(warning);
+  const auto held = hold_out(workspace, Writes::run, "simulate");
+  const std::filesystem::path out = workspace.out;
+  const std::string path = file_of(workspace, point);
+  if (path != out / "run.h5")
+    notes.push_back(fmt::format("run.h5 holds another run and is kept; this one is in {}",
+                                std::filesystem::path(path).filename().string()));
+  if (options.frames > 0) make_out(workspace, "frames");
+  if (options.stl) {
+    for (const dem::NamedMesh& mesh : dem::rig_meshes(told.prepared.given()))
+      dem::write_stl(mesh.mesh, (out / (data::file_name(mesh.name) + ".stl")).string());
+  }
+  const std::string at =
+      fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point));
+  say(common, at);
+  for (const std::string& note : notes) say(common, "note: " + note);
+  const dem::RunResult result = run_with_progress(options, workspace, point, path, interrupt.token());
+  if (result.status == dem::RunStatus::interrupted) {
+    say(common, "interrupted; the same command goes on from here (" + path + ")");
+    return data::ExitStatus::interrupted;
+  }
+  if (result.status == dem::RunStatus::failed)
+    throw data::InputError(data::ExitStatus::bad_study,
+                           {describe(workspace.study, point), result.reason, "its last good state is in " + path});
+  for (const std::string& warning : result.warnings) say(common, "warning: " + warning);
+  answer(common,
+         (data::answers_go_elsewhere() ? at + "\n" : "") + summary(workspace, point, told.prepared, result) + path);
+  nlohmann::json json = to_json(workspace, point, told.prepared.derived(), result);
+  json["notes"] = notes;
+  json["file"] = path;
+  print_json(common, json);
+  return result.warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
+}
+
 }  // namespace
 
 Action add_simulate(CLI::App& program) {
@@ -158,63 +219,7 @@ Action add_simulate(CLI::App& program) {
       ->check(CLI::Range(1, 10000))
       ->type_name("N");
   command->add_flag("--stl", options->stl, "write the rig's surfaces too (mixer.stl, trough.stl)");
-  return [options] {
-    const data::InterruptGuard interrupt;
-    const Common& common = options->common;
-    const Workspace workspace = open_workspace(common);
-    require_rig(workspace);
-    const Point point = point_of(workspace, options->point);
-    std::vector<std::string> notes = outside_ranges(workspace, point);
-    const Foretold told = foretell(workspace, point);
-    require_memory(workspace, told, 1);
-    for (const std::string& warning : told.forecast.warnings) notes.push_back(warning);
-    for (const std::string& warning : dem::rig_warnings(told.prepared.given())) notes.push_back(warning);
-    const auto held = hold_out(workspace, Writes::run, "simulate");
-    const std::filesystem::path out = workspace.out;
-    const std::string path = file_of(workspace, point);
-    if (path != out / "run.h5")
-      notes.push_back(fmt::format("run.h5 holds another run and is kept; this one is in {}",
-                                  std::filesystem::path(path).filename().string()));
-    if (options->frames > 0) make_out(workspace, "frames");
-    if (options->stl) {
-      for (const dem::NamedMesh& mesh : dem::rig_meshes(told.prepared.given()))
-        dem::write_stl(mesh.mesh, (out / (data::file_name(mesh.name) + ".stl")).string());
-    }
-    const std::string at =
-        fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point));
-    say(common, at);
-    for (const std::string& note : notes) say(common, "note: " + note);
-    dem::RunResult result;
-    {
-      data::Progress progress(
-          "simulating (at most)", 1000,
-          {.style = common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic, .counted = false});
-      result = run_point(workspace, point,
-                         {.path = path,
-                          .threads = options->threads,
-                          .frames = options->frames,
-                          .frames_folder = (out / "frames").string(),
-                          .stop = interrupt.token(),
-                          .progress = [&](const dem::RunProgress& now) {
-                            progress.set(static_cast<std::uint64_t>(std::lround(1000.0 * now.fraction)));
-                          }});
-    }
-    if (result.status == dem::RunStatus::interrupted) {
-      say(common, "interrupted; the same command goes on from here (" + path + ")");
-      return data::ExitStatus::interrupted;
-    }
-    if (result.status == dem::RunStatus::failed)
-      throw data::InputError(data::ExitStatus::bad_study,
-                             {describe(workspace.study, point), result.reason, "its last good state is in " + path});
-    for (const std::string& warning : result.warnings) say(common, "warning: " + warning);
-    answer(common,
-           (data::answers_go_elsewhere() ? at + "\n" : "") + summary(workspace, point, told.prepared, result) + path);
-    nlohmann::json json = to_json(workspace, point, told.prepared.derived(), result);
-    json["notes"] = notes;
-    json["file"] = path;
-    print_json(common, json);
-    return result.warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
-  };
+  return [options] { return simulate(*options); };
 }
 
 }  // namespace cli
