@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "surrogate/levels.hpp"
 #include "surrogate/noise_check.hpp"
@@ -137,8 +138,71 @@ SurrogateVerdict judge(const Validation& v, int predicted, const FitDiagnostics&
   return SurrogateVerdict::good;
 }
 
+namespace {
+
+/// What speaks against a surrogate that is not simply good.
+struct Doubts {
+  bool coverage = false, distance = false, noise = false;  ///< intervals that are off, by these
+  bool dominated = false;                                  ///< by the runs' noise
+  std::optional<LevelCheck> levels;                        ///< the first input of whose levels too little is known
+  std::string apart;                                       ///< pairs that no run moves together
+
+  bool of_intervals() const { return coverage || distance || noise; }
+};
+
+Doubts doubts_of(const Validation& v, const ValidationThresholds& t) {
+  const auto levels =
+      std::find_if(v.levels.begin(), v.levels.end(), [&](const LevelCheck& check) { return doubtful(check, t); });
+  return {.coverage = coverage_probability(v.coverage_held_out.observed[2] * v.runs, v.runs) < t.coverage_probability,
+          .distance = v.mahalanobis_probability < t.mahalanobis_probability,
+          .noise = noise_doubtful(v),
+          .dominated = noise_dominated(v, t),
+          .levels = levels != v.levels.end() ? std::optional(*levels) : std::nullopt,
+          .apart = named_pairs(v.apart)};
+}
+
+std::string finding_of(const Validation& v, const Doubts& doubts) {
+  std::string finding = fmt::format(
+      "Held-out runs are predicted with Q2 {:.3f}, their own noise taken off; {:.0f} % of them lie in the 95 % "
+      "interval",
+      v.q2_function, 100.0 * v.coverage_held_out.observed[2]);
+  if (doubts.dominated)
+    finding += fmt::format("; {:.0f} % of the runs' variance is their own noise", (1.0 - v.q2_attainable) * 100.0);
+  if (doubts.distance)
+    finding += fmt::format("; the errors' Mahalanobis distance has probability {:.1e}", v.mahalanobis_probability);
+  if (const auto& levels = doubts.levels)
+    finding += levels->levels == 2 ? fmt::format("; nothing is known between the 2 levels of {}", levels->input)
+                                   : fmt::format("; whole levels of {} left out are predicted with Q2 {:.3f}",
+                                                 levels->input, levels->q2);
+  if (!doubts.apart.empty()) finding += "; no run moves " + doubts.apart + " together";
+  if (doubts.noise) finding += "; " + noise_note(v.noise);
+  return finding + ".";
+}
+
+/// What the worst of the doubts means for a posterior.
+const char* consequence_of(const Validation& v, const Doubts& doubts, const ValidationThresholds& t) {
+  if (v.verdict == SurrogateVerdict::good)
+    return "The surrogate's own uncertainty describes its error and enters the likelihood.";
+  if (v.verdict == SurrogateVerdict::unusable)
+    return "It does not stand for the model: no verdict that rests on it means anything.";
+  if (doubts.dominated && v.coverage_held_out.observed[2] >= t.coverage95_unusable)
+    return "The runs hardly tell the inputs apart: this output will identify little.";
+  if (doubts.of_intervals())
+    return too_wide(v) ? "Its intervals are wider than its errors: posteriors that rest on it are wider than need be."
+                       : "Its intervals may be too narrow or too wide: posteriors that rest on it may be, too.";
+  if (doubts.levels)
+    return "What lies between the levels is assumed, not learnt: the posterior is as wide as that leaves it.";
+  if (!doubts.apart.empty())
+    return "How the effect of one depends on the other is assumed, not learnt: posteriors that rest on it may be too "
+           "narrow.";
+  if (v.q2_function < t.q2_good)
+    return "Its error is a large part of the response; it enters the likelihood and widens the posterior.";
+  return "Its hyper-parameters are not at a clean maximum (see the notes): its intervals may be off.";
+}
+
+}  // namespace
+
 void explain(Validation& v, const TrainingSet& training, const HeldOutModel& model, const ValidationThresholds& t) {
-  const double coverage95 = v.coverage_held_out.observed[2];
   if (v.folds.empty()) {
     v.finding = fmt::format("{} runs are too few to hold any out", v.runs);
     v.consequence = "Nothing is known about the surrogate's error.";
@@ -146,73 +210,29 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
     v.remedy = fmt::format("Add at least {} runs.", v.more_runs);
     return;
   }
-  const double level = (1.0 - v.q2_attainable) * 100.0;
-  v.finding = fmt::format(
-      "Held-out runs are predicted with Q2 {:.3f}, their own noise taken off; {:.0f} % of them lie in the 95 % "
-      "interval",
-      v.q2_function, 100.0 * coverage95);
-  const bool coverage_wrong = coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability;
-  const bool distance_wrong = v.mahalanobis_probability < t.mahalanobis_probability;
-  if (noise_dominated(v, t)) v.finding += fmt::format("; {:.0f} % of the runs' variance is their own noise", level);
-  if (distance_wrong)
-    v.finding += fmt::format("; the errors' Mahalanobis distance has probability {:.1e}", v.mahalanobis_probability);
-  const auto unknown =
-      std::find_if(v.levels.begin(), v.levels.end(), [&](const LevelCheck& check) { return doubtful(check, t); });
-  if (unknown != v.levels.end())
-    v.finding += unknown->levels == 2 ? fmt::format("; nothing is known between the 2 levels of {}", unknown->input)
-                                      : fmt::format("; whole levels of {} left out are predicted with Q2 {:.3f}",
-                                                    unknown->input, unknown->q2);
-  const std::string apart = named_pairs(v.apart);
-  if (!apart.empty()) v.finding += "; no run moves " + apart + " together";
-  if (noise_doubtful(v)) v.finding += "; " + noise_note(v.noise);
-  v.finding += ".";
+  const Doubts doubts = doubts_of(v, t);
+  v.finding = finding_of(v, doubts);
+  v.consequence = consequence_of(v, doubts, t);
 
+  const int quarter = std::max(8, v.runs / 4), half = std::max(8, v.runs / 2);
   if (v.verdict == SurrogateVerdict::good) {
-    v.consequence = "The surrogate's own uncertainty describes its error and enters the likelihood.";
     v.remedy = "None needed.";
-    return;
-  }
-  if (v.verdict == SurrogateVerdict::unusable) {
-    v.consequence = "It does not stand for the model: no verdict that rests on it means anything.";
-  } else if (noise_dominated(v, t) && coverage95 >= t.coverage95_unusable) {
-    v.consequence = "The runs hardly tell the inputs apart: this output will identify little.";
-  } else if ((coverage_wrong || distance_wrong || noise_doubtful(v)) && !too_wide(v)) {
-    v.consequence = "Its intervals may be too narrow or too wide: posteriors that rest on it may be, too.";
-  } else if (coverage_wrong || distance_wrong || noise_doubtful(v)) {
-    v.consequence = "Its intervals are wider than its errors: posteriors that rest on it are wider than need be.";
-  } else if (unknown != v.levels.end()) {
-    v.consequence = "What lies between the levels is assumed, not learnt: the posterior is as wide as that leaves it.";
-  } else if (!apart.empty()) {
-    v.consequence =
-        "How the effect of one depends on the other is assumed, not learnt: posteriors that rest on it may be too "
-        "narrow.";
-  } else if (v.q2_function < t.q2_good) {
-    v.consequence = "Its error is a large part of the response; it enters the likelihood and widens the posterior.";
-  } else {
-    v.consequence = "Its hyper-parameters are not at a clean maximum (see the notes): its intervals may be off.";
-  }
-  if (noise_dominated(v, t)) {
+  } else if (doubts.dominated) {
     v.remedy = "Make the runs longer or replicate them, or use an output that responds more.";
-    return;
-  }
-  if (unknown != v.levels.end() && v.verdict == SurrogateVerdict::caution) {
-    v.more_runs = std::max(8, v.runs / 4);
-    v.remedy = fmt::format("Add about {} runs between the levels of {}.", v.more_runs, unknown->input);
-    return;
-  }
-  if (!apart.empty() && v.verdict == SurrogateVerdict::caution) {
-    v.more_runs = std::max(8, v.runs / 2);
+  } else if (doubts.levels && v.verdict == SurrogateVerdict::caution) {
+    v.more_runs = quarter;
+    v.remedy = fmt::format("Add about {} runs between the levels of {}.", v.more_runs, doubts.levels->input);
+  } else if (!doubts.apart.empty() && v.verdict == SurrogateVerdict::caution) {
+    v.more_runs = half;
     v.remedy = fmt::format("Add about {} runs that move all inputs at once (demcal design).", v.more_runs);
-    return;
-  }
-  if (v.q2_function < t.q2_good) {
+  } else if (v.q2_function < t.q2_good) {
     v.more_runs = runs_wanted(v, training, model, t.q2_good);
     v.remedy = fmt::format("Add about {} runs, the first of them where the surrogate knows least.", v.more_runs);
-  } else if (coverage_wrong || distance_wrong || noise_doubtful(v)) {
-    v.more_runs = too_wide(v) ? 0 : std::max(8, v.runs / 4);
+  } else if (doubts.of_intervals()) {
+    v.more_runs = too_wide(v) ? 0 : quarter;
     v.remedy = remedy_of_intervals(v, training);
   } else {
-    v.more_runs = std::max(8, v.runs / 4);
+    v.more_runs = quarter;
     v.remedy = fmt::format("Use more starts, or add about {} runs.", v.more_runs);
   }
 }
