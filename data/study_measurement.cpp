@@ -13,6 +13,7 @@
 
 #include "data/edit_distance.hpp"
 #include "data/file_name.hpp"
+#include "data/study_keys.hpp"
 #include "data/study_parts.hpp"
 
 namespace data {
