@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "uq/calibrate/data_columns.hpp"
 #include "uq/emulate/scale_hint.hpp"
@@ -90,10 +91,10 @@ void say_misfit(Words& words, const CaseReport& report, const data::Study& study
     words.finding += " " + sets.finding;
     words.remedies.insert(words.remedies.begin(), sets.remedy);
   }
-  for (const RowGroup& group : model.groups)
-    if (const std::string hint = scale_hint(study, group.emulator.control_range);
-        !hint.empty() && shown_remedy(words).find(hint) == std::string::npos)
-      words.remedies.push_back(hint);
+  // Surrogates of several outputs mostly have the same runs: each control is named once.
+  std::set<std::size_t> controls;
+  for (const RowGroup& group : model.groups) controls.merge(log_scale_controls(study, group.emulator.control_range));
+  for (const std::size_t control : controls) words.remedies.push_back(scale_hint(study.controls[control]));
 }
 
 void say_lone_reading(CaseReport& report, Words& words, const data::Study& study, const LoneReading& lone) {

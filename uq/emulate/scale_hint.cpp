@@ -44,7 +44,7 @@ std::optional<TriedScale> best_log_scale(const data::Study& study, const Trainin
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     const data::Input input = input_of(study, rows.inputs[k]);
     surrogate::TrainingSet other = rows.set;
-    auto column = other.x.col(static_cast<Eigen::Index>(k));
+    auto column = other.x.col(k);
     for (double& u : column) u = input.axis.from_unit(u);
     const double low = column.minCoeff(), high = column.maxCoeff();
     if (!(input.axis.low > 0.0) || !log_is_worth_a_try(input.axis.scale, {low, high})) continue;
@@ -68,17 +68,18 @@ std::optional<TriedScale> best_log_scale(const data::Study& study, const Trainin
   return best;
 }
 
-std::string scale_hint(const data::Study& study, const std::map<std::size_t, std::pair<double, double>>& covered) {
-  std::string text;
-  for (const auto& [index, range] : covered) {
-    const data::Control& control = study.controls[index];
-    if (!log_is_worth_a_try(control.scale, range)) continue;
-    text += fmt::format(
-        "{}If the response bends at low {}, the surrogate misses that on a linear scale: try [controls.{}] scale = "
-        "\"log\".",
-        text.empty() ? "" : " ", control.name, control.name);
-  }
-  return text;
+std::set<std::size_t> log_scale_controls(const data::Study& study,
+                                         const std::map<std::size_t, std::pair<double, double>>& covered) {
+  std::set<std::size_t> found;
+  for (const auto& [index, range] : covered)
+    if (log_is_worth_a_try(study.controls[index].scale, range)) found.insert(index);
+  return found;
+}
+
+std::string scale_hint(const data::Control& control) {
+  return fmt::format(
+      "If the response bends at low {}, the surrogate misses that on a linear scale: try [controls.{}] scale = \"log\".",
+      control.name, control.name);
 }
 
 std::string bend_hint(const data::Study& study, const EmulatorInput& input, std::pair<double, double> covered,

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,9 +18,12 @@ namespace uq {
 /// first.
 inline constexpr double wide_control = 5.0;
 
-/// A sentence that names the controls for which a log scale is worth a try; empty where there are none. `covered`: the
-/// range of each control that the runs cover [SI].
-std::string scale_hint(const data::Study& study, const std::map<std::size_t, std::pair<double, double>>& covered);
+/// The controls for which a log scale is worth a try. `covered`: the range of each control that the runs cover [SI].
+std::set<std::size_t> log_scale_controls(const data::Study& study,
+                                         const std::map<std::size_t, std::pair<double, double>>& covered);
+
+/// A sentence that tells to try a log scale of a control.
+std::string scale_hint(const data::Control& control);
 
 /// A sentence about what might let the surrogate bend at one end of an input. At the low end of an input that covers a
 /// wide range on a linear scale it is a log scale, else more runs.
