@@ -108,8 +108,7 @@ std::string point_text(const data::Study& study, const TrainingRows& rows, const
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     const data::Input input = input_of(study, rows.inputs[k]);
     text += fmt::format("{}{} {:.3g}{}", text.empty() ? "" : ", ", input.name,
-                        input.unit.from_si(input.axis.from_unit(point[static_cast<Eigen::Index>(k)])),
-                        behind_number(input.unit.symbol));
+                        input.unit.from_si(input.axis.from_unit(point[k])), behind_number(input.unit.symbol));
   }
   return text;
 }
@@ -131,7 +130,7 @@ void note_gaps(SurrogateReport& report, const data::Study& study, const FittedSu
     if (widest < notable) continue;
     const auto input = static_cast<std::size_t>(data.active[k]);
     std::set<long> values;
-    for (const double value : data.points.col(static_cast<Eigen::Index>(k))) values.insert(std::lround(1e6 * value));
+    for (const double value : data.points.col(k)) values.insert(std::lround(1e6 * value));
     report.notes.push_back(fmt::format(
         "{} values of {} were run, and what lies {} them is doubted by up to {:.0f} % of the runs' scatter. "
         "Runs there would show it. Where the response is known to be smooth, [surrogate] "
@@ -293,10 +292,10 @@ std::vector<std::string> extrapolation_notes(const data::Study& study, const Tra
   std::vector<std::string> notes;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     const EmulatorInput& input = rows.inputs[k];
-    Eigen::VectorXd column = rows.set.x.col(static_cast<Eigen::Index>(k));
+    Eigen::VectorXd column = rows.set.x.col(k);
     double low = column.minCoeff(), high = column.maxCoeff();
     if (rows.low) {
-      column = rows.low->x.col(static_cast<Eigen::Index>(k));
+      column = rows.low->x.col(k);
       low = std::min(low, column.minCoeff());
       high = std::max(high, column.maxCoeff());
     }
