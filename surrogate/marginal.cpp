@@ -12,6 +12,7 @@
 
 #include "data/random.hpp"
 #include "surrogate/design.hpp"
+#include "surrogate/log_sum.hpp"
 
 namespace surrogate {
 namespace {
@@ -21,12 +22,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double none = -std::numeric_limits<double>::infinity();
-
-/// log sum exp.
-double log_sum(const VectorXd& logs) {
-  const double top = logs.maxCoeff();
-  return top == none ? none : top + std::log((logs.array() - top).exp().sum());
-}
 
 /// Multivariate Student's t with 5 degrees of freedom.
 class StudentT {

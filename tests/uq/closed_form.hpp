@@ -63,7 +63,7 @@ inline uq::CaseModel make_case(const std::vector<FreeParameter>& unknowns, const
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
       Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
       for (std::size_t k = 0; k < parameters.size(); ++k)
-        values[static_cast<Eigen::Index>(k)] = parameters[k].axis().from_unit(points(i, static_cast<Eigen::Index>(k)));
+        values[k] = parameters[k].axis().from_unit(points(i, static_cast<Eigen::Index>(k)));
       found.mean[i] = formula(values, points(i, points.cols() - 1));
     }
     return found;

@@ -6,7 +6,7 @@
 #include "data/study.hpp"
 #include "uq/calibrate/doubt.hpp"
 #include "uq/calibrate/misfit.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/case_results.hpp"
 #include "uq/verdict/contradiction.hpp"
 #include "uq/verdict/identifiability.hpp"
 #include "uq/verdict/outlying_reading.hpp"

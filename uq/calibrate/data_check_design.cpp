@@ -177,7 +177,7 @@ std::vector<Finding> check_design(const data::Study& study, const data::RunTable
     }
     if (varied.empty()) continue;
     Eigen::MatrixXd u(values.front().size(), static_cast<Eigen::Index>(values.size()));
-    for (std::size_t k = 0; k < values.size(); ++k) u.col(static_cast<Eigen::Index>(k)) = values[k];
+    for (std::size_t k = 0; k < values.size(); ++k) u.col(k) = values[k];
     check_together(material, varied, u, t, findings);
   }
   return findings;

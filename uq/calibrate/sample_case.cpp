@@ -42,7 +42,7 @@ GivenDraws given_draws(const SampledCase& sampled) {
     given.chains.resize(static_cast<std::size_t>(column.cols()), Eigen::MatrixXd(rows, 0));
     for (std::size_t c = 0; c < given.chains.size(); ++c) {
       given.chains[c].conservativeResize(rows, given.chains[c].cols() + 1);
-      given.chains[c].rightCols(1) = column.col(static_cast<Eigen::Index>(c)).head(rows);
+      given.chains[c].rightCols(1) = column.col(c).head(rows);
     }
   }
   return given;

@@ -93,83 +93,117 @@ std::optional<surrogate::GaussianProcess> fitted_to(const surrogate::TrainingSet
   }
 }
 
+/// How suspicious the error of a run is, in robust standard deviations. `floor`: least spread that counts.
+double standing_out(const Errors& errors, const RobustScale& scale, int run, double floor) {
+  return std::abs(errors.standardised[run] - scale.centre) / std::max(scale.spread, floor);
+}
+
+/// A state of the search: what is kept and what is put aside, with the errors of all against the process of those kept.
+struct Sorted {
+  std::vector<int> kept, aside;
+  Errors errors;
+  RobustScale scale;
+  std::vector<bool> came_back;  ///< runs that were put aside and did not stand out then: they stay
+};
+
+/// Runs among those kept that stand out, the worst first, at most `at_once`.
+std::vector<int> suspects_among(const Sorted& now, const OutlierOptions& options, std::size_t at_once) {
+  // Without a floor: among runs that one outlier has made look harmless, it still stands out.
+  const auto suspicion = [&](int i) { return standing_out(now.errors, now.scale, i, 1e-3); };
+  std::vector<int> suspects;
+  for (const int i : now.kept)
+    if (!now.came_back[i] && suspicion(i) > options.screen) suspects.push_back(i);
+  std::sort(suspects.begin(), suspects.end(), [&](int a, int b) { return suspicion(a) > suspicion(b); });
+  // A run whose error is near the worst one's may only be pulled along by it.
+  while (!suspects.empty() &&
+         (suspects.size() > at_once || suspicion(suspects.back()) < 0.5 * suspicion(suspects.front())))
+    suspects.pop_back();
+  return suspects;
+}
+
+/// The root mean square of what is expected of the runs kept, beside what came.
+double rms_error(const surrogate::TrainingSet& training, const std::vector<int>& kept, const VectorXd& expected) {
+  double sum = 0.0;
+  for (const int i : kept) sum += std::pow(training.y[i] - expected[i], 2);
+  return std::sqrt(sum / static_cast<double>(kept.size()));
+}
+
+/// The runs put aside that are far off, the worst first.
+OutlyingRuns far_off(const surrogate::TrainingSet& training, const Sorted& last, const OutlierOptions& options) {
+  const VectorXd y = training.y(last.kept);
+  const double spread = std::sqrt((y.array() - y.mean()).square().mean());
+  const auto z = [&](int i) {
+    return (last.errors.standardised[i] - last.scale.centre) / std::max(last.scale.spread, 1.0);
+  };
+  std::vector<int> outlying;
+  for (const int i : last.aside)
+    if (std::abs(z(i)) > options.outlying && last.errors.sd[i] < options.spread * spread &&
+        std::abs(training.y[i] - last.errors.expected[i]) > options.least * spread)
+      outlying.push_back(i);
+  std::sort(outlying.begin(), outlying.end(), [&](int a, int b) { return std::abs(z(a)) > std::abs(z(b)); });
+  OutlyingRuns found;
+  for (const int i : outlying) {
+    found.runs.push_back(i);
+    found.expected.push_back(last.errors.expected[i]);
+    found.deviations.push_back(z(i));
+  }
+  return found;
+}
+
 }  // namespace
 
 OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surrogate::GaussianProcess& process,
                            const surrogate::FitOptions& fit, const OutlierOptions& options) {
-  OutlyingRuns found;
   const int n = static_cast<int>(training.y.size());
-  if (n < 8) return found;
-  std::vector<int> kept(static_cast<std::size_t>(n)), aside;
-  std::iota(kept.begin(), kept.end(), 0);
-  std::vector<bool> came_back(static_cast<std::size_t>(n), false);
+  if (n < 8) return {};
   const auto at_once = static_cast<std::size_t>(std::max(1, n / 12));
   const double most = options.share_max * n;
-  std::optional<surrogate::GaussianProcess> current = process;
-  Errors errors = errors_of(training, kept, aside, *current);
-  RobustScale scale = robust_scale(errors.standardised, kept);
-  const VectorXd with_all = errors.expected;
+
+  // All runs are kept at first.
+  Sorted now{.kept = std::vector<int>(static_cast<std::size_t>(n)),
+             .aside = {},
+             .errors = {},
+             .scale = {},
+             .came_back = std::vector<bool>(static_cast<std::size_t>(n), false)};
+  std::iota(now.kept.begin(), now.kept.end(), 0);
+  now.errors = errors_of(training, now.kept, now.aside, process);
+  now.scale = robust_scale(now.errors.standardised, now.kept);
+  const VectorXd with_all = now.errors.expected;
+
+  // Round by round the suspects are put aside, and those that the others then expect come back.
   for (int round = 0; round < options.rounds; ++round) {
-    // Without a floor: among runs that one outlier has made look harmless, it still stands out.
-    const auto suspicion = [&](int i) {
-      return std::abs(errors.standardised[i] - scale.centre) / std::max(scale.spread, 1e-3);
-    };
-    const auto contradiction = [&](int i) {
-      return std::abs(errors.standardised[i] - scale.centre) / std::max(scale.spread, 1.0);
-    };
-    std::vector<int> suspects;
-    for (const int i : kept)
-      if (!came_back[i] && suspicion(i) > options.screen) suspects.push_back(i);
-    std::sort(suspects.begin(), suspects.end(), [&](int a, int b) { return suspicion(a) > suspicion(b); });
-    // A run whose error is near the worst one's may only be pulled along by it.
-    while (!suspects.empty() &&
-           (suspects.size() > at_once || suspicion(suspects.back()) < 0.5 * suspicion(suspects.front())))
-      suspects.pop_back();
+    const std::vector<int> suspects = suspects_among(now, options, at_once);
     std::vector<int> next = suspects;
     if (round == 0)
       for (const int i : repeated_outputs(training))
         if (std::find(next.begin(), next.end(), i) == next.end()) next.push_back(i);
     if (static_cast<double>(next.size()) > most) next = suspects;  // coarse numbers, no failures
-    for (const int i : aside) {
-      if (contradiction(i) > options.screen)
+    for (const int i : now.aside) {
+      if (standing_out(now.errors, now.scale, i, 1.0) > options.screen)
         next.push_back(i);
       else
-        came_back[i] = true;
+        now.came_back[i] = true;
     }
     std::sort(next.begin(), next.end());
-    if (next == aside) break;
+    if (next == now.aside) break;
     if (static_cast<double>(next.size()) > most) return {};  // no majority that the others could contradict
-    aside = next;
-    kept.clear();
+    now.aside = next;
+    now.kept.clear();
     for (int i = 0; i < n; ++i)
-      if (!std::binary_search(aside.begin(), aside.end(), i)) kept.push_back(i);
-    current = fitted_to(training, kept, fit);
-    if (!current) return {};
-    errors = errors_of(training, kept, aside, *current);
-    scale = robust_scale(errors.standardised, kept);
+      if (!std::binary_search(now.aside.begin(), now.aside.end(), i)) now.kept.push_back(i);
+    const std::optional<surrogate::GaussianProcess> others = fitted_to(training, now.kept, fit);
+    if (!others) return {};
+    now.errors = errors_of(training, now.kept, now.aside, *others);
+    now.scale = robust_scale(now.errors.standardised, now.kept);
   }
-  found.scatter = scale.spread;
-  const auto rms = [&](const VectorXd& expected) {
-    double sum = 0.0;
-    for (const int i : kept) sum += std::pow(training.y[i] - expected[i], 2);
-    return std::sqrt(sum / static_cast<double>(kept.size()));
-  };
-  found.harm = rms(with_all) / std::max(rms(errors.expected), 1e-300);
-  if (found.harm < options.harm) return found;
-  const VectorXd y = training.y(kept);
-  const double spread = std::sqrt((y.array() - y.mean()).square().mean());
-  const auto z = [&](int i) { return (errors.standardised[i] - scale.centre) / std::max(scale.spread, 1.0); };
-  std::vector<int> outlying;
-  for (const int i : aside)
-    if (std::abs(z(i)) > options.outlying && errors.sd[i] < options.spread * spread &&
-        std::abs(training.y[i] - errors.expected[i]) > options.least * spread)
-      outlying.push_back(i);
-  std::sort(outlying.begin(), outlying.end(), [&](int a, int b) { return std::abs(z(a)) > std::abs(z(b)); });
-  for (const int i : outlying) {
-    found.runs.push_back(i);
-    found.expected.push_back(errors.expected[i]);
-    found.deviations.push_back(z(i));
-  }
+
+  // Runs that harm what is expected of the others, and are far off.
+  const double harm =
+      rms_error(training, now.kept, with_all) / std::max(rms_error(training, now.kept, now.errors.expected), 1e-300);
+  OutlyingRuns found;
+  if (!(harm < options.harm)) found = far_off(training, now, options);
+  found.scatter = now.scale.spread;
+  found.harm = harm;
   return found;
 }
 

@@ -42,7 +42,7 @@ std::optional<TriedScale> best_log_scale(const data::Study& study, const Trainin
     if (!rows.inputs[k].stretch.is_none()) continue;
     const data::Input input = input_of(study, rows.inputs[k]);
     surrogate::TrainingSet other = rows.set;
-    auto column = other.x.col(static_cast<Eigen::Index>(k));
+    auto column = other.x.col(k);
     for (double& u : column) u = input.axis.from_unit(u);
     const double low = column.minCoeff(), high = column.maxCoeff();
     if (!(input.axis.low > 0.0) || !log_is_worth_a_try(input.axis.scale, {low, high})) continue;

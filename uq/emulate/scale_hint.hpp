@@ -1,7 +1,6 @@
 #pragma once
 // Scales on which a surrogate might learn better than on those that it has chosen itself (surrogate/stretch.hpp).
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>

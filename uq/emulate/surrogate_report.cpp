@@ -131,7 +131,7 @@ void note_gaps(SurrogateReport& report, const data::Study& study, const FittedSu
     if (widest < notable) continue;
     const auto input = static_cast<std::size_t>(data.active[k]);
     std::set<long> values;
-    for (const double value : data.points.col(static_cast<Eigen::Index>(k))) values.insert(std::lround(1e6 * value));
+    for (const double value : data.points.col(k)) values.insert(std::lround(1e6 * value));
     report.notes.push_back(fmt::format(
         "{} values of {} were run, and what lies {} them is doubted by up to {:.0f} % of the runs' scatter. "
         "Runs there would show it. Where the response is known to be smooth, [surrogate] "
@@ -316,10 +316,10 @@ std::vector<std::string> extrapolation_notes(const data::Study& study, const Tra
   std::vector<std::string> notes;
   for (std::size_t k = 0; k < rows.inputs.size(); ++k) {
     const EmulatorInput& input = rows.inputs[k];
-    Eigen::VectorXd column = rows.set.x.col(static_cast<Eigen::Index>(k));
+    Eigen::VectorXd column = rows.set.x.col(k);
     double low = column.minCoeff(), high = column.maxCoeff();
     if (rows.low) {
-      column = rows.low->x.col(static_cast<Eigen::Index>(k));
+      column = rows.low->x.col(k);
       low = std::min(low, column.minCoeff());
       high = std::max(high, column.maxCoeff());
     }

@@ -14,7 +14,7 @@
 #include "surrogate/two_level.hpp"
 #include "surrogate/validation.hpp"
 #include "uq/emulate/emulator.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/surrogate_results.hpp"
 
 namespace uq {
 

@@ -74,9 +74,9 @@ LevelRows level_rows(const data::Study& study, const data::RunTable& table, cons
   for (Eigen::Index i = 0; i < count; ++i) {
     const data::RunRow& row = *rows[i];
     for (std::size_t p = 0; p < study.parameters.size(); ++p)
-      found.parameters(i, static_cast<Eigen::Index>(p)) = row.inputs[columns.parameters[p]];
+      found.parameters(i, p) = row.inputs[columns.parameters[p]];
     for (std::size_t c = 0; c < study.controls.size(); ++c)
-      found.controls(i, static_cast<Eigen::Index>(c)) = row.inputs[columns.parameters.size() + columns.controls[c]];
+      found.controls(i, c) = row.inputs[columns.parameters.size() + columns.controls[c]];
     found.places.push_back(row.place);
     found.y[i] = row.outputs[column];
     found.noise_variance[i] = std::pow(row.standard_errors[column], 2);
@@ -114,18 +114,18 @@ TrainingRows rows_of(const data::Study& study, const LevelRows& high, const Leve
   }
   for (std::size_t c = 0; c < study.controls.size(); ++c) {
     const data::Control& control = study.controls[c];
-    column << high.controls.col(static_cast<Eigen::Index>(c)), low.controls.col(static_cast<Eigen::Index>(c));
+    column << high.controls.col(c), low.controls.col(c);
     found.control_range[c] = {column.minCoeff(), column.maxCoeff()};
     for (double& value : column) value = control.axis().to_unit(value);
     if (column.maxCoeff() - column.minCoeff() > 1e-9) keep(column, {InputKind::control, c});
   }
   found.set.x.resize(highs, static_cast<Eigen::Index>(inputs.size()));
-  for (std::size_t k = 0; k < inputs.size(); ++k) found.set.x.col(static_cast<Eigen::Index>(k)) = inputs[k].head(highs);
+  for (std::size_t k = 0; k < inputs.size(); ++k) found.set.x.col(k) = inputs[k].head(highs);
   for (const EmulatorInput& input : found.inputs) found.set.names.push_back(input_of(study, input).name);
   if (lows == 0) return found;
   found.low =
       surrogate::TrainingSet{Eigen::MatrixXd(lows, found.set.x.cols()), low.y, low.noise_variance, found.set.names};
-  for (std::size_t k = 0; k < inputs.size(); ++k) found.low->x.col(static_cast<Eigen::Index>(k)) = inputs[k].tail(lows);
+  for (std::size_t k = 0; k < inputs.size(); ++k) found.low->x.col(k) = inputs[k].tail(lows);
   return found;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The fields of a calibration, and by its includes those of all that it holds. A field added to results.hpp is added to
-// the list of its struct (field_list.hpp says how); a test compares the sizes.
+// The fields of a calibration, and by its includes those of all that it holds. A field added to a struct is added to
+// its list, in the file of that name (field_list.hpp says how); a test compares the sizes.
 #include "uq/findings/case_fields.hpp"
 #include "uq/findings/surrogate_fields.hpp"
 #include "uq/findings/wording.hpp"

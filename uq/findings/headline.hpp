@@ -3,7 +3,7 @@
 // to do next.
 #include <string>
 
-#include "uq/findings/results.hpp"
+#include "uq/findings/case_results.hpp"
 #include "uq/findings/wording.hpp"
 
 namespace uq {

@@ -1,7 +1,7 @@
 #pragma once
 // Field lists of one parameter, or of one unknown of the measurement: its draws, its interval and its verdict.
 #include "uq/findings/field_list.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/parameter_results.hpp"
 
 namespace uq {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Field lists of a plan: what to measure next.
 #include "uq/findings/field_list.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/plan_results.hpp"
 
 namespace uq {
 

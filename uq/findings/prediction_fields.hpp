@@ -1,7 +1,7 @@
 #pragma once
 // Field lists of a posterior's predictions, beside what was measured or simulated there.
 #include "uq/findings/field_list.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/prediction_results.hpp"
 
 namespace uq {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Field lists of the runs' support: the posterior beside the runs, and the points to run next.
 #include "uq/findings/field_list.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/support_results.hpp"
 
 namespace uq {
 

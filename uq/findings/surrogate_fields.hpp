@@ -1,7 +1,7 @@
 #pragma once
 // Field lists of the runs and what was learnt from them: designs, surrogates, the runs that the others contradict.
 #include "uq/findings/field_list.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/surrogate_results.hpp"
 
 namespace uq {
 

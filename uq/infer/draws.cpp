@@ -11,7 +11,7 @@ namespace uq {
 
 Eigen::MatrixXd Draws::coordinate(int k) const {
   Eigen::MatrixXd values(chains.front().x.rows(), static_cast<Eigen::Index>(chains.size()));
-  for (std::size_t c = 0; c < chains.size(); ++c) values.col(static_cast<Eigen::Index>(c)) = chains[c].x.col(k);
+  for (std::size_t c = 0; c < chains.size(); ++c) values.col(c) = chains[c].x.col(k);
   return values;
 }
 

@@ -34,7 +34,7 @@ void vote(std::vector<Eigen::Index>& order, const std::pair<std::size_t, std::si
     const auto best = std::max_element(order.begin() + static_cast<std::ptrdiff_t>(from),
                                        order.begin() + static_cast<std::ptrdiff_t>(to),
                                        [&](Eigen::Index a, Eigen::Index b) { return value[a] < value[b]; });
-    ++votes[static_cast<std::size_t>(*best)];
+    ++votes[*best];
     return;
   }
   // Along the direction in which this part is widest.
@@ -256,78 +256,6 @@ Eigen::Index draws_near(const Peak& mode, const Eigen::MatrixXd& draws) {
   const Eigen::MatrixXd away =
       root.triangularView<Eigen::Lower>().solve((draws.rowwise() - mode.x.transpose()).transpose());
   return (away.colwise().squaredNorm().array() < near_square(draws.cols())).count();
-}
-
-Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width) {
-  const Eigen::Index d = x.size();
-  const auto value = [&](const Eigen::VectorXd& at) {
-    if (!target.contains(at)) return nowhere;
-    const double found = target.log_density(at);
-    return std::isnan(found) ? nowhere : found;
-  };
-  Peak mode{.x = x, .log_density = value(x), .covariance = {}, .log_mass = 0.0};
-  // Steps along which the log density falls by about a half: one conditional standard deviation.
-  Eigen::VectorXd step = 0.1 * width;
-  std::vector<bool> at_bound(static_cast<std::size_t>(d), false);
-  const auto fall = [&](Eigen::Index k) {
-    double sum = 0.0;
-    int sides = 0;
-    for (const double sign : {-1.0, 1.0}) {
-      Eigen::VectorXd at = x;
-      at[k] += sign * step[k];
-      if (!target.contains(at)) continue;
-      sum += mode.log_density - value(at);
-      ++sides;
-    }
-    at_bound[k] = sides < 2;
-    return sides == 0 ? std::numeric_limits<double>::infinity() : sum / sides;
-  };
-  for (Eigen::Index k = 0; k < d; ++k)
-    for (int i = 0; i < 30; ++i) {
-      const double found = fall(k);
-      if (found > 0.2 && found < 1.0) break;
-      if (!(found > 1e-4) && step[k] >= width[k]) break;
-      step[k] *= std::clamp(found > 0.0 ? std::sqrt(0.5 / found) : 3.0, 0.05, 3.0);
-      step[k] = std::min(step[k], width[k]);
-    }
-  // Curvature in units of the steps.
-  Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(d, d);
-  for (Eigen::Index k = 0; k < d; ++k) curvature(k, k) = std::max(2.0 * std::min(fall(k), 4.0), 0.0);
-  for (Eigen::Index k = 0; k < d; ++k)
-    for (Eigen::Index l = 0; l < k; ++l) {
-      if (at_bound[k] || at_bound[l]) continue;
-      double mixed = 0.0;
-      for (const double a : {-0.5, 0.5})
-        for (const double b : {-0.5, 0.5}) {
-          Eigen::VectorXd at = x;
-          at[k] += a * step[k];
-          at[l] += b * step[l];
-          mixed -= (a * b > 0.0 ? 1.0 : -1.0) * value(at);
-        }
-      if (std::isfinite(mixed)) curvature(k, l) = curvature(l, k) = mixed;
-    }
-  // No flatter than the width allows.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(curvature);
-  Eigen::VectorXd variance(d);
-  for (Eigen::Index k = 0; k < d; ++k) {
-    const Eigen::VectorXd direction = step.cwiseProduct(solver.eigenvectors().col(k));
-    const double flattest = direction.cwiseQuotient(width).squaredNorm();  // (length in widths)^2 of one unit
-    variance[k] = 1.0 / std::max(solver.eigenvalues()[k], flattest);
-  }
-  Eigen::MatrixXd root = step.asDiagonal() * solver.eigenvectors() * variance.cwiseSqrt().asDiagonal();
-  // Shorter where p falls faster than the curvature said.
-  for (Eigen::Index k = 0; k < d; ++k)
-    for (int i = 0; i < 20; ++i) {
-      const Eigen::VectorXd there = x + root.col(k), back = x - root.col(k);
-      const double least = mode.log_density - std::max(value(there), value(back));
-      if (least <= 2.0) break;
-      root.col(k) *= 0.7;
-      variance[k] *= 0.49;
-    }
-  mode.covariance = root * root.transpose();
-  mode.log_mass = mode.log_density + 0.5 * static_cast<double>(d) * std::log(2.0 * std::numbers::pi) +
-                  0.5 * variance.array().log().sum() + step.array().log().sum();
-  return mode;
 }
 
 }  // namespace uq

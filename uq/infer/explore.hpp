@@ -11,14 +11,14 @@
 //    diagonal of the scouts' box. Mirror images and repeated modes lie on such lines in any dimension.
 // 3. From each start uphill, by a trust region with a BFGS model so that no step jumps into another basin. It ends
 //    where p is as high as in the bulk of the draws and q knows the place, p(x) <= level q(x), or at a maximum.
-// 4. The mass of an unknown maximum is first Laplace's, p(m) (2 pi)^(d/2) |S|^(1/2). S is the inverse of the curvature,
-//    shortened along its axes to where p still is of the maximum's order: on a curved ridge it is the mass of a
-//    straight piece. Where that would matter, draws of this normal law tell how much mass lies inside the support
-//    where q does not know it: in a corner of a flat density Laplace's is too large by 2 for each face.
+// 4. The mass of an unknown maximum is first Laplace's (laplace.hpp). Where that would matter, draws of this normal law
+//    tell how much mass lies inside the support where q does not know it: in a corner of a flat density Laplace's is too
+//    large by 2 for each face.
 #include <array>
 #include <cstdint>
 #include <vector>
 
+#include "uq/infer/laplace.hpp"
 #include "uq/infer/log_density.hpp"
 #include "uq/infer/student_mixture.hpp"
 
@@ -40,16 +40,6 @@ struct Scouts {
   Eigen::VectorXd low, high;  ///< range of the scouts in each coordinate
 };
 Scouts send_scouts(const Target& target, data::RandomStream& random, const ExploreOptions& options = {});
-
-struct Peak {
-  Eigen::VectorXd x;
-  double log_density = 0.0;
-  Eigen::MatrixXd covariance;  ///< covariance of Laplace's approximation
-  double log_mass = 0.0;       ///< log of the mass by Laplace's approximation
-};
-
-/// Laplace's approximation at x; `width` bounds its standard deviations.
-Peak laplace(const Target& target, const Eigen::VectorXd& x, const Eigen::VectorXd& width);
 
 /// Number of draws within about two standard deviations of a maximum.
 Eigen::Index draws_near(const Peak& mode, const Eigen::MatrixXd& draws);

@@ -44,7 +44,7 @@ Eigen::VectorXd evaluate(const Target& target, const Eigen::MatrixXd& points) {
   if (inside.empty()) return values;
   if (target.log_densities) {
     Eigen::MatrixXd kept(static_cast<Eigen::Index>(inside.size()), points.cols());
-    for (std::size_t i = 0; i < inside.size(); ++i) kept.row(static_cast<Eigen::Index>(i)) = points.row(inside[i]);
+    for (std::size_t i = 0; i < inside.size(); ++i) kept.row(i) = points.row(inside[i]);
     const Eigen::VectorXd found = target.log_densities(kept);
     for (std::size_t i = 0; i < inside.size(); ++i) values[inside[i]] = found[i];
   } else {

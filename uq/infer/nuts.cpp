@@ -20,7 +20,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 constexpr double energy_rise_max = 1000.0;
 
-double log_sum(double a, double b) {
+/// log(exp(a) + exp(b)).
+double log_add(double a, double b) {
   const double top = std::max(a, b);
   return top == nowhere ? nowhere : top + std::log(std::exp(a - top) + std::exp(b - top));
 }
@@ -205,7 +206,7 @@ class NutsChain {
     }
     Tree first, second;
     if (!grow(depth - 1, phase, step, first) || !grow(depth - 1, phase, step, second)) return false;
-    tree.log_weight = log_sum(first.log_weight, second.log_weight);
+    tree.log_weight = log_add(first.log_weight, second.log_weight);
     tree.proposal =
         random_.uniform() < std::exp(second.log_weight - tree.log_weight) ? second.proposal : first.proposal;
     join(tree, first, second);
@@ -258,7 +259,7 @@ class NutsChain {
       const bool on = keeps_going(first, second, sum);
       Tree whole;
       join(whole, first, second);
-      whole.log_weight = log_sum(tree.log_weight, side.log_weight);
+      whole.log_weight = log_add(tree.log_weight, side.log_weight);
       whole.proposal = tree.proposal;
       tree = std::move(whole);
       if (!on) break;

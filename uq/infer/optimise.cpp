@@ -53,10 +53,10 @@ Maximum maximise(const Differentiable& function, const Box& box, const Eigen::Ma
     std::vector<bool> is_held(static_cast<std::size_t>(dimension), false);
     for (const Held& one : held) {
       problem.x[one.coordinate] = one.value;
-      is_held[static_cast<std::size_t>(one.coordinate)] = true;
+      is_held[one.coordinate] = true;
     }
     for (int k = 0; k < dimension; ++k) {
-      if (is_held[static_cast<std::size_t>(k)]) continue;
+      if (is_held[k]) continue;
       problem.free.push_back(k);
       lower.push_back(box.lower[k]);
       upper.push_back(box.upper[k]);

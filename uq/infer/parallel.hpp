@@ -21,7 +21,7 @@ void for_each_index(int count, int threads, const Job& job) {
       try {
         job(i);
       } catch (...) {
-        failures[static_cast<std::size_t>(i)] = std::current_exception();
+        failures[i] = std::current_exception();
       }
     }
   };

@@ -161,7 +161,7 @@ Eigen::ArrayXXd Mixture::log_terms(const Eigen::MatrixXd& points) const {
   const double exponent = -0.5 * (degrees_of_freedom + static_cast<double>(points.cols()));
   Eigen::ArrayXXd terms(points.rows(), static_cast<Eigen::Index>(components.size()));
   for (std::size_t k = 0; k < components.size(); ++k)
-    terms.col(static_cast<Eigen::Index>(k)) =
+    terms.col(k) =
         components[k].log_constant +
         exponent *
             (1.0 + squared_distances(points, components[k].mean, components[k].factor) / degrees_of_freedom).log();

@@ -10,7 +10,7 @@
 #include "data/plan.hpp"
 #include "data/study.hpp"
 #include "uq/findings/kinds.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/plan_results.hpp"
 #include "uq/posterior/case_model.hpp"
 
 namespace uq::plan {

@@ -356,13 +356,4 @@ Information combined(const std::vector<Information>& repeats) {
   return found;
 }
 
-double finite_information(const Eigen::VectorXd& prior, const Eigen::MatrixXd& likelihood) {
-  const Eigen::RowVectorXd marginal = prior.transpose() * likelihood;
-  double sum = 0.0;
-  for (Index i = 0; i < likelihood.rows(); ++i)
-    for (Index y = 0; y < likelihood.cols(); ++y)
-      if (const double p = prior[i] * likelihood(i, y); p > 0.0) sum += p * std::log(likelihood(i, y) / marginal[y]);
-  return sum;
-}
-
 }  // namespace uq::plan

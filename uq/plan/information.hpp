@@ -67,7 +67,4 @@ Information information(const Ensemble& ensemble, const InformationOptions& opti
 /// The mean of independent estimates of the same information, with Student's error.
 Information combined(const std::vector<Information>& repeats);
 
-/// I(theta; y) where both are finite: rows theta (weights `prior`), columns y, entries p(y | theta). Exact.
-double finite_information(const Eigen::VectorXd& prior, const Eigen::MatrixXd& likelihood);
-
 }  // namespace uq::plan

@@ -2,7 +2,7 @@
 // What to measure next: candidates ranked by what they are expected to teach of one parameter, per cost; what becomes
 // of the verdict; how many readings it takes; several candidates together.
 //   candidates (candidates.hpp) -> laws of their readings (outlook.hpp) -> information (information.hpp)
-//   -> words afterwards (forecast.hpp) -> ranking and batches -> PlanReport (uq/findings/results.hpp)
+//   -> words afterwards (forecast.hpp) -> ranking and batches -> PlanReport (uq/findings/plan_results.hpp)
 // All numbers are averaged over the posterior, or, before any measurement, over the prior; never taken at a point.
 #include <cstdint>
 #include <functional>

@@ -2,7 +2,7 @@
 // Batches: candidates that are measured together.
 #include <vector>
 
-#include "uq/findings/results.hpp"
+#include "uq/findings/plan_results.hpp"
 #include "uq/plan/plan_basis.hpp"
 
 namespace uq::plan {

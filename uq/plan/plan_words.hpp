@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "data/study.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/plan_results.hpp"
 #include "uq/plan/plan_basis.hpp"
 
 namespace uq::plan {

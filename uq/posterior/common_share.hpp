@@ -14,7 +14,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "uq/findings/results.hpp"
+#include "uq/findings/parameter_results.hpp"
 #include "uq/posterior/case_model.hpp"
 
 namespace uq {

@@ -31,7 +31,7 @@ Line line_through(const data::Study& study, const data::ObservationSet& set) {
             .x = Eigen::VectorXd::LinSpaced(band_points, low, high)};
   for (std::size_t c = 0; c < study.controls.size(); ++c) {
     const double scaled = study.controls[c].axis().to_unit(set.points.front().controls[c]);
-    line.controls.col(static_cast<Eigen::Index>(c)).setConstant(scaled);
+    line.controls.col(c).setConstant(scaled);
   }
   line.controls.col(0) = line.x.unaryExpr([axis = first.axis()](double x) { return axis.to_unit(x); });
   return line;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "data/study.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/prediction_results.hpp"
 #include "uq/posterior/case_model.hpp"
 
 namespace uq {

@@ -15,7 +15,7 @@ namespace {
 Eigen::MatrixXd whiten(const Eigen::MatrixXd& slopes, const std::vector<Eigen::Index>& chosen,
                        const Eigen::MatrixXd& covariance) {
   Eigen::MatrixXd whitened(slopes.rows(), static_cast<Eigen::Index>(chosen.size()));
-  for (std::size_t k = 0; k < chosen.size(); ++k) whitened.col(static_cast<Eigen::Index>(k)) = slopes.col(chosen[k]);
+  for (std::size_t k = 0; k < chosen.size(); ++k) whitened.col(k) = slopes.col(chosen[k]);
   factor(covariance, "the data at the best fit").llt.matrixL().solveInPlace(whitened);
   return whitened;
 }

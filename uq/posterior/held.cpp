@@ -29,8 +29,7 @@ Side side_at(const CaseModel& exact, const RowGroup& group, const ComparedSide& 
     Eigen::VectorXd up = at.best, down = at.best;
     up[at.free[k]] += step;
     down[at.free[k]] -= step;
-    side.jacobian.col(static_cast<Eigen::Index>(k)) =
-        (group_law(exact, group, up).mean - group_law(exact, group, down).mean) / (2.0 * step);
+    side.jacobian.col(k) = (group_law(exact, group, up).mean - group_law(exact, group, down).mean) / (2.0 * step);
   }
   Eigen::MatrixXd covariance = law.covariance;
   covariance.diagonal() += law.noise;
@@ -91,7 +90,7 @@ Eigen::MatrixXd with_held(const Eigen::MatrixXd& rest, const std::vector<Held>& 
   const auto dimension = static_cast<int>(rest.cols() + static_cast<Eigen::Index>(held.size()));
   const std::vector<int> left = unknowns_left(dimension, held);
   Eigen::MatrixXd all(rest.rows(), dimension);
-  for (std::size_t k = 0; k < left.size(); ++k) all.col(left[k]) = rest.col(static_cast<Eigen::Index>(k));
+  for (std::size_t k = 0; k < left.size(); ++k) all.col(left[k]) = rest.col(k);
   for (const Held& one : held) all.col(one.coordinate).setConstant(one.value);
   return all;
 }

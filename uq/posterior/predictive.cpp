@@ -36,11 +36,10 @@ CurveRows curve_rows(const data::Study& study, const RowGroup& group, std::size_
   }
   const data::Axis shown{low, high, control.scale};
   CurveRows rows{
-      .base = group.base.row(static_cast<Eigen::Index>(row)).replicate(points, 1),
-      .unknown = group.unknown.row(static_cast<Eigen::Index>(row)).transpose(),
+      .base = group.base.row(row).replicate(points, 1),
+      .unknown = group.unknown.row(row).transpose(),
       .x = Eigen::VectorXd::LinSpaced(points, 0.0, 1.0).unaryExpr([shown](double u) { return shown.from_unit(u); })};
-  rows.base.col(static_cast<Eigen::Index>(control_column)) =
-      rows.x.unaryExpr([axis = control.axis()](double x) { return axis.to_unit(x); });
+  rows.base.col(control_column) = rows.x.unaryExpr([axis = control.axis()](double x) { return axis.to_unit(x); });
   return rows;
 }
 
@@ -199,9 +198,9 @@ std::vector<PredictivePoint> predictive_points(const data::Study& study, const C
   for (std::size_t row = 0; row < from.size(); ++row) {
     if (!is_own_set(study, model, from[row].set)) continue;
     const data::Unit& unit = study.outputs[from[row].output].unit;
-    const Eigen::VectorXd values = made.col(static_cast<Eigen::Index>(row));
+    const Eigen::VectorXd values = made.col(row);
     PredictivePoint point = observed_point(study, from[row]);
-    point.mean = unit.from_si(mean[static_cast<Eigen::Index>(row)]);
+    point.mean = unit.from_si(mean[row]);
     point.q05 = unit.from_si(quantile(values, 0.05));
     point.q95 = unit.from_si(quantile(values, 0.95));
     points.push_back(std::move(point));

@@ -15,11 +15,10 @@
 // A draw is not supported if that holds at half of the observed settings or more. The case is not supported if more
 // than `share` of its draws are not.
 //
-// Next runs: points (draw, observed setting) chosen one after the other, each the farthest from the runs and from those
-// chosen before (maximin, in the unit cube), so that a few of them cover the posterior.
+// Runs to make next are chosen by farthest_runs.hpp; runs_around.hpp has the tests, support_words.hpp the sentence.
 #include <Eigen/Dense>
 
-#include "uq/findings/results.hpp"
+#include "uq/findings/support_results.hpp"
 #include "uq/posterior/case_model.hpp"
 
 namespace uq {

@@ -10,7 +10,7 @@
 #include <Eigen/Dense>
 
 #include "data/study.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/prediction_results.hpp"
 #include "uq/posterior/case_model.hpp"
 
 namespace uq {

@@ -7,18 +7,14 @@
 #include <numbers>
 
 #include "surrogate/design.hpp"
+#include "surrogate/log_sum.hpp"
 #include "uq/posterior/posterior.hpp"
 
 namespace uq {
 namespace {
 
 using Eigen::Index;
-
-double log_sum(const Eigen::VectorXd& logs) {
-  const double largest = logs.size() == 0 ? nowhere : logs.maxCoeff();
-  if (!std::isfinite(largest)) return nowhere;
-  return largest + std::log((logs.array() - largest).exp().sum());
-}
+using surrogate::log_sum;
 
 /// log(exp(a) + exp(b)).
 double log_add(double a, double b) {
@@ -184,8 +180,7 @@ Eigen::MatrixXd IntegratedVariance::log_factors(const Group& group, const std::v
     if (!std::isfinite(log_square_[j])) continue;
     const Eigen::LLT<Eigen::MatrixXd> less(group.less[j]), more(group.more[j]);
     if (less.info() != Eigen::Success || more.info() != Eigen::Success) continue;
-    for (std::size_t k = 0; k < members.size(); ++k)
-      b.col(static_cast<Index>(k)) = group.cross.block(j * count, members[k], count, 1);
+    for (std::size_t k = 0; k < members.size(); ++k) b.col(k) = group.cross.block(j * count, members[k], count, 1);
     const Eigen::MatrixXd low = less.matrixL().solve(b), high = more.matrixL().solve(b);
     const Eigen::VectorXd pull = high.transpose() * more.matrixL().solve(group.residual.col(j)).eval();
     for (Index k = 0; k < variance.size(); ++k) {
@@ -206,7 +201,7 @@ Eigen::VectorXd IntegratedVariance::reductions() const {
     std::vector<int> all(group.members.size());
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<int>(k);
     const Eigen::MatrixXd found = log_factors(group, all);
-    for (std::size_t k = 0; k < all.size(); ++k) logs.col(group.members[k]) += found.col(static_cast<Index>(k));
+    for (std::size_t k = 0; k < all.size(); ++k) logs.col(group.members[k]) += found.col(k);
   }
   Eigen::VectorXd reductions = Eigen::VectorXd::Zero(candidates_);
   for (Index j = 0; j < log_square_.size(); ++j) {

@@ -59,7 +59,7 @@ Eigen::MatrixXd tempered_points(const CaseModel& model, int count, std::uint64_t
   if (!std::isfinite(logs.maxCoeff())) return points.topRows(std::min(count, tried));
   const std::vector<Index> rows = resample(logs, count, 0.5);
   Eigen::MatrixXd kept(static_cast<Index>(rows.size()), points.cols());
-  for (std::size_t i = 0; i < rows.size(); ++i) kept.row(static_cast<Index>(i)) = points.row(rows[i]);
+  for (std::size_t i = 0; i < rows.size(); ++i) kept.row(i) = points.row(rows[i]);
   return kept;
 }
 
@@ -154,8 +154,8 @@ RunPoint run_at(const RowGroup& group, Index row, const Eigen::VectorXd& u) {
   RunPoint point{group.emulator.material, Eigen::VectorXd::Zero(parameters), Eigen::VectorXd::Zero(controls)};
   for (std::size_t k = 0; k < group.emulator.inputs.size(); ++k) {
     const EmulatorInput& input = group.emulator.inputs[k];
-    const int unknown = group.unknown(row, static_cast<Index>(k));
-    const double value = unknown < 0 ? group.base(row, static_cast<Index>(k)) : u[unknown];
+    const int unknown = group.unknown(row, k);
+    const double value = unknown < 0 ? group.base(row, k) : u[unknown];
     (input.kind == InputKind::parameter ? point.parameters : point.controls)[input.index] = value;
   }
   return point;

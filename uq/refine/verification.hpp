@@ -12,7 +12,7 @@
 #include "data/run_table.hpp"
 #include "data/study.hpp"
 #include "uq/emulate/surrogates.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/prediction_results.hpp"
 
 namespace uq {
 

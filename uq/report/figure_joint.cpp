@@ -79,6 +79,67 @@ std::vector<std::vector<double>> equivalent_columns(const CaseReport& result, co
   return columns;
 }
 
+/// The draws of two parameters.
+struct PairDraws {
+  std::vector<double> x, y;
+  Extent across, up;
+};
+
+PairDraws draws_of(const CaseReport& result, std::pair<std::size_t, std::size_t> pair) {
+  PairDraws draws;
+  for (const auto& draw : result.draws_for_plot) {
+    if (draw.size() <= std::max(pair.first, pair.second)) continue;
+    if (!std::isfinite(draw[pair.first]) || !std::isfinite(draw[pair.second])) continue;
+    draws.x.push_back(draw[pair.first]);
+    draws.y.push_back(draw[pair.second]);
+    draws.across.include(draws.x.back());
+    draws.up.include(draws.y.back());
+  }
+  return draws;
+}
+
+/// About `most` of the draws, at even steps: their order does not matter to the eye.
+std::vector<std::vector<double>> thinned_evenly(const PairDraws& draws, std::size_t most) {
+  std::vector<std::vector<double>> shown(2);
+  const double count = static_cast<double>(draws.x.size()), step = std::max(1.0, count / static_cast<double>(most));
+  for (double at = 0.0; at < count; at += step) {
+    shown[0].push_back(draws.x[static_cast<std::size_t>(at)]);
+    shown[1].push_back(draws.y[static_cast<std::size_t>(at)]);
+  }
+  return shown;
+}
+
+/// The part of the plot command that draws the regions of 90 and 50 %.
+std::string regions_script(const std::string& source) {
+  return fmt::format(
+      "{0} index 'region90' using ($1*sx):($2*sy) with filledcurves closed fillcolor rgb '{1}' title '90 %', \\\n"
+      "  {0} index 'region50' using ($1*sx):($2*sy) with filledcurves closed fillcolor rgb '{2}' title '50 %', \\\n",
+      source, plot::pale, "#8FC7EA");
+}
+
+/// The draws, the range of the prior with its title, and the mode.
+std::string draws_script(const std::string& source, const char* range_title) {
+  return fmt::format(
+      "  {0} index 'draws' using ($1*sx):($2*sy) with points pointtype 7 pointsize 0.18 linecolor rgb '{1}' "
+      "title 'draws', \\\n"
+      "  {0} index 'prior' using ($1*sx):($2*sy) with lines dashtype 3 linewidth 1.2 linecolor rgb '{2}' "
+      "{4}, \\\n"
+      "  {0} index 'mode' using ($1*sx):($2*sy) with points pointtype 2 pointsize 1.1 linewidth 2 linecolor rgb '{3}' "
+      "title 'mode'",
+      source, plot::blue, plot::grey, plot::ink, range_title);
+}
+
+/// The equivalent points with their numbers.
+std::string equivalent_script(const std::string& source) {
+  return fmt::format(
+      ", \\\n  {0} index 'equivalent' using ($1*sx):($2*sy) with linespoints pointtype 13 pointsize 1.1 linewidth "
+      "1.2 "
+      "dashtype 2 linecolor rgb '{1}' title 'equivalent points', \\\n"
+      "  {0} index 'equivalent' using ($1*sx):($2*sy):(sprintf('%d', $3)) with labels offset 1.0,0.7 textcolor rgb "
+      "'{2}' notitle",
+      source, plot::vermillion, plot::ink);
+}
+
 }  // namespace
 
 bool are_traded(const CaseReport& result, std::pair<std::size_t, std::size_t> pair) {
@@ -93,30 +154,12 @@ Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t
                     const std::string& stem) {
   const ParameterReport& a = result.parameters[pair.first];
   const ParameterReport& b = result.parameters[pair.second];
-  std::vector<double> x, y;
-  Extent across, up;
-  for (const auto& draw : result.draws_for_plot) {
-    if (draw.size() <= std::max(pair.first, pair.second)) continue;
-    if (!std::isfinite(draw[pair.first]) || !std::isfinite(draw[pair.second])) continue;
-    x.push_back(draw[pair.first]);
-    y.push_back(draw[pair.second]);
-    across.include(x.back());
-    up.include(y.back());
-  }
-  const Extent x_view = limits(across, a), y_view = limits(up, b);
-  const auto [x_low, x_high] = support(across, a);
-  const auto [y_low, y_high] = support(up, b);
+  const PairDraws draws = draws_of(result, pair);
+  const Extent x_view = limits(draws.across, a), y_view = limits(draws.up, b);
+  const auto [x_low, x_high] = support(draws.across, a);
+  const auto [y_low, y_high] = support(draws.up, b);
   const PlotBox box{.x_low = x_low, .x_high = x_high, .y_low = y_low, .y_high = y_high};
-  const DensityGrid grid = joint_density(x, y, box);
-
-  // Thinned evenly: the order of the draws does not matter to the eye.
-  std::vector<double> x_shown, y_shown;
-  const std::size_t points_drawn = size == FigureSize::wide ? points_drawn_wide : points_drawn_wide / 2;
-  const double step = std::max(1.0, static_cast<double>(x.size()) / static_cast<double>(points_drawn));
-  for (double at = 0.0; at < static_cast<double>(x.size()); at += step) {
-    x_shown.push_back(x[static_cast<std::size_t>(at)]);
-    y_shown.push_back(y[static_cast<std::size_t>(at)]);
-  }
+  const DensityGrid grid = joint_density(draws.x, draws.y, box);
   const auto equivalent = equivalent_columns(result, a, b);
   const Axis horizontal = plot::axis_for(a.name, a.unit, x_view.largest());
   const Axis vertical = plot::axis_for(b.name, b.unit, y_view.largest());
@@ -124,45 +167,24 @@ Figure joint_figure(const CaseReport& result, std::pair<std::size_t, std::size_t
   Figure figure{.stem = stem, .script = {}, .data = {}, .alt = {}};
   figure.width = size == FigureSize::wide ? 700 : 420;
   figure.height = size == FigureSize::wide ? 520 : 380;
-  figure.data = plot::block("draws", {x_shown, y_shown}) + plot::block("equivalent", equivalent) +
+  figure.data = plot::block("draws", thinned_evenly(
+                                         draws, size == FigureSize::wide ? points_drawn_wide : points_drawn_wide / 2)) +
+                plot::block("equivalent", equivalent) +
                 plot::block("prior", {{a.prior_low, a.prior_high, a.prior_high, a.prior_low, a.prior_low},
                                       {b.prior_low, b.prior_low, b.prior_high, b.prior_high, b.prior_low}}) +
                 plot::block("mode", {{a.map}, {b.map}});
-  std::string& script = figure.script;
-  script = plot::common_style() + plot::label('x', horizontal) + plot::label('y', vertical);
-  script += fmt::format("sx = {:.0e}\nsy = {:.0e}\n", horizontal.scale, vertical.scale);
-  if (!grid.density.empty()) {
+  if (!grid.density.empty())
     figure.data += region_block("region90", contour(grid, box, grid.level90)) +
                    region_block("region50", contour(grid, box, grid.level50));
-  }
-  script += "set clip two\n";
-  script += fmt::format("set xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}*sy:{:.10g}*sy]\nplot ", x_view.low,
-                        x_view.high, y_view.low, y_view.high);
+  figure.script = plot::common_style() + plot::label('x', horizontal) + plot::label('y', vertical) +
+                  fmt::format("sx = {:.0e}\nsy = {:.0e}\n", horizontal.scale, vertical.scale) + "set clip two\n" +
+                  fmt::format("set xrange [{:.10g}*sx:{:.10g}*sx]\nset yrange [{:.10g}*sy:{:.10g}*sy]\nplot ",
+                              x_view.low, x_view.high, y_view.low, y_view.high);
   const std::string source = fmt::format("'{}.dat'", stem);
-  if (!grid.density.empty()) {
-    script += fmt::format(
-        "{0} index 'region90' using ($1*sx):($2*sy) with filledcurves closed fillcolor rgb '{1}' title '90 %', \\\n"
-        "  {0} index 'region50' using ($1*sx):($2*sy) with filledcurves closed fillcolor rgb '{2}' title '50 %', \\\n",
-        source, plot::pale, "#8FC7EA");
-  }
-  script += fmt::format(
-      "  {0} index 'draws' using ($1*sx):($2*sy) with points pointtype 7 pointsize 0.18 linecolor rgb '{1}' "
-      "title 'draws', \\\n"
-      "  {0} index 'prior' using ($1*sx):($2*sy) with lines dashtype 3 linewidth 1.2 linecolor rgb '{2}' "
-      "{4}, \\\n"
-      "  {0} index 'mode' using ($1*sx):($2*sy) with points pointtype 2 pointsize 1.1 linewidth 2 linecolor rgb '{3}' "
-      "title 'mode'",
-      source, plot::blue, plot::grey, plot::ink,
-      shows_bound(x_view, a) || shows_bound(y_view, b) ? "title 'prior range'" : "notitle");
-  if (!equivalent.front().empty()) {
-    script += fmt::format(
-        ", \\\n  {0} index 'equivalent' using ($1*sx):($2*sy) with linespoints pointtype 13 pointsize 1.1 linewidth "
-        "1.2 "
-        "dashtype 2 linecolor rgb '{1}' title 'equivalent points', \\\n"
-        "  {0} index 'equivalent' using ($1*sx):($2*sy):(sprintf('%d', $3)) with labels offset 1.0,0.7 textcolor rgb "
-        "'{2}' notitle",
-        source, plot::vermillion, plot::ink);
-  }
+  if (!grid.density.empty()) figure.script += regions_script(source);
+  figure.script +=
+      draws_script(source, shows_bound(x_view, a) || shows_bound(y_view, b) ? "title 'prior range'" : "notitle");
+  if (!equivalent.front().empty()) figure.script += equivalent_script(source);
   figure.alt = fmt::format("joint posterior of {} and {} in case {}", a.name, b.name, result.name);
   return figure;
 }

@@ -2,7 +2,7 @@
 // A plan in words: the terminal's table and the part of the page about what to measure next.
 #include <string>
 
-#include "uq/findings/results.hpp"
+#include "uq/findings/plan_results.hpp"
 
 namespace uq {
 

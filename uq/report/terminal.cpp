@@ -109,12 +109,13 @@ std::string case_text(const CaseReport& result, int columns) {
                       format_with_error(mean, mode.sd.contains(name) ? mode.sd.at(name) : 0.0, "", Typography::ascii));
     text += fold("  together: ", fmt::format("{:.0f} %: {}", 100.0 * mode.weight, values), columns);
   }
-  for (const TradedPair& traded : result.traded) {
-    const std::string& known = traded.statement.empty() ? traded.combination : traded.statement;
-    // Said once: the finding has it, unless it is another's.
-    if (result.finding.find(known) != std::string::npos) continue;
-    text += fold("  known together: ", fmt::format("{} (correlation {:.3f})", known, traded.correlation), columns);
-  }
+  // The finding states every combination, and of a curve only that it is one.
+  for (const TradedPair& traded : result.traded)
+    if (traded.form == CombinationForm::curved)
+      text += fold("  known together: ",
+                   fmt::format("{} (correlation {:.3f})",
+                               traded.statement.empty() ? traded.combination : traded.statement, traded.correlation),
+                   columns);
   for (const ModelComparison& comparison : result.comparisons) text += fold("  ", comparison.sentence, columns);
   text += fold("  ", result.finding, columns);
   text += fold("  ", without_sentence(result), columns);

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "uq/findings/results.hpp"
+#include "uq/findings/case_results.hpp"
 
 namespace uq {
 

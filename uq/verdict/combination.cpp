@@ -79,7 +79,7 @@ Eigen::MatrixXd logs_of(const Eigen::MatrixXd& values, const Eigen::VectorXd& ra
   }
   if (kept.size() < 4 || kept.size() < static_cast<std::size_t>(values.rows()) * 9 / 10) return {};
   Eigen::MatrixXd logs(static_cast<Index>(kept.size()), values.cols());
-  for (std::size_t i = 0; i < kept.size(); ++i) logs.row(static_cast<Index>(i)) = values.row(kept[i]).array().log();
+  for (std::size_t i = 0; i < kept.size(); ++i) logs.row(i) = values.row(kept[i]).array().log();
   return logs;
 }
 

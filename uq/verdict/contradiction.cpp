@@ -72,7 +72,7 @@ std::optional<LoneReading> lone_reading(const data::Study& study, const CaseMode
   std::optional<LoneReading> found;
   for (std::size_t i = 0; i < from.size(); ++i) {
     Eigen::VectorXd variance = stated;
-    variance[static_cast<Eigen::Index>(i)] *= variance_of_others;
+    variance[i] *= variance_of_others;
     const CaseModel others = with_data(model, y, variance);
     const Maximum best = maximum_likelihood(others, starts);
     const int dof = static_cast<int>(from.size()) - 1 - fisher_spectrum(others, best.x).known_directions;

@@ -120,7 +120,7 @@ void add_structure(const CaseModel& model, const Profiles& all, std::vector<Para
   }
   for (const TradedPair& set : traded) {
     const auto member = [&](const ParameterEvidence& one) {
-      return std::find(set.parameters.begin(), set.parameters.end(), one.name) != set.parameters.end();
+      return std::find(set.parameters.begin(), set.parameters.end(), one.found.name) != set.parameters.end();
     };
     const bool some = std::any_of(evidence.begin(), evidence.end(),
                                   [&](const ParameterEvidence& one) { return member(one) && one.structural; });
@@ -134,39 +134,27 @@ void add_structure(const CaseModel& model, const Profiles& all, std::vector<Para
 
 /// The label of an unknown that a profile names, or nothing.
 std::string label_of(const CaseModel& model, const std::optional<int>& unknown) {
-  return unknown ? model.unknowns[static_cast<std::size_t>(*unknown)].label : std::string();
+  return unknown ? model.unknowns[*unknown].label : std::string();
 }
 
-/// The mode of the posterior; `likelihood`: log, of the guiding draws.
-Eigen::VectorXd mode_of(const CaseModel& model, const Eigen::MatrixXd& guiding, const Eigen::VectorXd& likelihood,
-                        const Eigen::VectorXd& best) {
-  Eigen::VectorXd level = likelihood;
-  for (Eigen::Index i = 0; i < guiding.rows(); ++i) level[i] += log_prior(model, guiding.row(i).transpose());
+/// The mode of the posterior.
+Eigen::VectorXd mode_of(const CaseModel& model, const Guides& guide, const Eigen::VectorXd& best) {
+  Eigen::VectorXd level = guide.log_likelihood;
+  for (Eigen::Index i = 0; i < level.size(); ++i) level[i] += log_prior(model, guide.draws.row(i).transpose());
   Eigen::Index top = 0;
   level.maxCoeff(&top);
   Eigen::MatrixXd starts(2, model.dimension());
-  starts << guiding.row(top), best.transpose();
+  starts << guide.draws.row(top), best.transpose();
   const Target target = posterior_target(std::make_shared<const CaseModel>(model));
   return maximise(target.log_density_gradient, {target.lower, target.upper}, starts).x;
 }
 
 /// The evidence about a parameter before its structure is asked for.
-ParameterEvidence evidence_of(const ParameterReport& report, const Profile& profile, const Unknown& unknown,
+ParameterEvidence evidence_of(ParameterReport report, const Profile& profile, const Unknown& unknown,
                               const Influence& influence, const VerdictThresholds& thresholds) {
-  ParameterEvidence one{.name = report.name,
-                        .unit = report.unit,
-                        .mean = report.mean,
-                        .sd = report.sd,
-                        .q95 = report.q95,
-                        .facts = facts_of(report, profile, unknown),
-                        .parts = report.intervals,
-                        .range_low = report.prior_low,
-                        .range_high = report.prior_high,
-                        .low_pinned_by = report.low_pinned_by,
-                        .high_pinned_by = report.high_pinned_by,
-                        .runs_end_low = report.runs_end_low,
-                        .runs_end_high = report.runs_end_high,
-                        .unknown_beyond = profile.low_unknown || profile.high_unknown};
+  const WordFacts facts = facts_of(report, profile, unknown);
+  ParameterEvidence one{
+      .found = std::move(report), .facts = facts, .unknown_beyond = profile.low_unknown || profile.high_unknown};
   one.facts.influences = influence.some || limited(one.facts);
   one.faint = !influence.some && one.facts.contraction < thresholds.contraction_weak;
   one.hidden = influence.hidden;
@@ -174,12 +162,52 @@ ParameterEvidence evidence_of(const ParameterReport& report, const Profile& prof
   return one;
 }
 
-void take_verdict(ParameterReport& report, const ParameterVerdict& verdict) {
+/// What the draws, the profile and the influence of each own parameter say of it.
+std::vector<ParameterEvidence> evidence_of_each(const CaseModel& model, const Eigen::MatrixXd& draws,
+                                                const Guides& guide, const Profiles& all,
+                                                const IdentifyOptions& options) {
+  const Eigen::VectorXd mode = mode_of(model, guide, all.best.x);
+  const SurrogateShare surrogate = surrogate_share(model, guide.draws, guide.log_likelihood);
+  const std::vector<CommonShare> common = common_shares(model, guide.draws);
+  const bool unusable = !doubt_of(model).empty();
+  std::vector<ParameterEvidence> evidence;
+  for (std::size_t k = 0; k < all.profiles.size(); ++k) {
+    const Profile& profile = all.profiles[k];
+    const Unknown& unknown = model.unknowns[k];
+    ParameterReport report = describe_draws(unknown, draws.col(k), profile);
+    report.map = shown(unknown, mode[k]);
+    report.low_pinned_by = label_of(model, profile.low_pinned);
+    report.high_pinned_by = label_of(model, profile.high_pinned);
+    report.common = common[k];
+    ParameterEvidence one = evidence_of(std::move(report), profile, unknown, all.influence[k], options.thresholds);
+    one.conditional_on = label_of(model, profile.conditional_on);
+    if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
+    one.unusable = unusable;
+    one.surrogate_share = surrogate.shares[k];
+    evidence.push_back(std::move(one));
+  }
+  return evidence;
+}
+
+/// What holds for the case as a whole.
+Identification whole_case(const CaseModel& model, const Eigen::MatrixXd& draws, const Profiles& all) {
+  Identification found;
+  found.profiles = all.profiles;
+  found.influence = all.influence;
+  found.best_fit = all.best;
+  found.fisher = fisher_spectrum(model, all.best.x);
+  found.check = check_fit(model, draws, all.best.x);
+  found.surrogate_to_measurement = surrogate_to_measurement(model, all.best.x);
+  return found;
+}
+
+ParameterReport with_verdict(ParameterReport report, const ParameterVerdict& verdict) {
   report.verdict = verdict.verdict;
   report.reason = verdict.reason;
   report.borderline = verdict.borderline;
   report.sentence = verdict.sentence;
   report.shares = verdict.shares;
+  return report;
 }
 
 }  // namespace
@@ -188,48 +216,21 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
   const CaseModel& model = distinct_rows(full);
   const VerdictThresholds& thresholds = options.thresholds;
   const Eigen::MatrixXd guiding = thinned(draws, 1500);
-  const Eigen::VectorXd likelihood = log_likelihoods(model, guiding);
+  const Guides guide{.draws = guiding, .log_likelihood = log_likelihoods(model, guiding)};
   const Profiles all = profile_likelihood(
-      model, {.draws = guiding, .log_likelihood = likelihood},
-      {.even_points = options.even_points, .near_points = options.near_points, .thresholds = thresholds});
-
-  // The case as a whole.
-  Identification found;
-  found.profiles = all.profiles;
-  found.influence = all.influence;
-  found.best_fit = all.best;
-  found.fisher = fisher_spectrum(model, all.best.x);
-  found.check = check_fit(model, draws, all.best.x);
-  found.surrogate_to_measurement = surrogate_to_measurement(model, all.best.x);
+      model, guide, {.even_points = options.even_points, .near_points = options.near_points, .thresholds = thresholds});
+  Identification found = whole_case(model, draws, all);
   const FitEvidence fit{.predictive_p = found.check.predictive_p, .best_fit_p = found.check.best_fit_p};
   found.fits = fit.fits(thresholds);
 
   // Each parameter by itself.
-  const Eigen::VectorXd mode = mode_of(model, guiding, likelihood, all.best.x);
-  const SurrogateShare surrogate = surrogate_share(model, guiding, likelihood);
-  const std::vector<CommonShare> common = common_shares(model, guiding);
-  std::vector<ParameterEvidence> evidence;
+  std::vector<ParameterEvidence> evidence = evidence_of_each(model, draws, guide, all, options);
   std::vector<FoundFacts> facts;
   std::vector<Verdict> words;
-  for (std::size_t k = 0; k < all.profiles.size(); ++k) {
-    const Profile& profile = all.profiles[k];
-    const Unknown& unknown = model.unknowns[k];
-    ParameterReport report = describe_draws(unknown, draws.col(static_cast<Eigen::Index>(k)), profile);
-    report.map = shown(unknown, mode[k]);
-    report.low_pinned_by = label_of(model, profile.low_pinned);
-    report.high_pinned_by = label_of(model, profile.high_pinned);
-    report.common = common[k];
-    ParameterEvidence one = evidence_of(report, profile, unknown, all.influence[k], thresholds);
-    one.conditional_on = label_of(model, profile.conditional_on);
-    if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
-    one.unusable = !doubt_of(model).empty();
-    one.surrogate_share = surrogate.shares[k];
-    one.common = common[k];
-    words.push_back(word_of(one.facts, thresholds));
-    facts.push_back({one.facts, &found.profiles[k]});
-    found.facts.push_back(one.facts);
-    evidence.push_back(std::move(one));
-    found.parameters.push_back(std::move(report));
+  for (std::size_t k = 0; k < evidence.size(); ++k) {
+    found.facts.push_back(evidence[k].facts);
+    facts.push_back({evidence[k].facts, &found.profiles[k]});
+    words.push_back(word_of(evidence[k].facts, thresholds));
   }
 
   // What several do together, and how sure the words are.
@@ -243,8 +244,9 @@ Identification identify(const CaseModel& full, const Eigen::MatrixXd& draws, con
   }
 
   for (std::size_t k = 0; k < evidence.size(); ++k) {
-    take_verdict(found.parameters[k], judge(evidence[k], fit, repeats[k], thresholds));
-    found.parameters[k].word_probabilities = repeats[k];
+    const ParameterVerdict verdict = judge(evidence[k], fit, repeats[k], thresholds);
+    found.parameters.push_back(with_verdict(std::move(evidence[k].found), verdict));
+    found.parameters[k].word_probabilities = std::move(repeats[k]);
   }
   return found;
 }

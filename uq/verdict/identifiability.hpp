@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "uq/findings/results.hpp"
+#include "uq/findings/case_results.hpp"
 #include "uq/infer/draws.hpp"
 #include "uq/infer/optimise.hpp"
 #include "uq/posterior/case_model.hpp"

@@ -38,6 +38,84 @@ bool acts_on_emulators(const CaseModel& model, int unknown) {
                      [&](const RowGroup& group) { return (group.unknown.array() == unknown).any(); });
 }
 
+/// What an unknown changes over its range, and what of that the surrogate leaves in doubt: sums over rows, levels of the
+/// unknown and the points about which it moves, in squares of the data's errors.
+class Effects {
+ public:
+  /// Counts the rows of a group in. `at`: their predictions, level below level.
+  void add(const surrogate::Prediction& at, const Yardstick::Group& looked) {
+    const auto n = static_cast<Eigen::Index>(looked.rows.size());
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double w = looked.weight[i] * looked.weight[i] * looked.stands_for;
+      double mean = 0.0, own = 0.0, shared = 0.0;
+      for (Eigen::Index t = 0; t < levels; ++t) {
+        mean += at.mean[t * n + i] / static_cast<double>(levels);
+        own += at.covariance(t * n + i, t * n + i);
+        for (Eigen::Index s = 0; s < levels; ++s) shared += at.covariance(t * n + i, s * n + i);
+      }
+      doubt_ += w * std::max(own - shared / static_cast<double>(levels), 0.0);
+      const Eigen::Index last = (levels - 1) * n + i;
+      ends_effect_ += w * std::pow(at.mean[last] - at.mean[i], 2);
+      ends_doubt_ += w * std::max(at.covariance(i, i) + at.covariance(last, last) - 2.0 * at.covariance(i, last), 0.0);
+      for (Eigen::Index t = 0; t < levels; ++t) {
+        const double d = at.mean[t * n + i] - mean;
+        effect_ += w * d * d;
+        moved_[t] += w * std::pow(at.mean[t * n + i] - at.mean[i], 2);
+      }
+    }
+  }
+  /// Ends the sums about one point.
+  void end_point() {
+    deviance_ = std::max(deviance_, *std::max_element(moved_.begin(), moved_.end()));
+    moved_ = {};
+    ++points_;
+  }
+  Influence judged(const VerdictThresholds& thresholds) const {
+    Influence influence{.deviance = deviance_, .doubt = doubt_ / static_cast<double>(points_ * shares.size())};
+    // Runs at a few levels may leave all between these in doubt, and yet tell the ends of the range apart.
+    const double least = thresholds.told_apart_sd * thresholds.told_apart_sd;
+    influence.shown = effect_ > least * doubt_ || ends_effect_ > least * ends_doubt_;
+    influence.some = influence.shown && influence.deviance >= thresholds.silent_deviance;
+    const double lowered = influence.deviance * thresholds.errors_lowered * thresholds.errors_lowered;
+    influence.hidden = influence.shown && !influence.some && lowered >= thresholds.profile_drop;
+    return influence;
+  }
+
+ private:
+  static constexpr auto levels = static_cast<Eigen::Index>(shares.size());
+  double effect_ = 0.0, doubt_ = 0.0;             // about the mean of the levels
+  double ends_effect_ = 0.0, ends_doubt_ = 0.0;   // between the ends of the range
+  double deviance_ = 0.0;                         // largest of the points
+  std::array<double, shares.size()> moved_ = {};  // of each level beside the first, about the current point
+  std::size_t points_ = 0;
+};
+
+/// The effects of an unknown that acts on emulators, moved through its range about each of the points.
+Effects effects_of(const CaseModel& model, const Yardstick& yardstick, const std::vector<Eigen::VectorXd>& bases,
+                   int k) {
+  constexpr auto levels = static_cast<Eigen::Index>(shares.size());
+  const RunsReach reach = runs_reach(model, k);  // beyond it the doubt would hide what the runs show
+  Effects effects;
+  for (const Eigen::VectorXd& base : bases) {
+    for (std::size_t g = 0; g < model.groups.size(); ++g) {
+      const RowGroup& group = model.groups[g];
+      const Yardstick::Group& looked = yardstick.groups[g];
+      const auto n = static_cast<Eigen::Index>(looked.rows.size());
+      if (n == 0 || !(group.unknown.array() == k).any()) continue;
+      // All levels of the unknown, one below the other: about their own mean, so that what they share drops out.
+      Eigen::MatrixXd points(levels * n, group.base.cols());
+      for (Eigen::Index t = 0; t < levels; ++t) {
+        Eigen::VectorXd u = base;
+        u[k] = reach.low + shares[t] * (reach.high - reach.low);
+        points.middleRows(t * n, n) = inputs_at(group, looked, u);
+      }
+      effects.add(group.emulator.predict(points), looked);
+    }
+    effects.end_point();
+  }
+  return effects;
+}
+
 }  // namespace
 
 Yardstick make_yardstick(const CaseModel& model, const Eigen::VectorXd& best) {
@@ -105,66 +183,17 @@ double DistanceFrom::operator()(const Eigen::VectorXd& u) const {
 std::vector<Influence> find_influence(const CaseModel& model, const Eigen::VectorXd& best, const Eigen::MatrixXd& draws,
                                       const VerdictThresholds& thresholds) {
   const Yardstick yardstick = make_yardstick(model, best);
-  const auto levels = static_cast<Eigen::Index>(shares.size());
   std::vector<Eigen::VectorXd> bases = {best};
   const Eigen::Index count = std::min(points_beside_best, draws.rows());
   for (Eigen::Index i = 0; i < count; ++i)
     bases.emplace_back(draws.row((2 * i + 1) * draws.rows() / (2 * count)).transpose());
 
-  std::vector<Influence> found(static_cast<std::size_t>(model.dimension()));
+  std::vector<Influence> found;
   for (int k = 0; k < model.dimension(); ++k) {
-    Influence& influence = found[k];
-    if (!acts_on_emulators(model, k)) {
-      // A nuisance of the meter acts without the surrogate; a parameter that no emulator sees does nothing.
-      influence.some = influence.shown = model.unknowns[k].nuisance.has_value();
-      continue;
-    }
-    const RunsReach reach = runs_reach(model, k);  // beyond it the doubt would hide what the runs show
-    double effect = 0.0, doubt = 0.0, ends_effect = 0.0, ends_doubt = 0.0;
-    for (const Eigen::VectorXd& base : bases) {
-      std::array<double, shares.size()> moved = {};
-      for (std::size_t g = 0; g < model.groups.size(); ++g) {
-        const RowGroup& group = model.groups[g];
-        const Yardstick::Group& looked = yardstick.groups[g];
-        const auto n = static_cast<Eigen::Index>(looked.rows.size());
-        if (n == 0 || !(group.unknown.array() == k).any()) continue;
-        // All levels of the unknown, one below the other: about their own mean, so that what they share drops out.
-        Eigen::MatrixXd points(levels * n, group.base.cols());
-        for (Eigen::Index t = 0; t < levels; ++t) {
-          Eigen::VectorXd u = base;
-          u[k] = reach.low + shares[t] * (reach.high - reach.low);
-          points.middleRows(t * n, n) = inputs_at(group, looked, u);
-        }
-        const surrogate::Prediction at = group.emulator.predict(points);
-        for (Eigen::Index i = 0; i < n; ++i) {
-          const double w = looked.weight[i] * looked.weight[i] * looked.stands_for;
-          double mean = 0.0, own = 0.0, shared = 0.0;
-          for (Eigen::Index t = 0; t < levels; ++t) {
-            mean += at.mean[t * n + i] / static_cast<double>(levels);
-            own += at.covariance(t * n + i, t * n + i);
-            for (Eigen::Index s = 0; s < levels; ++s) shared += at.covariance(t * n + i, s * n + i);
-          }
-          doubt += w * std::max(own - shared / static_cast<double>(levels), 0.0);
-          const Eigen::Index last = (levels - 1) * n + i;
-          ends_effect += w * std::pow(at.mean[last] - at.mean[i], 2);
-          ends_doubt +=
-              w * std::max(at.covariance(i, i) + at.covariance(last, last) - 2.0 * at.covariance(i, last), 0.0);
-          for (Eigen::Index t = 0; t < levels; ++t) {
-            const double d = at.mean[t * n + i] - mean;
-            effect += w * d * d;
-            moved[t] += w * std::pow(at.mean[t * n + i] - at.mean[i], 2);
-          }
-        }
-      }
-      influence.deviance = std::max(influence.deviance, *std::max_element(moved.begin(), moved.end()));
-    }
-    influence.doubt = doubt / static_cast<double>(bases.size() * shares.size());
-    // Runs at a few levels may leave all between these in doubt, and yet tell the ends of the range apart.
-    const double least = thresholds.told_apart_sd * thresholds.told_apart_sd;
-    influence.shown = effect > least * doubt || ends_effect > least * ends_doubt;
-    influence.some = influence.shown && influence.deviance >= thresholds.silent_deviance;
-    const double lowered = influence.deviance * thresholds.errors_lowered * thresholds.errors_lowered;
-    influence.hidden = influence.shown && !influence.some && lowered >= thresholds.profile_drop;
+    // A nuisance of the meter acts without the surrogate; a parameter that no emulator sees does nothing.
+    const bool meter = model.unknowns[k].nuisance.has_value();
+    found.push_back(acts_on_emulators(model, k) ? effects_of(model, yardstick, bases, k).judged(thresholds)
+                                                : Influence{.shown = meter, .some = meter});
   }
   return found;
 }

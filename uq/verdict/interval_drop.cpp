@@ -17,8 +17,7 @@ Eigen::MatrixXd with_spreads_of(const CaseModel& model, const Eigen::VectorXd& b
   const Eigen::MatrixXd used = thinned(draws, count);
   Eigen::MatrixXd points = best.transpose().replicate(used.rows() + 1, 1);
   for (std::size_t s = 0; s < model.unknowns.size(); ++s)
-    if (model.unknowns[s].only_widens())
-      points.col(static_cast<Eigen::Index>(s)).head(used.rows()) = used.col(static_cast<Eigen::Index>(s));
+    if (model.unknowns[s].only_widens()) points.col(s).head(used.rows()) = used.col(s);
   return points;
 }
 
@@ -31,7 +30,7 @@ Eigen::VectorXd precisions(const CaseModel& model) {
     const Unknown& unknown = model.unknowns[s];
     const double of_prior = std::pow(unknown.prior.sd(), -2);
     const bool known = unknown.nuisance && !unknown.only_widens();
-    found[static_cast<Eigen::Index>(s)] = unknown.cut ? std::pow(unknown.cut->sd, -2) : (known ? 1.0 : weak) * of_prior;
+    found[s] = unknown.cut ? std::pow(unknown.cut->sd, -2) : (known ? 1.0 : weak) * of_prior;
   }
   return found;
 }
@@ -40,7 +39,7 @@ Eigen::VectorXd precisions(const CaseModel& model) {
 Eigen::MatrixXd variances(const CaseModel& model, const Eigen::VectorXd& best, const Eigen::MatrixXd& points) {
   Eigen::MatrixXd slopes = sensitivity(model, best);
   for (std::size_t s = 0; s < model.unknowns.size(); ++s)
-    if (model.unknowns[s].only_widens()) slopes.col(static_cast<Eigen::Index>(s)).setZero();
+    if (model.unknowns[s].only_widens()) slopes.col(s).setZero();
   const Eigen::VectorXd known = precisions(model);
   Eigen::MatrixXd found(points.rows(), model.dimension());
   for_each_law(model, points, [&](Eigen::Index point, const std::vector<GroupLaw>& laws) {

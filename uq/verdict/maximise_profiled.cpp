@@ -50,7 +50,7 @@ void climb_on(const CaseModel& model, const Box& box, const std::vector<Held>& h
       const Eigen::VectorXd move = damped.ldlt().solve(slope);
       if (!move.allFinite() || 0.5 * slope.dot(move) < least_gain) return;
       Eigen::VectorXd x = at.x;
-      for (std::size_t i = 0; i < free.size(); ++i) x[free[i]] += move[static_cast<Eigen::Index>(i)];
+      for (std::size_t i = 0; i < free.size(); ++i) x[free[i]] += move[i];
       x = x.cwiseMax(box.lower).cwiseMin(box.upper);
       for (const Held& one : held) x[one.coordinate] = one.value;
       const double value = log_likelihood(model, x) + log_certificates(model, x).value;

@@ -89,7 +89,7 @@ Parting most_parting(const CaseModel& full, const Mode& a, const Mode& b) {
         RowGroup moved = group;
         for (int t = 0; t < settings; ++t) {
           const double setting = t / (settings - 1.0);
-          moved.base(row, static_cast<Eigen::Index>(k)) = setting;
+          moved.base(row, k) = setting;
           const Reading first = reading_given_others(model, moved, row, a.point),
                         second = reading_given_others(model, moved, row, b.point);
           const double errors =

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "data/study.hpp"
-#include "uq/findings/results.hpp"
+#include "uq/findings/thresholds.hpp"
 #include "uq/verdict/profile.hpp"
 
 namespace uq {

@@ -28,7 +28,7 @@ LeftOut left_out(const CaseModel& model, const Eigen::VectorXd& u) {
     const Unknown& unknown = model.unknowns[s];
     if (unknown.only_widens()) continue;
     const double sd = unknown.cut ? unknown.cut->sd : unknown.prior.sd() * (unknown.nuisance ? 1.0 : nearly_free);
-    const Eigen::VectorXd moved = sd * slopes.col(static_cast<Eigen::Index>(s));
+    const Eigen::VectorXd moved = sd * slopes.col(s);
     covariance += moved * moved.transpose();
   }
   const Eigen::Index rows = covariance.rows();
@@ -81,7 +81,7 @@ std::optional<OutlyingReading> outlying_reading(const CaseModel& model, const Ei
   const double t = std::abs(read - observed(others)[farthest]) / found.sd[farthest] * std::sqrt(dof / count);
   const double chance = std::min(1.0, count * 2.0 * gsl_cdf_tdist_Q(t, dof));
   if (chance >= thresholds.outlying_chance) return {};
-  return OutlyingReading{.origin = origins(model)[static_cast<std::size_t>(farthest)],
+  return OutlyingReading{.origin = origins(model)[farthest],
                          .errors = t,
                          .chance = chance,
                          .widening = own_sd(model, best, farthest) / own_sd(model, at, farthest)};

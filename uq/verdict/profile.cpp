@@ -109,7 +109,7 @@ Eigen::MatrixXd spread_starts(const CaseModel& model, const Box& box, const Guid
     chosen.push_back(u);
   }
   Eigen::MatrixXd starts(static_cast<Eigen::Index>(chosen.size()), width.size());
-  for (std::size_t i = 0; i < chosen.size(); ++i) starts.row(static_cast<Eigen::Index>(i)) = chosen[i].transpose();
+  for (std::size_t i = 0; i < chosen.size(); ++i) starts.row(i) = chosen[i].transpose();
   return starts;
 }
 

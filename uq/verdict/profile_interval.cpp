@@ -195,7 +195,7 @@ bool is_minor_value(const CaseModel& model, const Yardstick& yardstick, const Pr
 /// most to the peaks beside it: what is known of a value where it is the right one.
 std::vector<PointsInside> points_inside(const CaseModel& model, const Yardstick& yardstick, const Profile& profile,
                                         const Eigen::MatrixXd& draws, double least_mass) {
-  const ScaledPrior& prior = model.unknowns[static_cast<std::size_t>(profile.unknown)].prior;
+  const ScaledPrior& prior = model.unknowns[profile.unknown].prior;
   Eigen::VectorXd log_prior(profile.u.size());
   for (Eigen::Index i = 0; i < log_prior.size(); ++i) log_prior[i] = std::max(prior.log_density(profile.u[i]), -200.0);
   const std::vector<Hill> hills = find_hills(profile.u, profile.deviance, log_prior);

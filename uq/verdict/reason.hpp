@@ -9,12 +9,12 @@
 namespace uq {
 
 /// The reason for a word other than "identified" or "several values"; nothing for these two.
-std::optional<Reason> find_reason(const ParameterEvidence& parameter, Verdict verdict);
+std::optional<Reason> find_reason(const ParameterEvidence& evidence, Verdict verdict);
 
 /// The clause that ends a parameter's sentence: "; the measurement's noise hides it".
-std::string because(Reason reason, const ParameterEvidence& parameter);
+std::string because(Reason reason, const ParameterEvidence& evidence);
 
 /// The shares of the sources of a width, given the reason.
-WidthShares find_shares(const ParameterEvidence& parameter, std::optional<Reason> reason);
+WidthShares find_shares(const ParameterEvidence& evidence, std::optional<Reason> reason);
 
 }  // namespace uq

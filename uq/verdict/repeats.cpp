@@ -182,17 +182,17 @@ std::vector<bool> PathWords::minor_hills(const Eigen::VectorXd& deviance, double
   std::vector<bool> begins(points_.size(), false);
   Eigen::VectorXd u(deviance.size()), log_prior(deviance.size());
   for (Eigen::Index i = 0; i < u.size(); ++i) {
-    u[i] = points_[static_cast<std::size_t>(i)].u;
-    log_prior[i] = points_[static_cast<std::size_t>(i)].log_prior;
+    u[i] = points_[i].u;
+    log_prior[i] = points_[i].log_prior;
   }
   for (const Hill& hill : find_hills(u, deviance, log_prior)) {
     const double least = deviance[hill.best];
     if (least <= drop || hill.mass < least_mass) continue;
     const auto real = [&](Eigen::Index peak) {
       const bool end = peak == 0 || peak == u.size() - 1;
-      return end || std::sqrt(deviance[peak]) - std::sqrt(least) >= 2.0 * points_[static_cast<std::size_t>(peak)].doubt;
+      return end || std::sqrt(deviance[peak]) - std::sqrt(least) >= 2.0 * points_[peak].doubt;
     };
-    if (real(hill.first) && real(hill.last)) begins[static_cast<std::size_t>(hill.best)] = true;
+    if (real(hill.first) && real(hill.last)) begins[hill.best] = true;
   }
   return begins;
 }

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "uq/findings/results.hpp"
+#include "uq/findings/parameter_results.hpp"
 #include "uq/posterior/case_model.hpp"
 #include "uq/verdict/profile.hpp"
 #include "uq/verdict/verdict.hpp"

@@ -49,7 +49,7 @@ double strongest_correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b)
 
 Eigen::MatrixXd columns_of(const Eigen::MatrixXd& values, const Subset& subset) {
   Eigen::MatrixXd chosen(values.rows(), static_cast<Eigen::Index>(subset.size()));
-  for (std::size_t i = 0; i < subset.size(); ++i) chosen.col(static_cast<Eigen::Index>(i)) = values.col(subset[i]);
+  for (std::size_t i = 0; i < subset.size(); ++i) chosen.col(i) = values.col(subset[i]);
   return chosen;
 }
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "uq/findings/results.hpp"
+#include "uq/findings/case_results.hpp"
 #include "uq/findings/thresholds.hpp"
 #include "uq/posterior/case_model.hpp"
 #include "uq/verdict/profile.hpp"

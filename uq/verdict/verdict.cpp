@@ -18,13 +18,13 @@ std::string number(double value) { return fmt::format("{:.3g}", value); }
 std::string in_unit(const std::string& text, const std::string& unit) { return text + behind_number(unit); }
 
 /// A value to the digits that the parameter's error leaves.
-std::string rounded(double value, const ParameterEvidence& parameter) {
+std::string rounded(double value, const ParameterReport& parameter) {
   return format_value(value, rounding_of(value, parameter.sd), parameter.unit, Typography::ascii);
 }
 
-std::string interval(const ParameterEvidence& parameter) {
+std::string interval(const ParameterReport& parameter) {
   std::string text;
-  for (const ValueRange& part : parameter.parts) {
+  for (const ValueRange& part : parameter.intervals) {
     const double sd = part.sd > 0.0 ? part.sd : parameter.sd;
     text += (text.empty() ? "" : " and ") +
             format_interval(part.low, part.high, rounding_of(part.high, sd), parameter.unit, Typography::ascii);
@@ -32,9 +32,8 @@ std::string interval(const ParameterEvidence& parameter) {
   return text;
 }
 
-std::string left_variance(const ParameterEvidence& parameter) {
-  return fmt::format("{:.2g} % of the prior's variance is left",
-                     100.0 * std::max(1.0 - parameter.facts.contraction, 0.0));
+std::string left_variance(const WordFacts& facts) {
+  return fmt::format("{:.2g} % of the prior's variance is left", 100.0 * std::max(1.0 - facts.contraction, 0.0));
 }
 
 const char* count_word(std::size_t count) {
@@ -51,10 +50,11 @@ std::string other_word(Verdict verdict, const std::vector<WordProbability>& repe
   return {};
 }
 
-std::string open_sentence(const ParameterEvidence& parameter, Reason reason) {
-  const WordFacts& facts = parameter.facts;
+std::string open_sentence(const ParameterEvidence& evidence, Reason reason) {
+  const ParameterReport& parameter = evidence.found;
+  const WordFacts& facts = evidence.facts;
   const std::string range =
-      in_unit(number(parameter.range_low) + " and " + number(parameter.range_high), parameter.unit);
+      in_unit(number(parameter.prior_low) + " and " + number(parameter.prior_high), parameter.unit);
   if (reason == Reason::unsupported) {
     const auto& [low, high] = std::pair{parameter.runs_end_low, parameter.runs_end_high};
     const auto end = [&](double value) { return in_unit(number(value), parameter.unit); };
@@ -68,26 +68,26 @@ std::string open_sentence(const ParameterEvidence& parameter, Reason reason) {
     const bool pinned = !parameter.low_pinned_by.empty() || !parameter.high_pinned_by.empty();
     return fmt::format("{} is not identified: the data leave it open on both sides{}{}.", parameter.name,
                        pinned ? fmt::format(" (between {} only the ranges of other parameters limit it)", range) : "",
-                       because(reason, parameter));
+                       because(reason, evidence));
   }
-  const double end = facts.open_high ? parameter.parts.front().low : parameter.parts.back().high;
+  const double end = facts.open_high ? parameter.intervals.front().low : parameter.intervals.back().high;
   const std::string limit = (facts.open_high ? "at least " : "at most ") + rounded(end, parameter);
   const std::string& by = facts.open_high ? parameter.high_pinned_by : parameter.low_pinned_by;
   if (!by.empty())
     return fmt::format(
         "{} is not identified: {} (95 % profile), but on the other side only the end of the range of {} limits it{}.",
-        parameter.name, limit, by, because(reason, parameter));
+        parameter.name, limit, by, because(reason, evidence));
   return fmt::format(
       "{} is not identified: {} (95 % profile), but {} that every value up to the end of its range, {}, fits{}.",
       parameter.name, limit, facts.open_high ? "above" : "below",
-      in_unit(number(facts.open_high ? parameter.range_high : parameter.range_low), parameter.unit),
-      because(reason, parameter));
+      in_unit(number(facts.open_high ? parameter.prior_high : parameter.prior_low), parameter.unit),
+      because(reason, evidence));
 }
 
-std::string several_sentence(const ParameterEvidence& parameter) {
+std::string several_sentence(const ParameterReport& parameter) {
   std::string values;
-  for (std::size_t i = 0; i < parameter.parts.size(); ++i) {
-    const ValueRange& part = parameter.parts[i];
+  for (std::size_t i = 0; i < parameter.intervals.size(); ++i) {
+    const ValueRange& part = parameter.intervals[i];
     constexpr Typography ascii = Typography::ascii;
     values += fmt::format("{}{} ({}, {:.0f} % of the posterior)", i == 0 ? "" : "; ",
                           format_with_error(part.mean, part.sd, parameter.unit, ascii),
@@ -95,7 +95,7 @@ std::string several_sentence(const ParameterEvidence& parameter) {
                           100.0 * part.weight);
   }
   return fmt::format("{} has {} separate values that fit: {}; what lies between does not fit.", parameter.name,
-                     count_word(parameter.parts.size()), values);
+                     count_word(parameter.intervals.size()), values);
 }
 
 }  // namespace
@@ -166,13 +166,14 @@ std::vector<WordProbability> probabilities_of(const std::vector<Verdict>& drawn)
   return found;
 }
 
-ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fit,
+ParameterVerdict judge(const ParameterEvidence& evidence, const FitEvidence& fit,
                        const std::vector<WordProbability>& repeats, const VerdictThresholds& thresholds) {
+  const ParameterReport& parameter = evidence.found;
   ParameterVerdict found;
   const std::string value = format_with_error(parameter.mean, parameter.sd, parameter.unit, Typography::ascii);
-  if (!parameter.unsupported.empty() && (!parameter.unusable || fit.fits(thresholds))) {
+  if (!evidence.unsupported.empty() && (!evidence.unusable || fit.fits(thresholds))) {
     found.reason = Reason::unsupported;
-    found.sentence = fmt::format("{} is not identified: {}.", parameter.name, parameter.unsupported);
+    found.sentence = fmt::format("{} is not identified: {}.", parameter.name, evidence.unsupported);
     return found;
   }
   if (!fit.fits(thresholds)) {
@@ -184,38 +185,38 @@ ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fi
         parameter.name, fit.predictive_p, fit.best_fit_p, value);
     return found;
   }
-  const WordFacts& facts = parameter.facts;
+  const WordFacts& facts = evidence.facts;
   found.verdict = word_of(facts, thresholds);
   double other = 0.0;
   for (const WordProbability& word : repeats)
     if (word.verdict != found.verdict) other = std::max(other, word.probability);
   found.borderline = other >= thresholds.borderline_probability;
 
-  const std::optional<Reason> reason = find_reason(parameter, found.verdict);
+  const std::optional<Reason> reason = find_reason(evidence, found.verdict);
   found.reason = reason;
-  found.shares = find_shares(parameter, reason);
+  found.shares = find_shares(evidence, reason);
   if (reason == Reason::no_influence) {
-    found.sentence = fmt::format("{} is not identified{}.", parameter.name, because(*reason, parameter));
+    found.sentence = fmt::format("{} is not identified{}.", parameter.name, because(*reason, evidence));
   } else if (found.verdict == Verdict::several_values) {
     found.sentence = several_sentence(parameter);
   } else if (found.verdict == Verdict::identified) {
     found.sentence = fmt::format("{} is identified: {}; 95 % profile interval {}; {}.", parameter.name, value,
-                                 interval(parameter), left_variance(parameter));
+                                 interval(parameter), left_variance(facts));
   } else if (facts.closed() && found.verdict == Verdict::weakly_identified) {
     found.sentence =
         fmt::format("{} is weakly identified: {}; the interval {} is closed but wide; {}{}.", parameter.name, value,
-                    interval(parameter), left_variance(parameter), because(*reason, parameter));
+                    interval(parameter), left_variance(facts), because(*reason, evidence));
   } else if (facts.closed()) {
     found.sentence = fmt::format("{} is not identified: the interval {} is closed but {}{}.", parameter.name,
-                                 interval(parameter), left_variance(parameter), because(*reason, parameter));
+                                 interval(parameter), left_variance(facts), because(*reason, evidence));
   } else if (facts.open_low && !facts.open_high && facts.physical_low) {
     found.sentence = fmt::format(
         "{}: only an upper limit, {} at most (95 % profile; 95 % of the posterior lies below {}); it cannot be told "
         "from {}, its physical bound{}.",
-        parameter.name, rounded(parameter.parts.back().high, parameter), rounded(parameter.q95, parameter),
-        number(parameter.range_low), *reason == Reason::bound ? "" : because(*reason, parameter));
+        parameter.name, rounded(parameter.intervals.back().high, parameter), rounded(parameter.q95, parameter),
+        number(parameter.prior_low), *reason == Reason::bound ? "" : because(*reason, evidence));
   } else {
-    found.sentence = open_sentence(parameter, *reason);
+    found.sentence = open_sentence(evidence, *reason);
   }
   if (found.borderline) found.sentence += other_word(found.verdict, repeats);
   return found;

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "uq/findings/results.hpp"
+#include "uq/findings/parameter_results.hpp"
 #include "uq/findings/thresholds.hpp"
 
 namespace uq {
@@ -40,26 +40,19 @@ struct WordFacts {
 };
 Verdict word_of(const WordFacts& facts, const VerdictThresholds& thresholds);
 
-/// The evidence about one parameter; values in the study's unit.
+/// The evidence about one parameter.
 struct ParameterEvidence {
-  std::string name, unit;
-  double mean = 0.0, sd = 0.0, q95 = 0.0;
-  WordFacts facts;
-  std::vector<ValueRange> parts;
-  double range_low = 0.0, range_high = 0.0;           ///< the support
-  std::string low_pinned_by, high_pinned_by;          ///< another parameter whose range ends an open side; may be empty
-  std::optional<double> runs_end_low, runs_end_high;  ///< where the runs end on an open side, short of the range
-  bool structural = false;                            ///< a better measurement of the same kind would not close it
-  std::string unsupported =
-      {};                 ///< why the runs cannot carry a verdict, a clause; empty: they can (uq/posterior/support.hpp)
-  bool unusable = false;  ///< the runs say too little anywhere: then a misfit is the stronger finding
+  ParameterReport found;  ///< what its draws and its profile say; the fields of the verdict are not filled yet
+  WordFacts facts = {};
+  bool structural = false;          ///< a better measurement of the same kind would not close it
+  std::string unsupported = {};     ///< why the runs cannot carry a verdict, a clause; empty: they can (support.hpp)
+  bool unusable = false;            ///< the runs say too little anywhere: then a misfit is the stronger finding
   std::string conditional_on = {};  ///< another parameter whose range's end decides the value; may be empty
   bool undecided = false;           ///< the surrogate is not sharp enough to tell
   bool traded = false;              ///< the parameter is known only in a combination with others
   bool unknown_beyond = false;      ///< open since the surrogate knows too little beyond an end
   bool faint = false;               ///< a part of its range is excluded, though the surrogate shows no effect of it
   double surrogate_share = 0.0;     ///< the surrogate's share of the variance, where two values are compared
-  CommonShare common = {};          ///< part of the width held by errors that repeated readings share
   bool hidden = false;              ///< without influence only since the data's errors are large
   double silent_sds = 0.0;  ///< of the data's errors: what the surrogate's own error leaves room for, without influence
 };
@@ -84,7 +77,7 @@ struct ParameterVerdict {
 std::vector<WordProbability> probabilities_of(const std::vector<Verdict>& drawn);
 
 /// The verdict on one parameter. `repeats`: the words' probabilities, or none.
-ParameterVerdict judge(const ParameterEvidence& parameter, const FitEvidence& fit,
+ParameterVerdict judge(const ParameterEvidence& evidence, const FitEvidence& fit,
                        const std::vector<WordProbability>& repeats, const VerdictThresholds& thresholds);
 
 }  // namespace uq

@@ -2,14 +2,11 @@
 // demcal.
 #include "uq/calibrate/calibrate.hpp"
 
-#include <netcdf.h>
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "data/csv.hpp"
 #include "data/error.hpp"
-#include "tests/temporary.hpp"
 #include "uq/calibrate/posterior_nc.hpp"
 #include "uq/infer/diagnostics.hpp"
 #include "uq/posterior/prior.hpp"
@@ -66,32 +63,6 @@ TEST_CASE("the study on another code's runs is calibrated: both parameters cover
   CHECK(powder.predictive.size() == 6);
   REQUIRE(powder.curves.size() == 1);
   CHECK(powder.curves[0].x.front() >= 50.0);
-
-  // The draws as netCDF: dimensions, values and what ArviZ looks for.
-  const TemporaryFolder folder;
-  const std::string path = folder.path("posterior.nc");
-  write_posterior(path, input.study, found.cases[0], 7);
-  int file = -1, group = -1, variable = -1, dimensions[3] = {};
-  REQUIRE(nc_open(path.c_str(), NC_NOWRITE, &file) == NC_NOERR);
-  for (const char* name :
-       {"posterior", "sample_stats", "posterior_predictive", "observed_data", "log_likelihood", "constant_data"})
-    CHECK(nc_inq_ncid(file, name, &group) == NC_NOERR);
-  REQUIRE(nc_inq_ncid(file, "posterior", &group) == NC_NOERR);
-  REQUIRE(nc_inq_varid(group, "friction", &variable) == NC_NOERR);
-  REQUIRE(nc_inq_vardimid(group, variable, dimensions) == NC_NOERR);
-  char name[NC_MAX_NAME + 1] = {};
-  std::size_t chains = 0, draws = 0;
-  nc_inq_dim(group, dimensions[0], name, &chains);
-  CHECK(std::string(name) == "chain");
-  nc_inq_dim(group, dimensions[1], name, &draws);
-  CHECK(std::string(name) == "draw");
-  std::vector<double> values(chains * draws);
-  REQUIRE(nc_get_var_double(group, variable, values.data()) == NC_NOERR);
-  CHECK(Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())).mean() ==
-        Approx(powder.parameters[0].mean).epsilon(1e-9));
-  REQUIRE(nc_inq_ncid(file, "log_likelihood", &group) == NC_NOERR);
-  CHECK(nc_inq_varid(group, "bench_torque", &variable) == NC_NOERR);
-  nc_close(file);
 }
 
 TEST_CASE("a calibration is the same for any number of threads", "[uq][slow]") {
@@ -307,7 +278,7 @@ TEST_CASE("the Bayes factor of a parameter held is that of the density ratio of 
     const Calibration found = calibrate_all(input.study, input.table, {.error_scan = {}, .quadrature = false});
     const SampledCase& sampled = found.cases[0];
     int column = 0;
-    while (sampled.model->unknowns[static_cast<std::size_t>(column)].label != "cohesion") ++column;
+    while (sampled.model->unknowns[column].label != "cohesion") ++column;
     const Eigen::MatrixXd draws = sampled.draws.coordinate(column);
     constexpr double half = 0.03;
     const double inside = static_cast<double>(((draws.array() - u).abs() < half).count());

@@ -390,7 +390,7 @@ TEST_CASE("standard errors in percent are suspected from the scatter, and as sha
     for (const auto& curve : curves) {
       for (const double share : {0.01, 0.02}) {
         for (int i = 0; i < 6; ++i) {
-          Row& row = files.bench[static_cast<std::size_t>(i)];
+          Row& row = files.bench[i];
           row.torque = curve(row.speed / 150.0) * (1.0 + share * scatter[i]);
           row.error = share * row.torque;
         }
@@ -401,7 +401,7 @@ TEST_CASE("standard errors in percent are suspected from the scatter, and as sha
   }
   SECTION("honest errors of ten percent") {
     for (int i = 0; i < 6; ++i) {
-      Row& row = files.bench[static_cast<std::size_t>(i)];
+      Row& row = files.bench[i];
       row.torque *= (1.0 + 0.1 * scatter[i]) / (1.0 + 0.02 * scatter[i]);
       row.error = 0.1 * row.torque;
     }

@@ -51,7 +51,7 @@ CaseModel case_of_run(const data::Study& study, const std::vector<FittedSurrogat
     group.variance.array() += hyper.nugget_sd * hyper.nugget_sd;  // another seed would scatter so much more
     int unknown = 0;
     for (std::size_t k = 0; k < inputs.size(); ++k)
-      if (inputs[k].kind == InputKind::parameter) group.unknown(0, static_cast<Eigen::Index>(k)) = unknown++;
+      if (inputs[k].kind == InputKind::parameter) group.unknown(0, k) = unknown++;
     find_coordinates(group, model.dimension());
     model.groups.push_back(std::move(group));
   }
@@ -84,7 +84,7 @@ TEST_CASE("runs left out of the surrogates, as data, have their own parameters i
         if (fitted.front().rows.inputs[k].kind != InputKind::parameter) continue;
         const double truth = fitted.front().rows.set.x(static_cast<Eigen::Index>(run), static_cast<Eigen::Index>(k));
         const Eigen::VectorXd u = all.col(unknown);
-        Count& count = counts[model->unknowns[static_cast<std::size_t>(unknown)].label];
+        Count& count = counts[model->unknowns[unknown].label];
         ++count.of;
         if (quantile(u, 0.05) <= truth && truth <= quantile(u, 0.95)) ++count.inside;
         ++unknown;

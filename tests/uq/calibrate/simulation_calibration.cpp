@@ -70,10 +70,10 @@ TEST_CASE("uniform ranks stay inside the simultaneous bands as often as stated, 
   CHECK(inside / static_cast<double>(sets) == Approx(0.95).margin(0.025));
   std::vector<int> shifted(200), narrow(200);
   for (int i = 0; i < 200; ++i) {
-    shifted[static_cast<std::size_t>(i)] = static_cast<int>(100.0 * std::pow((i + 0.5) / 200.0, 1.5));
+    shifted[i] = static_cast<int>(100.0 * std::pow((i + 0.5) / 200.0, 1.5));
     // A posterior 1.5 times too narrow: truths are too often in its tails.
     const double z = 1.5 * std::sqrt(2.0) * random.normal() / std::sqrt(2.0);
-    narrow[static_cast<std::size_t>(i)] = std::min(99, static_cast<int>(50.0 * std::erfc(-z / std::sqrt(2.0))));
+    narrow[i] = std::min(99, static_cast<int>(50.0 * std::erfc(-z / std::sqrt(2.0))));
   }
   CHECK_FALSE(uq::inside_bands(shifted, 99, bands));
   CHECK_FALSE(uq::inside_bands(narrow, 99, bands));

@@ -38,9 +38,9 @@ TEST_CASE("Sobol indices of the g-function are the closed ones") {
   const double all = (1.0 + v).prod();
   for (int k = 0; k < 4; ++k) {
     CAPTURE(k);
-    CHECK(found[static_cast<std::size_t>(k)].first == Approx(v[k] / (all - 1.0)).margin(1e-4));
-    CHECK(found[static_cast<std::size_t>(k)].total == Approx(v[k] * all / (1.0 + v[k]) / (all - 1.0)).margin(1e-4));
-    CHECK(found[static_cast<std::size_t>(k)].first_sd < 1e-3);
+    CHECK(found[k].first == Approx(v[k] / (all - 1.0)).margin(1e-4));
+    CHECK(found[k].total == Approx(v[k] * all / (1.0 + v[k]) / (all - 1.0)).margin(1e-4));
+    CHECK(found[k].first_sd < 1e-3);
   }
 }
 

@@ -24,25 +24,6 @@ Mixture knowing(const Eigen::VectorXd& centre, double sd) {
 
 }  // namespace
 
-TEST_CASE("a normal's Laplace mass and covariance are its own, whatever its tilt", "[uq]") {
-  Eigen::Matrix3d root;
-  root << 0.02, 0, 0, 0.019, 0.003, 0, -0.01, 0.001, 0.05;
-  const Eigen::Matrix3d covariance = root * root.transpose(), precision = covariance.inverse();
-  const Eigen::Vector3d centre(0.3, 0.6, 0.5);
-  struct Tilted {
-    Eigen::Matrix3d precision;
-    Eigen::Vector3d centre;
-    int dimension() const { return 3; }
-    double log_density(const Eigen::VectorXd& x) const { return -0.5 * (x - centre).dot(precision * (x - centre)); }
-  };
-  const Target target =
-      adversaries::on_box(Tilted{precision, centre}, Eigen::VectorXd::Zero(3), Eigen::VectorXd::Ones(3));
-  const Peak mode = laplace(target, centre, Eigen::VectorXd::Constant(3, 0.25));
-  CHECK((mode.covariance - covariance).norm() < 1e-6 * covariance.norm());
-  const double exact = 1.5 * std::log(2.0 * std::numbers::pi) + root.diagonal().array().log().sum();
-  CHECK(mode.log_mass == Approx(exact).margin(1e-6));
-}
-
 TEST_CASE("a climb ends on the maximum of the basin that it began in", "[uq]") {
   const adversaries::Adversary two = adversaries::narrow_and_wide(3);
   const Knowledge nothing{.mixtures = {knowing(Eigen::VectorXd::Constant(3, 0.95), 1e-3)}, .log_levels = {-1e9}};

@@ -77,7 +77,7 @@ void check_moments(const uq::SampledCase& sampled, const std::string& label, con
   const auto k = std::find(names.begin(), names.end(), label) - names.begin();
   REQUIRE(k < sampled.model->dimension());
   Eigen::MatrixXd values = sampled.draws.coordinate(static_cast<int>(k));
-  for (double& value : values.reshaped()) value = sampled.model->unknowns[static_cast<std::size_t>(k)].value(value);
+  for (double& value : values.reshaped()) value = sampled.model->unknowns[k].value(value);
   CHECK(std::abs(values.mean() - law.mean) < 4.0 * uq::mean_mcse(values));
   CHECK(std::sqrt((values.array() - values.mean()).square().mean()) == Approx(law.sd).epsilon(0.04));
 }

@@ -47,7 +47,7 @@ TEST_CASE("a discrepancy's band is the kriging of what the model leaves", "[uq]"
   u << 0.9, 0.5, 0.4, 0.3;
   double sd = 0.0, length = 0.0;
   for (Eigen::Index k = 0; k < 4; ++k) {
-    const Unknown& unknown = model.unknowns[static_cast<std::size_t>(k)];
+    const Unknown& unknown = model.unknowns[k];
     if (unknown.nuisance == data::NuisanceKind::discrepancy_sd) sd = unknown.value(u[k]);
     if (unknown.nuisance == data::NuisanceKind::discrepancy_length) length = unknown.value(u[k]);
   }

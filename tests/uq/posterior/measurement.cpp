@@ -79,7 +79,7 @@ void check_moments(const uq::CaseModel& model, const Exact& exact) {
   REQUIRE(draws.converged);
   for (int k = 0; k < 2; ++k) {
     Eigen::MatrixXd values = draws.coordinate(k);
-    for (double& value : values.reshaped()) value = model.unknowns[static_cast<std::size_t>(k)].value(value);
+    for (double& value : values.reshaped()) value = model.unknowns[k].value(value);
     const double sd = std::sqrt(exact.covariance(k, k));
     CHECK(std::abs(values.mean() - exact.mean[k]) < 4.0 * uq::mean_mcse(values));
     CHECK(std::sqrt((values.array() - values.mean()).square().mean()) == Approx(sd).epsilon(0.03));

@@ -39,7 +39,7 @@ uq::CaseModel linear_gaussian() {
   Eigen::VectorXd x(6), data(6);
   for (int i = 0; i < 6; ++i) {
     x[i] = fact["X"][i][1];
-    data[i] = y[static_cast<std::size_t>(i)];
+    data[i] = y[i];
   }
   const std::vector<FreeParameter> unknowns = {{"a", m0[0] - 12.0 * sd0, m0[0] + 12.0 * sd0, normal_prior(m0[0], sd0)},
                                                {"b", m0[1] - 12.0 * sd1, m0[1] + 12.0 * sd1, normal_prior(m0[1], sd1)}};
@@ -59,7 +59,7 @@ TEST_CASE("the linear-Gaussian posterior and its evidence are those of the close
   CHECK(exact.log_evidence == Approx(fact["log_evidence"].get<double>()).margin(2e-4));
   CHECK(std::abs(draws.log_evidence - fact["log_evidence"].get<double>()) < 4.0 * draws.log_evidence_error);
   for (int k = 0; k < 2; ++k) {
-    const data::Parameter& parameter = model->unknowns[static_cast<std::size_t>(k)].prior.parameter();
+    const data::Parameter& parameter = model->unknowns[k].prior.parameter();
     const double width = parameter.high - parameter.low;
     const double mean = fact["post_mean"][k], sd = std::sqrt(fact["post_cov"][k][k].get<double>());
     CHECK(parameter.axis().from_unit(exact.mean[k]) == Approx(mean).margin(1e-4 * sd));

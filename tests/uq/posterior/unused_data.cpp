@@ -56,7 +56,7 @@ MatrixXd posterior(const data::Study& study, double shared, int count) {
   double reached = 0.0;
   int next = 0;
   for (int i = 0; i < grid * grid; ++i) {
-    reached += weight[static_cast<std::size_t>(i)] / total;
+    reached += weight[i] / total;
     for (; next < count && (next + 0.5) / count <= reached + 1e-12; ++next)
       draws.row(next) << (i / grid + 0.5) / grid, (i % grid + 0.5) / grid;
   }

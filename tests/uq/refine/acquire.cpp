@@ -122,9 +122,8 @@ TEST_CASE("what a run is expected to take from the variance is the mean over its
       square_after += 0.05 * std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi) * p * p;
     }
     CAPTURE(c);
-    CHECK(reductions[static_cast<Index>(c)] * mean_square ==
-          Approx(square_after - square_before).epsilon(0.01).margin(1e-6));
-    CHECK(reductions[static_cast<Index>(c)] > 0.0);
+    CHECK(reductions[c] * mean_square == Approx(square_after - square_before).epsilon(0.01).margin(1e-6));
+    CHECK(reductions[c] > 0.0);
   }
 }
 
@@ -233,7 +232,7 @@ TEST_CASE("a batch goes where the posterior is open, and is the same again", "[a
   for (int world = 0; world < worlds; ++world) {
     surrogate::GaussianProcess told = process;
     for (int i = 0; i < 2; ++i) {
-      const uq::RunPoint& point = batch.runs[static_cast<std::size_t>(i)].point;
+      const uq::RunPoint& point = batch.runs[i].point;
       const VectorXd x = Eigen::Vector2d(point.parameters[0], point.controls[0]);
       const surrogate::Prediction at = told.predict(x.transpose());
       told =

@@ -46,3 +46,16 @@ TEST_CASE("names cannot steer the terminal") {
   report.cases[0].parameters[0].name = "b\x1b[2J";
   CHECK_FALSE(has(terminal_summary(report, {.report_file = "c\x1b"}), "\x1b"));
 }
+
+TEST_CASE("a combination is said once, by the finding, and of a curve the summary says what hangs together") {
+  CalibrationReport report = report_fixture::three_cases();
+  const std::string combination = "friction * hamaker^0.9";
+  CHECK(report_fixture::count(terminal_summary(report, {.columns = 1000}), combination) == 1);
+  for (CaseReport& result : report.cases)
+    for (TradedPair& traded : result.traded) {
+      traded.form = CombinationForm::curved;
+      traded.combination = traded.statement = "a curved relation of friction and hamaker";
+    }
+  CHECK(has(terminal_summary(report, {.columns = 1000}),
+            "known together: a curved relation of friction and hamaker (correlation -0.947)"));
+}

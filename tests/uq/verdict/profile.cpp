@@ -37,7 +37,7 @@ uq::Profiles profiles(const uq::CaseModel& model) {
 }
 
 double shown(const uq::CaseModel& model, const uq::Profile& profile, double u) {
-  return model.unknowns[static_cast<std::size_t>(profile.unknown)].value(u);
+  return model.unknowns[profile.unknown].value(u);
 }
 
 std::vector<FreeParameter> box(int count, double half) {

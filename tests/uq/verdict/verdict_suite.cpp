@@ -28,7 +28,7 @@ uq::CaseModel make_case(const Structure& structure, std::uint32_t seed) {
   const auto value = [&](const Eigen::VectorXd& u, double z) {
     Eigen::VectorXd p(d);
     for (Eigen::Index k = 0; k < d; ++k) {
-      const Range& range = structure.ranges[static_cast<std::size_t>(k)];
+      const Range& range = structure.ranges[k];
       p[k] = range.low + u[k] * (range.high - range.low);
     }
     return structure.formula(p, z);
@@ -63,7 +63,7 @@ uq::CaseModel make_case(const Structure& structure, std::uint32_t seed) {
 
 bool has_draws_near_truth(const Structure& structure, const uq::Identification& found) {
   for (std::size_t k = 0; k < found.parameters.size(); ++k) {
-    const double truth = structure.truth[static_cast<Eigen::Index>(k)];
+    const double truth = structure.truth[k];
     for (const uq::ValueRange& part : found.parameters[k].intervals)
       if (truth >= part.low && truth <= part.high && part.weight < 0.002) return false;
   }

@@ -15,26 +15,25 @@ bool has(const std::string& text, const std::string& piece) { return text.find(p
 /// A parameter with one combination of facts, judged.
 ParameterReport judged(const std::string& name, const WordFacts& facts, const ParameterEvidence& more) {
   ParameterEvidence evidence = more;
-  evidence.name = name;
-  if (!(evidence.sd > 0.0)) {
-    evidence.mean = 0.5;
-    evidence.sd = 0.3;
-    evidence.range_high = 1.0;
+  evidence.found.name = name;
+  if (!(evidence.found.sd > 0.0)) {
+    evidence.found.mean = 0.5;
+    evidence.found.sd = 0.3;
+    evidence.found.prior_high = 1.0;
   }
-  evidence.q95 = evidence.mean + 2.0 * evidence.sd;
+  evidence.found.q95 = evidence.found.mean + 2.0 * evidence.found.sd;
   evidence.facts = facts;
   for (int i = 0; i < facts.parts; ++i)
-    evidence.parts.push_back({.low = 0.1 + 0.4 * i, .high = 0.3 + 0.4 * i, .weight = 0.5, .mean = 0.2, .sd = 0.05});
+    evidence.found.intervals.push_back(
+        {.low = 0.1 + 0.4 * i, .high = 0.3 + 0.4 * i, .weight = 0.5, .mean = 0.2, .sd = 0.05});
   const VerdictThresholds thresholds;
   const ParameterVerdict verdict = judge(evidence, {}, {}, thresholds);
-  ParameterReport report;
-  report.name = name;
+  ParameterReport report = evidence.found;
   report.contraction = facts.contraction;
   report.verdict = verdict.verdict;
   report.reason = verdict.reason;
   report.sentence = verdict.sentence;
   report.shares = verdict.shares;
-  report.common = evidence.common;
   return report;
 }
 
@@ -56,9 +55,9 @@ std::vector<ParameterReport> all_parameters(const std::string& name) {
                         more.structural = structural;
                         more.undecided = undecided;
                         more.surrogate_share = surrogate;
-                        more.common = {.share = common, .errors = {{CommonErrorKind::offset, "zero"}}};
-                        if (pinned && open_high) more.high_pinned_by = "other";
-                        if (pinned && open_low) more.low_pinned_by = "other";
+                        more.found.common = {.share = common, .errors = {{CommonErrorKind::offset, "zero"}}};
+                        if (pinned && open_high) more.found.high_pinned_by = "other";
+                        if (pinned && open_low) more.found.low_pinned_by = "other";
                         all.push_back(judged(name,
                                              {.influences = influences,
                                               .parts = parts,
@@ -165,7 +164,7 @@ TEST_CASE("the first remedy is that of the largest share: training runs where th
 
 TEST_CASE("a width that an offset holds asks for the offset, not for smaller errors of the readings", "[uq]") {
   ParameterEvidence more;
-  more.common = {.share = 0.93, .errors = {{CommonErrorKind::offset, "zero"}}};
+  more.found.common = {.share = 0.93, .errors = {{CommonErrorKind::offset, "zero"}}};
   const WordFacts facts{.contraction = 0.3, .contraction_within = 0.3};
   const ParameterReport held = judged("a", facts, more);
   CHECK(held.reason == uq::Reason::common_error);
@@ -176,7 +175,7 @@ TEST_CASE("a width that an offset holds asks for the offset, not for smaller err
         "readings share, and neither repeats nor smaller errors of each take that away.");
 
   SECTION("a part of it is named beside the readings' errors") {
-    more.common.share = 0.3;
+    more.found.common.share = 0.3;
     const ParameterReport partly = judged("a", facts, more);
     CHECK(partly.reason == uq::Reason::practical);
     const Words both = words_of({.parameters = {partly}, .traded = {}, .parted_by = {}});
@@ -220,12 +219,12 @@ TEST_CASE("the end of a range is no limit of a parameter that is only known in a
 
 TEST_CASE("a side that a stated prior ends does not depend on where the range does", "[uq]") {
   ParameterEvidence more;
-  more.mean = 6.0;
-  more.sd = 0.9;
-  more.range_high = 10.0;
+  more.found.mean = 6.0;
+  more.found.sd = 0.9;
+  more.found.prior_high = 10.0;
   const WordFacts facts{.open_high = true, .contraction = 0.3, .contraction_within = 0.3};
   CHECK(judged("a", facts, more).reason == uq::Reason::practical);
-  more.sd = 2.5;
+  more.found.sd = 2.5;
   CHECK(judged("a", facts, more).reason == uq::Reason::one_sided);
 }
 
@@ -269,7 +268,7 @@ TEST_CASE("separate values are never averaged: the consequence says so, the reme
 
 TEST_CASE("where no run speaks a misfit is not the model's", "[uq]") {
   ParameterEvidence evidence;
-  evidence.name = "friction";
+  evidence.found.name = "friction";
   evidence.unsupported = "no run speaks there";
   const ParameterVerdict found = judge(evidence, {.predictive_p = 0.0, .best_fit_p = 0.0}, {}, {});
   CHECK(found.verdict == Verdict::not_identified);
