@@ -43,10 +43,20 @@ std::optional<double> grid_step(const std::vector<double>& numbers, double decim
   double step = values.back() - values.front();
   for (std::size_t i = 1; i < values.size(); ++i) step = std::min(step, values[i] - values[i - 1]);
   if (step < 3.0 * decimal) return {};
+  const bool exact = std::all_of(values.begin(), values.end(), [&](double value) {
+    const double steps = (value - values.front()) / step;
+    return std::abs(steps - std::round(steps)) < 1e-6;
+  });
+  if (exact) return step;
+  // A step of more decimals than the numbers: it is known the better the farther off a number lies.
+  double known = 1.0;  // steps over which it is known to a decimal
   for (const double value : values) {
     const double steps = std::round((value - values.front()) / step);
-    if (std::abs(value - values.front() - steps * step) > 1.01 * decimal) return {};
-    if (steps > 0.0) step = (value - values.front()) / steps;  // known the better the farther off
+    const double slack = decimal * (1.0 + steps / known);  // of the number itself, and of the step so far
+    if (std::abs(value - values.front() - steps * step) > 1.01 * slack || slack > 0.25 * step) return {};
+    if (steps < known) continue;
+    step = (value - values.front()) / steps;
+    known = steps;
   }
   return step;
 }

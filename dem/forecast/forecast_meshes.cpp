@@ -13,6 +13,7 @@
 #include "dem/rig/packing.hpp"
 #include "dem/rig/rig.hpp"
 #include "dem/rig/rig_words.hpp"
+#include "dem/walls/surface.hpp"
 
 namespace dem {
 namespace {
@@ -115,6 +116,23 @@ bool reaches(const Room& room, const std::vector<std::uint8_t>& wet, const std::
     const std::size_t k = room.at(p);
     return k != room.total() && near[k] != 0;
   });
+}
+
+/// Whether a bed lies on or beside a body where that starts.
+bool lies_at(const Room& room, const std::vector<std::uint8_t>& wet, const Body& body) {
+  const double near = length(room.cell);
+  const Surface surface = make_surface(body.mesh, near);
+  for (std::size_t k = 0; k < room.total(); ++k)
+    if (wet[k] && std::isfinite(depth_in_bodies({&body, 1}, {&surface, 1}, room.centre(k), near))) return true;
+  return false;
+}
+
+/// The height [m] of a bed's lowest cell.
+double bottom_of(const Room& room, const std::vector<std::uint8_t>& wet) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < room.total(); ++k)
+    if (wet[k]) lowest = std::min(lowest, room.height(k));
+  return lowest;
 }
 
 /// How often a ray from the point meets the mesh: an odd number inside a closed one.
@@ -242,6 +260,7 @@ std::string upwards(Vec3 up) {
 /// Whether the meshes that move or are measured reach a bed as loose as it may come to lie.
 void check_reach(const Case& c, const BuiltRig& rig, const Room& room, Forecast& f) {
   const Poured loose = pour_bed(room, rig, summarise_bed(c).volume / loosest_bed);
+  const double bottom = bottom_of(room, loose.wet);
   const std::vector<RigMesh>& meshes = c.rig.stl->meshes;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
     const bool measured = is_measured(*c.rig.stl, k);
@@ -249,8 +268,9 @@ void check_reach(const Case& c, const BuiltRig& rig, const Room& room, Forecast&
     const std::vector<Vec3> points = swept_points(rig, k, c.run);
     double lowest_point = std::numeric_limits<double>::infinity();
     for (const Vec3 p : points) lowest_point = std::min(lowest_point, dot(-rig.down, p));
-    if (reaches(room, loose.wet, points)) {
-      if (measured) say_immersion(f, meshes[k].name, lowest_point);
+    if (reaches(room, loose.wet, points) || lies_at(room, loose.wet, rig.bodies[k])) {
+      // A bed settles away from a tool that dips into it, not from what it lies on.
+      if (measured && lowest_point > bottom) say_immersion(f, meshes[k].name, lowest_point);
       continue;
     }
     const std::string what =

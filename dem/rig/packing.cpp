@@ -167,15 +167,15 @@ namespace {
 void refuse_too_fine(const Packable& where) {
   constexpr double most = 1e9;
   const auto [low, high] = extent(where);
-  const Vec3 room = high - low;
-  const double places = room.x * room.y * room.z / std::pow(where.diameter, 3);
+  const Vec3 size = high - low;
+  const double places = size.x * size.y * size.z / std::pow(where.diameter, 3);
   if (!(places > most)) return;
   throw data::InputError(
       data::ExitStatus::bad_study,
       {"material.diameter",
        fmt::format(
            "{:.3g} mm is so small that the fill region, {:.3g} x {:.3g} x {:.3g} mm, has {:.2g} places for a sphere",
-           1e3 * where.diameter, 1e3 * room.x, 1e3 * room.y, 1e3 * room.z, places),
+           1e3 * where.diameter, 1e3 * size.x, 1e3 * size.y, 1e3 * size.z, places),
        "check the unit of the diameter and that of the meshes; or use larger spheres (coarse_graining), or a smaller "
        "rig.region"});
 }

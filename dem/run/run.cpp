@@ -299,7 +299,8 @@ class Course {
       for (const Driven& driven : sensor_.driven)
         names.push_back(driven.body < labels.size() ? labels[driven.body].name : "a body");
       result_.warnings.push_back(
-          fmt::format("the torque is exactly 0: no sphere ever touched {}", fmt::join(names, ", ")));
+          fmt::format("the torque is exactly 0: no sphere touched {}, or none with a lever about the axis",
+                      fmt::join(names, ", ")));
     }
     if (result_.diagnostics.deep_contacts > 0)
       result_.warnings.push_back(fmt::format(

@@ -106,7 +106,7 @@ TEST_CASE("a plan refuses what cannot be planned, with place and remedy") {
            {"outputs = [\"angle\"]", "angle"},
            {"cots = 1", "cots"},
            {"outputs = [\"torque\", \"torque\"]", "'torque' is named twice (name it once"},
-           {"meter = \"cell\"", "has no meter 'cell' (leave it out)"},
+           {"meter = \"cell\"", "'cell' has read none of the study's measurements"},
            {"name = \"a\"\n[[plan.candidates]]\nname = \"a\"", "another candidate"}}) {
     folder.write(file, toml + "\n[plan]\n[[plan.candidates]]\n" + entry + "\n");
     const auto outcome = folder.demcal({"plan", place, "--out", "o"});

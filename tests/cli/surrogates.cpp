@@ -143,33 +143,43 @@ TEST_CASE("each output has its own surrogate, a run without one output trains th
 TEST_CASE(
     "a parameter that the data narrow to an upper limit is not said to have no influence, however noisy the runs") {
   const Folder folder;
-  const auto outcome = folder.demcal({"calibrate", DEMCAL_SOURCE_DIR "/tests/cli/cases/upper-limit-noisy-runs", "--out",
-                                      "out", "--json", "--quiet", "--no-scan"});
-  const nlohmann::json report = nlohmann::json::parse(outcome.out);
-  const nlohmann::json& cohesion = report["cases"][0]["parameters"][1];
+  const auto cohesion_with = [&](const std::string& stretch) -> nlohmann::json {
+    const auto outcome =
+        folder.demcal({"calibrate", DEMCAL_SOURCE_DIR "/tests/cli/cases/upper-limit-noisy-runs", "--out",
+                       "out" + stretch, "--json", "--quiet", "--no-scan", "--set", "surrogate.stretch=" + stretch});
+    return nlohmann::json::parse(outcome.out)["cases"][0]["parameters"][1];
+  };
+  // On the stretched scale the surrogate knows the steep end, where the posterior lies, to several of the data's errors.
+  const nlohmann::json hidden = cohesion_with("true");
+  CHECK(hidden["reason"] == "surrogate");
+  CHECK_THAT(hidden["sentence"].get<std::string>(), Contains("the surrogate could miss one of"));
+  const nlohmann::json cohesion = cohesion_with("false");
   CHECK(cohesion["contraction"].get<double>() > 0.5);
   CHECK(cohesion["verdict"] == "weakly identified");
   CHECK(cohesion["reason"] == "bound");
   CHECK(cohesion["profile95"][1].get<double>() > 2.0);  // the truth
 }
 
-TEST_CASE("speeds over a decade are learnt on a log scale, and a report that cannot fit them on a linear one says so") {
+TEST_CASE("speeds over a decade are learnt on a log scale, and a report that may not do so says what is missing") {
   const Folder folder;
-  const auto calibrated = [&](const std::string& scale) {
-    const auto outcome =
-        folder.demcal({"calibrate", DEMCAL_SOURCE_DIR "/tests/cli/cases/speeds-over-a-decade", "--out", scale, "--json",
-                       "--quiet", "--no-scan", "--set", "controls.speed.scale=" + scale});
+  const auto calibrated = [&](const std::string& setting) {
+    const auto outcome = folder.demcal({"calibrate", DEMCAL_SOURCE_DIR "/tests/cli/cases/speeds-over-a-decade", "--out",
+                                        setting, "--json", "--quiet", "--no-scan", "--set", setting});
     return nlohmann::json::parse(outcome.out);
   };
-  const nlohmann::json linear = calibrated("linear"), log = calibrated("log");
+  const nlohmann::json linear = calibrated("surrogate.stretch=false"), log = calibrated("controls.speed.scale=log"),
+                       by_itself = calibrated("controls.speed.scale=linear");
   CHECK(linear["status"] == "warning");
   CHECK_THAT(linear["surrogates"][0]["remedy"].get<std::string>(), Contains("[controls.speed] scale = \"log\""));
-  CHECK(log["status"] == "ok");
+  CHECK_THAT(by_itself["surrogates"][0]["notes"].dump(), Contains("speed is learnt as log("));
   const double truth[] = {0.35, 6.5};
-  for (std::size_t k = 0; k < 2; ++k) {
-    const nlohmann::json& parameter = log["cases"][0]["parameters"][k];
-    CHECK(parameter["verdict"] == "identified");
-    CHECK(std::abs(parameter["mean"].get<double>() - truth[k]) < 2.5 * parameter["sd"].get<double>());
+  for (const nlohmann::json* report : {&log, &by_itself}) {
+    CHECK((*report)["status"] == "ok");
+    for (std::size_t k = 0; k < 2; ++k) {
+      const nlohmann::json& parameter = (*report)["cases"][0]["parameters"][k];
+      CHECK(parameter["verdict"] == "identified");
+      CHECK(std::abs(parameter["mean"].get<double>() - truth[k]) < 2.5 * parameter["sd"].get<double>());
+    }
   }
 }
 
@@ -199,11 +209,15 @@ TEST_CASE("good runs that a surrogate accuses where it does not bend are named w
   folder.write("study/runs.csv", runs);
   folder.write("study/bench.csv", bench);
 
-  CHECK_THAT(folder.says({"fit", "study", "--out", "linear"}, 2),
+  CHECK_THAT(folder.says({"fit", "study", "--out", "linear", "--set", "surrogate.stretch=false"}, 2),
              Contains("On another scale they agree with all others") &&
                  Contains("Set [controls.speed] scale = \"log\" first. If they are wrong, leave them out:") &&
                  !Contains("Correct them"));
   const auto log = folder.demcal({"fit", "study", "--out", "log", "--set", "controls.speed.scale=log"});
   CHECK(log.status == 0);
   CHECK(log.err.find("contradict") == std::string::npos);
+  // The surrogate finds that scale by itself.
+  const auto stretched = folder.demcal({"fit", "study", "--out", "stretched"});
+  CHECK(stretched.status == 0);
+  CHECK_THAT(stretched.out + stretched.err, Contains("speed is learnt as log(") && !Contains("contradict"));
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "uq/calibrate/calibrate.hpp"
+#include "uq/posterior/distinct.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/predictive.hpp"
 #include "uq/posterior/prior_reach.hpp"
@@ -102,6 +103,7 @@ SampledCase sample_case(const data::Study& study, const std::vector<Emulator>& e
     const Eigen::VectorXd u = source.draws.pooled().col(unknown_of(*source.model, unknown.label));
     unknown.cut = cut_law(u, seed_of(study, options));
   }
+  if (model.distinct) pool_rows(model);  // its pooled rows have the same unknowns
   sampled.model = std::make_shared<const CaseModel>(std::move(model));
   refuse_excluding_priors(study, *sampled.model);
   // Each case draws its own numbers.

@@ -40,8 +40,7 @@ inline data::Input input_of(const data::Study& study, const EmulatorInput& input
 /// The runs that an emulator has learnt from, as far as uq/posterior/support.hpp needs them.
 struct RunCloud {
   Eigen::MatrixXd points;         ///< unit cube, one per row, both levels where there are two
-  Eigen::MatrixXd learnt;         ///< the same on the scales on which they are learnt
-  Eigen::VectorXd length_scales;  ///< of `learnt`
+  Eigen::VectorXd length_scales;  ///< of learnt_points
   double prior_variance = 0.0;    ///< variance of the process without any runs: SI^2, or of the logarithm
   bool logarithmic = false;       ///< the output is learnt as a logarithm
 };

@@ -98,18 +98,17 @@ std::string described(const SurrogateReport& report) {
 std::shared_ptr<const RunCloud> cloud_of(const FittedSurrogate& fitted) {
   const surrogate::HyperParameters hyper = fitted.process->hyper_parameters();
   auto cloud = std::make_shared<RunCloud>();
-  cloud->learnt = fitted.rows.set.x;
+  cloud->points = fitted.rows.set.x;
   cloud->length_scales = hyper.length_scales;
   cloud->prior_variance = hyper.signal_sd * hyper.signal_sd;
   cloud->logarithmic = fitted.process->data().scale == surrogate::OutputScale::log;
   if (fitted.two_level) {
     const Eigen::MatrixXd& low = fitted.rows.low->x;
-    cloud->learnt.conservativeResize(fitted.rows.set.x.rows() + low.rows(), Eigen::NoChange);
-    cloud->learnt.bottomRows(low.rows()) = low;
+    cloud->points.conservativeResize(fitted.rows.set.x.rows() + low.rows(), Eigen::NoChange);
+    cloud->points.bottomRows(low.rows()) = low;
     const surrogate::TwoLevelParameters& two = fitted.two_level->parameters();
     cloud->prior_variance = two.rho * two.rho * cloud->prior_variance + two.discrepancy_sd * two.discrepancy_sd;
   }
-  cloud->points = cloud->learnt;
   for (std::size_t k = 0; k < fitted.rows.inputs.size(); ++k)
     for (double& place : cloud->points.col(static_cast<Eigen::Index>(k)))
       place = study_place(fitted.rows.inputs[k], place);

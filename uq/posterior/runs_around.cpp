@@ -73,14 +73,17 @@ int gap_at(const InputLine& line, double value) {
   return found;
 }
 
-/// Distance of each row, a learnt point, to the nearest run, in length scales: the sum over the rows.
-double summed_distance(const RunCloud& runs, const MatrixXd& learnt) {
-  const MatrixXd scaled = runs.learnt.array().rowwise() / runs.length_scales.transpose().array();
+/// Points of the unit cube on the scales on which the runs are learnt, in length scales.
+MatrixXd scaled(const Emulator& emulator, const MatrixXd& points) {
+  return learnt_points(emulator.inputs, points).array().rowwise() / emulator.runs->length_scales.transpose().array();
+}
+
+/// Distance of each row to the nearest run, in length scales: the sum over the rows.
+double summed_distance(const Ground& ground, const MatrixXd& points) {
+  const MatrixXd here = scaled(ground.group->emulator, points);
   double sum = 0.0;
-  for (Index i = 0; i < learnt.rows(); ++i) {
-    const VectorXd here = learnt.row(i).transpose().array() / runs.length_scales.array();
-    sum += std::sqrt((scaled.rowwise() - here.transpose()).rowwise().squaredNorm().minCoeff());
-  }
+  for (Index i = 0; i < here.rows(); ++i)
+    sum += std::sqrt((ground.scaled.rowwise() - here.row(i)).rowwise().squaredNorm().minCoeff());
   return sum;
 }
 
@@ -106,7 +109,11 @@ InputLine line_of(const VectorXd& column, const SupportThresholds& t) {
 }
 
 Ground ground_of(const RowGroup& group, const SupportThresholds& t) {
-  Ground ground{.group = &group, .lines = {}, .planes = {}, .rows = {}};
+  Ground ground{.group = &group,
+                .lines = {},
+                .planes = {},
+                .rows = {},
+                .scaled = scaled(group.emulator, group.emulator.runs->points)};
   for (Index k = 0; k < group.emulator.runs->points.cols(); ++k)
     ground.lines.push_back(line_of(group.emulator.runs->points.col(k), t));
   ground.planes = planes_of(*group.emulator.runs, group.emulator.inputs, ground.lines);
@@ -174,7 +181,7 @@ RunsAround runs_around(const Ground& ground, const VectorXd& u, const SupportThr
                                                rejected.holes.begin());
   met.uncertain = at_half(rejected.uncertain);
   met.unsupported = at_half(rejected.any);
-  met.distance = summed_distance(*emulator.runs, learnt_points(emulator.inputs, points)) / static_cast<double>(rows);
+  met.distance = summed_distance(ground, points) / static_cast<double>(rows);
   met.ratio = ratios.mean();
   return met;
 }

@@ -34,6 +34,7 @@ struct Ground {
   std::vector<InputLine> lines;
   std::vector<Plane> planes;
   std::vector<Eigen::Index> rows;  ///< observed settings that are looked at
+  Eigen::MatrixXd scaled;          ///< the runs on their learnt scales, in length scales
 };
 
 Ground ground_of(const RowGroup& group, const SupportThresholds& thresholds);

@@ -53,7 +53,9 @@ class Effects {
         own += at.covariance(t * n + i, t * n + i);
         for (Eigen::Index s = 0; s < levels; ++s) shared += at.covariance(t * n + i, s * n + i);
       }
-      doubt_ += w * std::max(own - shared / static_cast<double>(levels), 0.0);
+      const double left_open = std::max(own - shared / static_cast<double>(levels), 0.0);
+      doubt_ += w * left_open;
+      doubt_in_noise_ += looked.noise_weight[i] * looked.noise_weight[i] * looked.stands_for * left_open;
       const Eigen::Index last = (levels - 1) * n + i;
       ends_effect_ += w * std::pow(at.mean[last] - at.mean[i], 2);
       ends_doubt_ += w * std::max(at.covariance(i, i) + at.covariance(last, last) - 2.0 * at.covariance(i, last), 0.0);
@@ -71,7 +73,7 @@ class Effects {
     ++points_;
   }
   Influence judged(const VerdictThresholds& thresholds) const {
-    Influence influence{.deviance = deviance_, .doubt = doubt_ / static_cast<double>(points_ * shares.size())};
+    Influence influence{.deviance = deviance_, .doubt = doubt_in_noise_ / static_cast<double>(points_ * shares.size())};
     // Runs at a few levels may leave all between these in doubt, and yet tell the ends of the range apart.
     const double least = thresholds.told_apart_sd * thresholds.told_apart_sd;
     influence.shown = effect_ > least * doubt_ || ends_effect_ > least * ends_doubt_;
@@ -84,6 +86,7 @@ class Effects {
  private:
   static constexpr auto levels = static_cast<Eigen::Index>(shares.size());
   double effect_ = 0.0, doubt_ = 0.0;             // about the mean of the levels
+  double doubt_in_noise_ = 0.0;                   // in squares of the noise alone
   double ends_effect_ = 0.0, ends_doubt_ = 0.0;   // between the ends of the range
   double deviance_ = 0.0;                         // largest of the points
   std::array<double, shares.size()> moved_ = {};  // of each level beside the first, about the current point
@@ -126,6 +129,7 @@ Yardstick make_yardstick(const CaseModel& model, const Eigen::VectorXd& best) {
     for (Eigen::Index i = 0; i < count; ++i) looked.rows.push_back(i * rows / count);
     looked.stands_for = count > 0 ? static_cast<double>(rows) / static_cast<double>(count) : 1.0;
     looked.weight.resize(count);
+    looked.noise_weight.resize(count);
     if (count == 0) {
       yardstick.groups.push_back(std::move(looked));
       continue;
@@ -137,6 +141,7 @@ Yardstick make_yardstick(const CaseModel& model, const Eigen::VectorXd& best) {
       const double factor = meter_at(group.measurement, model.unknowns, best, row).factor;
       const double variance = law.noise[row] + factor * factor * std::max(known.covariance(i, i), 0.0);
       looked.weight[i] = variance > 0.0 ? factor / std::sqrt(variance) : 0.0;
+      looked.noise_weight[i] = law.noise[row] > 0.0 ? factor / std::sqrt(law.noise[row]) : looked.weight[i];
     }
     yardstick.groups.push_back(std::move(looked));
   }

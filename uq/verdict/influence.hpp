@@ -23,6 +23,7 @@ struct Yardstick {
   struct Group {
     std::vector<Eigen::Index> rows;  ///< rows of the group: at most some tens, evenly spaced
     Eigen::VectorXd weight;          ///< f_i / s_i
+    Eigen::VectorXd noise_weight;    ///< f_i over the noise alone; f_i / s_i where there is none
     double stands_for = 1.0;         ///< rows of the group over rows looked at
   };
   std::vector<Group> groups;
@@ -55,7 +56,7 @@ class DistanceFrom {
 struct Influence {
   bool shown = true;      ///< the surrogate can tell the influence from none
   double deviance = 0.0;  ///< deviance that the whole range brings about, largest of the points looked at
-  double doubt = 0.0;     ///< the surrogate's variance of such a change, in the same unit
+  double doubt = 0.0;     ///< the surrogate's variance of such a change, in squares of the noise alone
   bool some = true;       ///< shown, and large enough for the data
   bool hidden = false;    ///< shown, and too small for the data's errors, but not for smaller ones
 };

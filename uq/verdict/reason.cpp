@@ -43,7 +43,10 @@ bool ended_by_prior(const ParameterEvidence& evidence) {
 std::optional<Reason> find_reason(const ParameterEvidence& evidence, Verdict verdict) {
   if (verdict != Verdict::not_identified && verdict != Verdict::weakly_identified) return {};
   const WordFacts& facts = evidence.facts;
-  if (!facts.influences) return evidence.hidden ? Reason::practical : Reason::no_influence;
+  if (!facts.influences)
+    return evidence.hidden                    ? Reason::practical
+           : evidence.silent_sds > hiding_sds ? Reason::surrogate
+                                              : Reason::no_influence;
   if (evidence.found.runs_end_low || evidence.found.runs_end_high) return Reason::unsupported;
   if (evidence.found.common.share > mostly_share && evidence.surrogate_share <= mostly_share)
     return Reason::common_error;
@@ -77,6 +80,11 @@ std::string because(Reason reason, const ParameterEvidence& evidence) {
                          names.size() == 1 ? "hides" : "hide");
     }
     case Reason::surrogate:
+      if (!evidence.facts.influences)
+        return fmt::format(
+            ": the data say nothing of it. The runs show no effect of its range; the surrogate could miss one of "
+            "{:.1f} measurement errors",
+            evidence.silent_sds);
       return "; the surrogate's error hides it";
     case Reason::traded:
       return "; other parameters do much the same to all that was measured";
@@ -90,13 +98,8 @@ std::string because(Reason reason, const ParameterEvidence& evidence) {
     case Reason::no_influence:
       break;
   }
-  return evidence.silent_sds > hiding_sds
-             ? fmt::format(
-                   ": the data say nothing of it. The runs show no effect of its range; the surrogate could "
-                   "miss one of {:.1f} measurement errors",
-                   evidence.silent_sds)
-             : ": the data say nothing of it. Its whole range changes nothing that was measured, as far as the "
-               "surrogate and the measurement can tell";
+  return ": the data say nothing of it. Its whole range changes nothing that was measured, as far as the surrogate and the "
+         "measurement can tell";
 }
 
 WidthShares find_shares(const ParameterEvidence& evidence, std::optional<Reason> reason) {
@@ -104,12 +107,9 @@ WidthShares find_shares(const ParameterEvidence& evidence, std::optional<Reason>
   if (reason == Reason::structural) return {.measurement = 0.0, .surrogate = 0.0, .structure = 1.0, .range = 0.0};
   if (reason == Reason::one_sided || reason == Reason::range_of_another || reason == Reason::unsupported)
     return {.measurement = 0.0, .surrogate = 0.0, .structure = 0.0, .range = 1.0};
-  if (reason == Reason::surrogate && (evidence.unknown_beyond || evidence.faint))
+  if (reason == Reason::surrogate && (evidence.unknown_beyond || evidence.faint || !evidence.facts.influences))
     return {.measurement = 0.0, .surrogate = 1.0, .structure = 0.0, .range = 0.0};
-  if (reason == Reason::no_influence)
-    return evidence.silent_sds > hiding_sds
-               ? WidthShares{.measurement = 0.0, .surrogate = 1.0, .structure = 0.0, .range = 0.0}
-               : WidthShares{.measurement = 0.0, .surrogate = 0.0, .structure = 0.0, .range = 1.0};
+  if (reason == Reason::no_influence) return {.measurement = 0.0, .surrogate = 0.0, .structure = 0.0, .range = 1.0};
   return {.measurement = 1.0 - surrogate, .surrogate = surrogate, .structure = 0.0, .range = 0.0};
 }
 

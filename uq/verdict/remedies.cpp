@@ -191,21 +191,15 @@ Remedies move_bound(const CaseFacts&, const SortedParameters& sorted) {
 
 /// Last, whatever the widths: what was measured has nothing to do with these.
 Remedies move_silent(const CaseFacts& facts, const SortedParameters&) {
-  Names hidden, silent;
+  Names silent;
   for (const ParameterReport& parameter : facts.parameters)
-    if (parameter.reason == Reason::no_influence)
-      (parameter.shares.surrogate > mostly_share ? hidden : silent).push_back(parameter.name);
-  Remedies remedies;
-  if (!silent.empty())
-    remedies.push_back({0.0, fmt::format("Measure another quantity, or at other settings, that {} {}; or fix {}: "
-                                         "what was measured does not depend on {}.",
-                                         listed(silent), one_or(silent, "moves", "move"), one_or(silent, "it", "them"),
-                                         one_or(silent, "it", "them"))});
-  if (!hidden.empty())
-    remedies.push_back({0.0, fmt::format("More training runs would show whether {} {} at all: the surrogate's error "
-                                         "is larger than the measurement's.",
-                                         listed(hidden), one_or(hidden, "acts", "act"))});
-  return remedies;
+    if (parameter.reason == Reason::no_influence) silent.push_back(parameter.name);
+  if (silent.empty()) return {};
+  return {
+      {0.0, fmt::format("Measure another quantity, or at other settings, that {} {}; or fix {}: what was measured does "
+                        "not depend on {}.",
+                        listed(silent), one_or(silent, "moves", "move"), one_or(silent, "it", "them"),
+                        one_or(silent, "it", "them"))}};
 }
 
 }  // namespace

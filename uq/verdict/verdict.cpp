@@ -195,7 +195,7 @@ ParameterVerdict judge(const ParameterEvidence& evidence, const FitEvidence& fit
   const std::optional<Reason> reason = find_reason(evidence, found.verdict);
   found.reason = reason;
   found.shares = find_shares(evidence, reason);
-  if (reason == Reason::no_influence) {
+  if (!facts.influences && (reason == Reason::no_influence || reason == Reason::surrogate)) {
     found.sentence = fmt::format("{} is not identified{}.", parameter.name, because(*reason, evidence));
   } else if (found.verdict == Verdict::several_values) {
     found.sentence = several_sentence(parameter);

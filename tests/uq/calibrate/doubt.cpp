@@ -1,5 +1,6 @@
 // What a case takes without feedback from another, it takes with the other's faults. The torque is
-// 1 + 2 |friction - 0.5| friction + cohesion speed, so that up to three frictions give the same torque at speed 0.
+// 1 + 2 |friction - 0.5| friction + (cohesion - friction / 2) speed, so that up to three frictions give the same torque at
+// speed 0, each with a cohesion of its own at speed 1.
 #include "uq/calibrate/doubt.hpp"
 
 #include <catch2/catch.hpp>
@@ -20,7 +21,7 @@ std::vector<Emulator> valley() {
                     .predict = {}};
   emulator.predict = [](const Eigen::MatrixXd& points) -> surrogate::Prediction {
     return {.mean = 1.0 + 2.0 * (points.col(0).array() - 0.5).abs() * points.col(0).array() +
-                    points.col(1).array() * points.col(2).array(),
+                    (points.col(1).array() - 0.5 * points.col(0).array()) * points.col(2).array(),
             .covariance = Eigen::MatrixXd::Zero(points.rows(), points.rows())};
   };
   return {emulator};
@@ -71,19 +72,23 @@ TEST_CASE("nothing is identified by what comes cut from a case that does not fit
   CHECK_FALSE(second.warnings.empty());
 }
 
-TEST_CASE("a friction cut with two values gives the cohesion two, and none between them", "[uq]") {
+TEST_CASE("a friction cut with three values gives the cohesion three, and none between them", "[uq]") {
   const TemporaryFolder folder;
-  // 2 |f - 1/2| f = 0.1 at f = 0.5854 and, on the other side, at 0.1382 and 0.3618: three frictions.
+  // 2 |f - 1/2| f = 0.1 at f = 0.1382, 0.3618 and 0.5854; then cohesion = 0.3025 + f / 2.
   const data::Study study = chain(folder, "0,1.1,0.005\n0,1.1005,0.005\n");
   const CaseReport second = judged(study, 1);
   CHECK(second.doubt.empty());
   REQUIRE(second.parameters.size() == 2);
-  const ParameterReport& friction = second.parameters[0];
-  CHECK(friction.verdict == Verdict::several_values);
-  CHECK(friction.intervals.size() == 3);
-  // All three give the same torque, so the cohesion is one: 0.3.
+  CHECK(second.parameters[0].verdict == Verdict::several_values);
   const ParameterReport& cohesion = second.parameters[1];
-  REQUIRE(cohesion.intervals.size() == 1);
-  CHECK(cohesion.intervals[0].low > 0.28);
-  CHECK(cohesion.intervals[0].high < 0.33);
+  INFO(cohesion.sentence);
+  CHECK(cohesion.verdict == Verdict::several_values);
+  REQUIRE(cohesion.intervals.size() == 3);
+  const double friction[] = {0.1382, 0.3618, 0.5854};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double truth = 0.3025 + 0.5 * friction[i];
+    CHECK(cohesion.intervals[i].low < truth);
+    CHECK(cohesion.intervals[i].high > truth);
+    CHECK(cohesion.intervals[i].high - cohesion.intervals[i].low < 0.06);
+  }
 }

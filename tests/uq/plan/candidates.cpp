@@ -7,19 +7,24 @@ using namespace plans;
 
 namespace {
 
-/// The error with which a repeat at speed 0.5 is judged, the readings having these values and errors.
-std::string error_of_repeat(const std::vector<double>& values, const std::vector<double>& errors) {
-  data::Study study = formula::study({0.0, 0.5, 1.0}, values, 0.1);
+/// The error with which a repeat at speed 0.5 is judged, the readings lying on the model and having these errors.
+std::string error_of_repeat(double scale, const std::vector<double>& errors) {
+  const std::vector<double> speeds{0.0, 0.5, 1.0};
+  std::vector<double> values;
+  for (const double x : speeds) values.push_back(formula::torque(0.2, 0.9, scale * x));
+  data::Study study = formula::study(speeds, values, 0.1);
   for (std::size_t i = 0; i < errors.size(); ++i) study.observations[0].points[i].standard_errors[0] = errors[i];
-  return named(plan_of(study, formula::emulators(), {}, {.about = "a"}), "torque at 0.5").error;
+  const formula::Pair stretched{[scale](double a, double b, double x) { return formula::torque(a, b, scale * x); },
+                                formula::angle};
+  return named(plan_of(study, formula::emulators(0.0, stretched), {}, {.about = "a"}), "torque at 0.5").error;
 }
 
 }  // namespace
 
 TEST_CASE("a planned reading has the measured ones' error: of a fixed size, or a share of the value", "[plan]") {
-  const std::vector<double> values{14.0, 15.0, 18.0};
-  CHECK(error_of_repeat(values, {0.2, 0.2, 0.2}) == "0.2");
-  CHECK(error_of_repeat(values, {0.14, 0.15, 0.18}) == "1 %");
-  // A value near zero has an error of a size, and no share.
-  CHECK(error_of_repeat({14.0, 0.0, 18.0}, {0.2, 0.2, 0.2}) == "0.2");
+  // At a = 0.2, b = 0.9 the torque is 14.6 - 0.21 x.
+  CHECK(error_of_repeat(20.0, {0.2, 0.2, 0.2}) == "0.2");
+  CHECK(error_of_repeat(20.0, {0.146, 0.125, 0.104}) == "1 %");
+  // 14.6, 0 and -14.6: a value near zero has an error of a size, and no share.
+  CHECK(error_of_repeat(14.6 / 0.105, {0.2, 0.2, 0.2}) == "0.2");
 }
