@@ -31,7 +31,7 @@ std::vector<Emulator> valley() {
 data::Study chain(const TemporaryFolder& folder, const std::string& first_rows) {
   folder.write("first.csv", "speed,torque,torque_se\n" + first_rows);
   folder.write("second.csv", "speed,torque,torque_se\n1,1.4,0.005\n1,1.405,0.005\n");
-  folder.write("third.csv", "speed,torque,torque_se\n1,1.4,0.005\n");
+  folder.write("third.csv", "speed,torque,torque_se\n0,1.8,0.005\n");
   const data::StudyFile file = data::StudyFile::open(folder.write(
       "study.toml",
       "[study]\nname = \"s\"\nseed = 5\n[parameters.friction]\nlow = 0\nhigh = 1\n[parameters.cohesion]\nlow = 0\nhigh "
