@@ -16,11 +16,17 @@ struct Count {
   int inside = 0, of = 0;
 };
 
+/// The place of a run in the study's unit cube.
+Eigen::RowVectorXd place_of(const FittedSurrogate& fitted, Eigen::Index run) {
+  Eigen::RowVectorXd place = fitted.rows.set.x.row(run);
+  for (std::size_t k = 0; k < fitted.rows.inputs.size(); ++k) place[k] = study_place(fitted.rows.inputs[k], place[k]);
+  return place;
+}
+
 /// The case of one run of a material: all its outputs at its speed, everything that its rows vary free.
 CaseModel case_of_run(const data::Study& study, const std::vector<FittedSurrogate>& fitted, std::size_t run) {
   CaseModel model{.name = "held out", .unknowns = {}, .groups = {}, .linked = {}, .observed_sets = {}};
-  const auto& inputs = fitted.front().rows.inputs;
-  for (const EmulatorInput& input : inputs)
+  for (const EmulatorInput& input : fitted.front().rows.inputs)
     if (input.kind == InputKind::parameter) {
       const data::Parameter& parameter = study.parameters[input.index];
       model.unknowns.push_back({.label = parameter.name, .prior = ScaledPrior(parameter, parameter.prior), .cut = {}});
@@ -41,8 +47,9 @@ CaseModel case_of_run(const data::Study& study, const std::vector<FittedSurrogat
     const surrogate::HyperParameters hyper = one.process->hyper_parameters();
     const auto process = std::make_shared<const surrogate::GaussianProcess>(
         surrogate::condition(rest, {.kernel = one.process->kernel(), .mean = one.process->mean()}, hyper));
+    const auto& inputs = one.rows.inputs;
     RowGroup group{.emulator = make_emulator(process, one.rows.material, one.rows.output, inputs),
-                   .base = all.x.row(row),
+                   .base = place_of(one, row),
                    .unknown = Eigen::MatrixXi::Constant(1, all.x.cols(), -1),
                    .observed = all.y.segment(row, 1),
                    .variance = all.noise_variance.segment(row, 1),
@@ -82,7 +89,7 @@ TEST_CASE("runs left out of the surrogates, as data, have their own parameters i
       int unknown = 0;
       for (std::size_t k = 0; k < fitted.front().rows.inputs.size(); ++k) {
         if (fitted.front().rows.inputs[k].kind != InputKind::parameter) continue;
-        const double truth = fitted.front().rows.set.x(static_cast<Eigen::Index>(run), static_cast<Eigen::Index>(k));
+        const double truth = place_of(fitted.front(), static_cast<Eigen::Index>(run))[k];
         const Eigen::VectorXd u = all.col(unknown);
         Count& count = counts[model->unknowns[unknown].label];
         ++count.of;
