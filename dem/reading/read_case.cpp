@@ -111,8 +111,10 @@ void read_laws(const Section& s, Contact& k) {
   if (s.has("hamaker_power")) k.hamaker_power = s.number("hamaker_power", {.low = 0.0, .high = 4.0});
   k.length_scale = s.choice("length_scale", k.length_scale);
   k.wall_attraction = s.choice("wall_attraction", k.wall_attraction);
-  if (s.has("restitution_at"))
-    k.restitution_at = s.quantity("restitution_at", "m/s", {.low = 0.0, .high = 1000.0, .open_low = true});
+  if (s.has("restitution_at")) {
+    const double speed = s.quantity("restitution_at", "m/s", {.low = 0.0, .high = 1000.0, .open_low = true});
+    if (speed > 0.0) k.restitution_at = speed;  // else a problem is noted, and no collision is tried
+  }
 }
 
 constexpr const char* laws[]{"normal", "tangential", "resistance", "cohesion"};
@@ -180,8 +182,9 @@ void read_grain(const Section& s, Material& m) {
 }
 
 /// Reads a component's own [contact]. It holds between the component's grains, and at walls except where those have a
-/// value of their own.
-void read_component_contact(const Section& s, const std::string& name, Case& c, Material& m) {
+/// value of their own: the component's wall_KEY, else that of the mixture or of the study.
+void read_component_contact(const Section& s, const std::vector<Section>& of_all, const std::string& name, Case& c,
+                            Material& m) {
   PairContact grains, walls;
   grains.first = grains.second = walls.first = name;
   walls.second = "wall";
@@ -191,7 +194,12 @@ void read_component_contact(const Section& s, const std::string& name, Case& c, 
     grains.*k.field = walls.*k.field = read_coefficient(s, k.key);
     const std::string wall_key = fmt::format("wall_{}", k.key);
     if (find_target("contact." + wall_key)) {
-      if (const std::optional<double> of_wall = read_coefficient(s, wall_key)) walls.*k.field = of_wall;
+      const bool of_all_walls =
+          std::any_of(of_all.begin(), of_all.end(), [&](const Section& one) { return one.has(wall_key); });
+      if (const std::optional<double> of_wall = read_coefficient(s, wall_key))
+        walls.*k.field = of_wall;
+      else if (of_all_walls)
+        walls.*k.field = {};
     }
     some = some || grains.*k.field;
     some_wall = some_wall || walls.*k.field;
@@ -202,7 +210,9 @@ void read_component_contact(const Section& s, const std::string& name, Case& c, 
   if (some_wall) c.pairs.push_back(walls);
 }
 
-void read_components(const Section& mixture, const Section& materials, Case& c) {
+void read_components(const Section& mixture, const Section& root, Case& c) {
+  const Section materials = root.child("materials");
+  const std::vector<Section> of_all{root.child("contact"), mixture.child("contact")};
   double sum = 0.0;
   for (const Section& s : mixture.array("components")) {
     const std::string name = s.text("material");
@@ -218,7 +228,7 @@ void read_components(const Section& mixture, const Section& materials, Case& c) 
     for (const char* key : {"coarse_graining", "fill"})
       if (own.has(key)) own.problem(key, "is that of the mixture, not of a component", "move it to " + c.material.name);
     read_grain(own, part.material);
-    read_component_contact(own.child("contact"), name, c, part.material);
+    read_component_contact(own.child("contact"), of_all, name, c, part.material);
     c.components.push_back(std::move(part));
   }
   if (!(std::abs(sum - 1.0) < 1e-3))
@@ -232,7 +242,7 @@ void read_material(const Section& s, const Section& root, Case& c) {
     for (const char* key : {"density", "diameter", "sizes", "distribution"})
       if (s.has(key)) s.problem(key, "is that of each component, not of the mixture", "move it to the components");
     read(s, "material", "coarse_graining", c);
-    read_components(s, materials, c);
+    read_components(s, root, c);
   } else {
     read_grain(s, c.material);
   }

@@ -182,6 +182,22 @@ TEST_CASE("a mixture takes density, sizes and contact of its components") {
   CHECK(dem::settings_text(r.c).find("material.sand.sizes.mass_fraction = 0.25") != std::string::npos);
 }
 
+TEST_CASE("walls have the study's own value unless a component states one for walls") {
+  const std::string stated = "contact = { friction = 0.55, wall_friction = 0.35 }";
+  for (const auto& [of_component, at_walls] :
+       {std::pair{stated, 0.35}, {std::string("contact = { friction = 0.55 }"), 0.15}}) {
+    std::string text = mix;
+    text.replace(text.find(stated), stated.size(), of_component);
+    const Reading r = reading(text + "[contact]\nwall_friction = 0.15\n");
+    CHECK(r.said.empty());
+    CHECK(dem::get_target(r.c, "contact.sand-wall.friction") == at_walls);
+  }
+}
+
+TEST_CASE("restitution at a speed without a unit is a problem of the study, and no collision is tried with it") {
+  CHECK_THAT(reading(one_material("restitution_at = 3\n")).said, Catch::Contains("restitution_at"));
+}
+
 TEST_CASE("a log-normal distribution is read with its bounds") {
   const Reading r =
       reading(rig +
