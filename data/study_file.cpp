@@ -7,6 +7,7 @@
 
 #include "data/atomic_file.hpp"
 #include "data/edit_distance.hpp"
+#include "data/study_keys.hpp"
 #include "data/study_node.hpp"
 
 namespace data {
@@ -94,6 +95,10 @@ void find_unknown(StudyFile::State& state, const Node& node) {
   for (const auto& [key, value] : *node.table) {
     const std::string name(key.str());
     if (used.count(name) == 0) {
+      if (!state.root.contains("rig") && !find_study_keys(node.dotted(name)).empty()) {
+        node.problem(name, "is read of a study that has a [rig], and this one has none", "remove it, or give a [rig]");
+        continue;
+      }
       const std::vector<std::string> candidates(known.begin(), known.end());
       const auto near = nearest(name, candidates);
       std::string remedy = "remove the line";
