@@ -46,8 +46,8 @@ std::vector<JudgedSource> judge_sources(const SampledCase& sampled, const Identi
 Doubt doubt_about(const SampledCase& sampled, const std::vector<JudgedSource>& sources,
                   const std::vector<std::string>& already) {
   const CaseModel& model = *sampled.model;
-  const auto of_all = [&](DoubtOf of, std::string reason) {
-    return Doubt{.of = of, .unsupported = std::vector(static_cast<std::size_t>(model.own_count()), std::move(reason))};
+  const auto of_all = [&](DoubtOf of, const std::string& reason) {
+    return Doubt{.of = of, .unsupported = std::vector(static_cast<std::size_t>(model.own_count()), reason)};
   };
   const bool unusable = !doubt_of(model).empty(), supported = sampled.support.supported;
   Doubt found{.of = DoubtOf::nothing, .unsupported = already};
@@ -57,8 +57,8 @@ Doubt doubt_about(const SampledCase& sampled, const std::vector<JudgedSource>& s
     return found;
   }
   if (!sampled.draws.converged) return of_all(DoubtOf::draws, "the sampler has not converged");
-  if (std::string source = doubtful_source(model, sources); !source.empty())
-    return of_all(DoubtOf::source, std::move(source));
+  if (const std::string source = doubtful_source(model, sources); !source.empty())
+    return of_all(DoubtOf::source, source);
   return found;
 }
 
