@@ -86,8 +86,8 @@ std::vector<ModelComparison> compare_models(const data::Study& study, const Samp
   found.sampling_error = std::hypot(sampled.draws.log_evidence_error, beside.log_evidence_error);
   const int unknowns = sampled.model->dimension();
   const Eigen::VectorXd best = with_held(highest(beside).transpose(), held).row(0).transpose();
-  const SharperFactor sharper = sharper_factor(
-      *sampled.model, {highest(sampled.draws), unknowns_left(unknowns, {})}, {best, unknowns_left(unknowns, held)});
+  const SharperFactor sharper = sharper_factor(*sampled.model, {highest(sampled.draws), unknowns_left(unknowns, {})},
+                                               {best, unknowns_left(unknowns, held)});
   found.surrogate_error = sharper.sd;
   found.sharper_factor = found.log_bayes_factor + sharper.shift;
   found.error = std::hypot(found.sampling_error, found.surrogate_error);

@@ -26,7 +26,7 @@ struct SurrogateReport {
   std::string unit;
   SurrogateWord verdict = SurrogateWord::unusable;
   std::string finding, consequence, remedy;
-  std::vector<std::string> inputs;                        ///< names of the active inputs
+  std::vector<std::string> inputs;    ///< names of the active inputs
   std::vector<double> stretches;      ///< how the inputs' scales are stretched (surrogate/stretch.hpp), 1: as they are
   std::vector<double> length_scales;  ///< in units of the input's range, on the stretched scale
   std::vector<double> first_order, first_order_sd;        ///< Sobol indices of the inputs (uq/emulate/sensitivity.hpp)

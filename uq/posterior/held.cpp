@@ -158,8 +158,8 @@ SharperFactor sharper_factor(const CaseModel& full, const ComparedSide& first, c
   const Eigen::MatrixXd left = seen.partialPivLu().solve(covariance);
   const Eigen::VectorXd mean = left.leftCols(rows) * a.linear;
   const Eigen::MatrixXd spread = form * left;
-  const double of_mean_evidences = log_mean_of(a, covariance.topLeftCorner(rows, rows)) -
-                                   log_mean_of(b, covariance.bottomRightCorner(rows, rows));
+  const double of_mean_evidences =
+      log_mean_of(a, covariance.topLeftCorner(rows, rows)) - log_mean_of(b, covariance.bottomRightCorner(rows, rows));
   const double of_form = mean.dot(form * mean) + spread.trace() + slope.dot(mean) - 0.5 * (a.square - b.square);
   slope += 2.0 * form * mean;
   const double variance = slope.dot(left * slope) + 2.0 * spread.cwiseProduct(spread.transpose()).sum();
