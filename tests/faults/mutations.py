@@ -109,6 +109,15 @@ MUTATIONS = [
     Mutation("a window takes in everything", INFORMATION,
              "std::max<Index>(static_cast<Index>(windows[w] * static_cast<double>(n)), window_least)", "n",
              (INFORMATION,), "test_uq_plan", "information about one of two*"),
+    Mutation("a stretched input's gradient forgets the stretch", "uq/emulate/learnt_scale.cpp",
+             "found.mean_gradient[i] *= slope;", "", ("uq/emulate/learnt_scale.cpp",), "test_uq_emulate",
+             "predictions and gradients of a stretched*"),
+    Mutation("a stretch takes the wrong end", "surrogate/stretch.cpp", "std::log1p((ratio - 1.0) * u) / std::log(ratio)",
+             "std::log1p((1.0 / ratio - 1.0) * u) / -std::log(ratio)", ("surrogate/stretch.cpp",), "test_surrogate",
+             "the stretch by the ratio*"),
+    Mutation("between two hills a cut law is likely", "uq/posterior/cut_law.cpp",
+             "if (!several) return law;", "return law;", ("uq/posterior/cut_law.cpp",), "test_uq_posterior",
+             "between two hills*"),
 ]
 
 
