@@ -62,6 +62,15 @@ TEST_CASE("a key that nobody asks for is an error that names its line and the ne
         "78: study.toml:1: contact.stifness: is not a key that demcal knows (did you mean 'stiffness'?)");
 }
 
+TEST_CASE("a documented key of the DEM in a study without a rig is told what it lacks") {
+  const auto read = [](const data::Section& root) {
+    for (const auto& [name, material] : root.child("materials").children()) material.text("powder", "");
+  };
+  CHECK(problem_of("[materials.sand]\ncoarse_graining = 8\n", read) ==
+        "78: study.toml:2: materials.sand.coarse_graining: is read of a study that has a [rig], and this one has none "
+        "(remove it, or give a [rig])");
+}
+
 TEST_CASE("a name with a point that is not in quotes is explained") {
   CHECK(problem_of("[materials.sand-0.5]\ndensity = 1.0\n",
                    [](const data::Section& root) {

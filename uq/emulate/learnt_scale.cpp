@@ -1,5 +1,6 @@
 // Emulators whose runs are learnt on stretched scales (surrogate/stretch.hpp), as functions of the study's unit cube.
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "uq/emulate/emulator.hpp"

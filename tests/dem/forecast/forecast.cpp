@@ -111,6 +111,27 @@ TEST_CASE("a tool above the bed is said, with both heights, and one in another c
   CHECK_THAT(other.said(), Contains("rig.mesh.bar") && Contains("never touches the powder"));
 }
 
+TEST_CASE("what the bed lies on is reached by it, however thin the bed, and is no tool that dips into it") {
+  Mixer m;
+  m.rig.meshes.pop_back();
+  m.rig.measured = {0};
+  m.rig.region.low.z = 0.0;
+  m.c.rig.fill = 300.0;  // a bed of 0.65 mm
+  CHECK(m.said() == "");
+  CHECK_THAT(listed(m.told().warnings), !Contains("vessel dips"));
+  // One sphere on the floor of a vessel of two metres.
+  Mixer wide;
+  wide.c.material.diameter = 0.01;
+  wide.c.rig.fill = 1.0;
+  wide.rig.low = {-1.02, -1.02, -0.02};
+  wide.rig.high = {1.02, 1.02, 0.1};
+  wide.rig.region.low = {0.1, 0.1, 0.01};
+  wide.rig.region.high = {0.14, 0.14, 0.05};
+  wide.rig.meshes = {part("vessel", box({-1.0, -1.0, 0.0}, {1.0, 1.0, 0.08}, true))};
+  wide.rig.measured = {0};
+  CHECK(wide.said() == "");
+}
+
 TEST_CASE("a sweep that cuts the vessel, another tool, or leaves the box is said, and tools that mesh are not") {
   Mixer m;
   SECTION("a bar that fits only as it starts") {
