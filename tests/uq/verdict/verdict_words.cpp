@@ -246,6 +246,20 @@ TEST_CASE("narrow parts at the ends of the range are separate values, unless som
   CHECK(word_of(facts, {}) == uq::Verdict::not_identified);
 }
 
+TEST_CASE("a range that ends a value is widened with runs where it is a parameter's, and without where it is a meter's",
+          "[uq]") {
+  const auto remedy_with = [](const std::string& other) {
+    ParameterEvidence evidence{.conditional_on = other};
+    evidence.found.low_pinned_by = evidence.found.high_pinned_by = other;
+    const WordFacts open{.open_low = true, .open_high = true, .open_beyond = true, .contraction = 0.2};
+    const ParameterReport b = judged("b", {.contraction = 0.95, .contraction_within = 0.95}, {});
+    return shown_remedy(words_of({.parameters = {judged("a", open, evidence), b}, .traded = {}, .parted_by = {}}));
+  };
+  CHECK(has(remedy_with("b"), "Widen the range of b, with training runs there."));
+  CHECK(has(remedy_with("offset"), "Widen the range of offset, or find it by a calibration of the meter."));
+  CHECK_FALSE(has(remedy_with("offset"), "training runs"));
+}
+
 TEST_CASE("a parameter without influence is told neither structural nor hidden by noise, and gets one remedy", "[uq]") {
   const ParameterReport known = judged("a", {.contraction = 0.95, .contraction_within = 0.95}, {});
   const ParameterReport silent = judged("b", {.influences = false, .open_low = true, .open_high = true}, {});
