@@ -12,6 +12,7 @@ off. A point that sweeps.csv has is not run, but with --again; --gather only wri
                machine there
   grain size   the same bed of spheres of other diameters, slowest and fastest speed: without cohesion, and with a force of
                attraction that goes with the 2nd, 3rd or 4th power of the diameter from that of 9e-18 J at 0.8 mm
+The slice's points at the slowest and the fastest speed that the README's table of the mechanism shows have its outputs, too.
 A point that ends with an error (spheres pressed into each other, say) has a row with its message and no numbers.
 """
 import argparse
@@ -42,6 +43,8 @@ MACHINE = STIFFER | {"rig.kind": "machine", "rig.machine_length": "48 mm", "rig.
 BASE_DIAMETER, BASE_HAMAKER = 0.8, 9e-18  # mm, J
 KEY = ["sweep", "choice", "material", "friction", "hamaker", "rpm"]
 OUTPUTS = ["torque", "coordination", "axial_flow", "kinetic_energy"]
+# What tells how the torque comes about. Runs of before there were these outputs are made again where they are in question.
+MECHANISM = ["normal_stress", "centre_x", "centre_z", "tool_contacts", "tool_slip", "wall_slip"]
 
 
 def points():
@@ -73,6 +76,14 @@ def points():
             hamaker = BASE_HAMAKER * (diameter / BASE_DIAMETER) ** (power - 1)  # the force goes with hamaker * diameter
             for rpm in ENDS:
                 yield "grain size", f"force as d^{power}", material, 0.4, f"{hamaker:.4g}", rpm, {}
+
+
+def in_question(point):
+    """Whether the README's table of the mechanism shows the point."""
+    sweep, choice, _, friction, hamaker, rpm, _ = point
+    if rpm not in ENDS:
+        return False
+    return sweep == "friction" or (sweep == "hamaker" and hamaker in ("2e-18", "9e-18")) or (choice == "cap on the net force" and hamaker == "9e-18")
 
 
 def folder_of(arguments, point):
@@ -125,7 +136,7 @@ def row_of(arguments, point):
     if "error" in found:
         reason = found["error"].split(" (its last good state")[0]  # a path of the machine that ran it
         return row | {"state": "failed: " + reason}
-    for name in OUTPUTS:
+    for name in OUTPUTS + MECHANISM:
         output = found["outputs"][name]
         row[name] = f"{output['mean']:.6g}"
         row[name + "_se"] = f"{output['standard_error']:.3g}"
@@ -136,10 +147,11 @@ def row_of(arguments, point):
 def gather(arguments):
     there = rows_there()
     rows = [row for row in (row_of(arguments, point) or there.get(key_of(point)) for point in points()) if row]
-    columns = KEY + [c for o in OUTPUTS for c in (o, o + "_se")] + [
+    columns = KEY + [c for o in OUTPUTS + MECHANISM for c in (o, o + "_se")] + [
         "bond_number", "turns", "seed", "settings", "state"]
     with open(HERE / "sweeps.csv", "w", newline="") as file:
-        file.write("# made by sweep.py; torque in uN m, coordination in contacts a sphere, axial_flow in g/s, kinetic_energy in uJ;\n"
+        file.write("# made by sweep.py; torque in uN m, coordination in contacts a sphere, axial_flow in g/s, kinetic_energy in uJ,\n"
+                   "# normal_stress in Pa, centre_x and centre_z in mm, tool_slip and wall_slip in mm/s, tool_contacts in contacts a sphere;\n"
                    "# NAME_se: standard error; bond_number: largest pull-off force over weight; turns: of the measured window\n")
         writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
         writer.writeheader()
@@ -157,7 +169,8 @@ def main():
     arguments = parser.parse_args()
     if not arguments.gather:
         there = {} if arguments.again else rows_there()
-        missing = [point for point in points() if key_of(point) not in there]
+        lacking = lambda point: key_of(point) not in there or (in_question(point) and not there[key_of(point)].get(MECHANISM[0]))
+        missing = [point for point in points() if lacking(point)]
         with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
             list(pool.map(lambda point: simulate(arguments, point), missing))
     gather(arguments)

@@ -14,10 +14,12 @@ namespace dem {
 
 inline constexpr std::size_t max_bodies = 8;
 
-/// Load of the powder on a body.
+/// Load of the powder on a body, and how the powder slips on it.
 struct BodyLoad {
-  Vec3 force;   ///< N
-  Vec3 torque;  ///< N m about the present place of the motion's point; arms go from there to the contact point
+  Vec3 force;         ///< N
+  Vec3 torque;        ///< N m about the present place of the motion's point; arms go from there to the contact point
+  double slip = 0.0;  ///< m/s, sum over the contacts of the speed at which the surfaces slip
+  std::uint64_t contacts = 0;  ///< touching spheres; one that touches two parts of the surface counts twice
 };
 
 /// Sums over one step's contacts.

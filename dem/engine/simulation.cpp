@@ -21,6 +21,8 @@ void add(StepSums& total, const StepSums& part) {
   for (std::size_t b = 0; b < max_bodies; ++b) {
     total.body[b].force += part.body[b].force;
     total.body[b].torque += part.body[b].torque;
+    total.body[b].slip += part.body[b].slip;
+    total.body[b].contacts += part.body[b].contacts;
   }
   total.virial += part.virial;
   total.dissipated += part.dissipated;

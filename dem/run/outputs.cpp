@@ -20,6 +20,33 @@ double torque_of(std::size_t k, const Sampling& of, const Simulation& now) {
   return dot(d.torque_axis, now.sums().body[d.body].torque);
 }
 
+/// Contacts of the spheres with some bodies in a step, and the sum of the speeds at which they slip [m/s].
+struct OnBodies {
+  double contacts = 0.0, slip = 0.0;
+
+  void add(const BodyLoad& load) {
+    contacts += static_cast<double>(load.contacts);
+    slip += load.slip;
+  }
+  double mean_slip() const { return contacts > 0.0 ? slip / contacts : 0.0; }
+};
+OnBodies on_measured(const Sampling& of, const Simulation& now) {
+  OnBodies sum;
+  for (const Driven& d : of.sensor.driven) sum.add(now.sums().body[d.body]);
+  return sum;
+}
+OnBodies on_others(const Sampling& of, const Simulation& now) {
+  OnBodies sum;
+  for (const std::size_t body : of.other_bodies) sum.add(now.sums().body[body]);
+  return sum;
+}
+
+std::string no_other_bodies(const Case& c) {
+  return measured_bodies(c).size() == rig_bodies(c).size()
+             ? "is that of the bodies whose torque is not measured, and this rig measures all of its bodies"
+             : "";
+}
+
 /// Momentum along the channels, of one of them [kg m/s]; not a number where there are none.
 double flow_of(std::size_t channel, const Sampling& of, const Simulation& now) {
   return of.channels.exist() ? now.carried().flow[channel] : std::numeric_limits<double>::quiet_NaN();
@@ -88,6 +115,16 @@ const std::vector<MeanOutput>& mean_outputs() {
        [](const Sampling& of, const Simulation& now) { return flow_of(0, of, now); }, length_of_flow, no_channels},
       {"second_flow", "kg/s", &Series::second_flow,
        [](const Sampling& of, const Simulation& now) { return -flow_of(1, of, now); }, length_of_flow, no_channels},
+      {"tool_contacts", "1", &Series::tool_contacts,
+       [](const Sampling& of, const Simulation& now) { return on_measured(of, now).contacts; },
+       [](const Sampling& of) { return of.spheres; }},
+      {"tool_slip", "m/s", &Series::tool_slip,
+       [](const Sampling& of, const Simulation& now) { return on_measured(of, now).mean_slip(); }, one},
+      {"wall_slip", "m/s", &Series::wall_slip,
+       [](const Sampling& of, const Simulation& now) {
+         return of.other_bodies.empty() ? std::numeric_limits<double>::quiet_NaN() : on_others(of, now).mean_slip();
+       },
+       one, no_other_bodies},
   };
   return all;
 }

@@ -15,6 +15,7 @@ namespace dem {
 /// The quantities of a run that do not change from sample to sample.
 struct Sampling {
   Sensor sensor;
+  std::vector<std::size_t> other_bodies;  ///< bodies whose torque is not measured
   double spheres = 0.0;
   double solid_volume = 0.0;  ///< m3
   double mass = 0.0;          ///< kg

@@ -151,7 +151,12 @@ std::vector<std::uint64_t> frames_in(const Plan& plan, int frames) {
 
 Sampling sampling_of(const Case& c, const BuiltRig& rig) {
   const std::size_t spheres = rig.position.size();
+  std::vector<std::size_t> others;
+  for (std::size_t b = 0; b < rig.bodies.size(); ++b)
+    if (std::none_of(rig.sensor.driven.begin(), rig.sensor.driven.end(), [&](const Driven& d) { return d.body == b; }))
+      others.push_back(b);
   return {rig.sensor,
+          std::move(others),
           static_cast<double>(spheres),
           solid_volume(rig.grains, spheres),
           solid_mass(rig.grains, spheres),

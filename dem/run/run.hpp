@@ -25,6 +25,11 @@
 //                       length, between the openings. Both are positive where the powder goes round, out along the
 //                       first and back along the second; of an STL rig, out along the first mesh's axis. The machine's
 //                       axial_flow is their mean, and the powder's mass over it the time of a lap.
+//   tool_contacts       contacts with the measured bodies per sphere: how much of the powder the mixer has hold of
+//   tool_slip, wall_slip
+//                       m/s, speed at which surfaces slip where spheres touch the measured bodies, and the others (the
+//                       trough): mean over the contacts, 0 in a step without any. A rig that measures all of its
+//                       bodies has no wall_slip.
 //   silhouette_x, silhouette_z, silhouette_area, upper_angle, lower_angle
 //                       m, m, m2, rad, rad: of the silhouette that a camera sees along the axis
 //                       (dem/run/silhouette.hpp). The time-averaged projection is of RunControl::window, and each
@@ -62,6 +67,9 @@ struct Series {
   std::vector<double> second_torque;    ///< N m
   std::vector<double> first_flow;       ///< kg/s
   std::vector<double> second_flow;      ///< kg/s
+  std::vector<double> tool_contacts;    ///< 1
+  std::vector<double> tool_slip;        ///< m/s
+  std::vector<double> wall_slip;        ///< m/s
   std::vector<double> look_time;        ///< s, of the looks at the bed, each 0.05 s
   std::vector<double> bond_order;       ///< 1, dem/engine/order.hpp, at a look
   std::vector<double> mixing_index;     ///< 1, dem/run/mixing.hpp, at a look; empty without channels, as the next

@@ -219,7 +219,8 @@ class LawPass final : public ForcePass {
     const auto one = wall(MotionRow{}, body).at(tables_.equal_mass, tables_.equal_radius);
     for (int k = 0; k < lanes; ++k) hits[count + k] = hits[count - 1];
     Vector3<Tally> body_force, body_torque;
-    Tally tool_work, dissipated;
+    Tally tool_work, dissipated, slipping;
+    unsigned touching = 0;
     Lane max_overlap = 0.0;
     const auto add = [](Vector3<Tally>& tally, const Vector3<Lane>& values, std::size_t first) {
       tally.x.add(values.x, first);
@@ -283,7 +284,9 @@ class LawPass final : public ForcePass {
       const Lane relative = m.overlap / radius;
       max_overlap = larger(max_overlap, relative);
       const unsigned lane_mask = (1u << used) - 1u;
-      sums.wall_contacts += static_cast<unsigned>(std::popcount(bits(r.touch > 0.0) & lane_mask));
+      const auto touch = r.touch > 0.0;
+      touching += static_cast<unsigned>(std::popcount(bits(touch) & lane_mask));
+      slipping.add(select(touch, valid * norm(m.velocity - dot(m.velocity, n) * n), Lane(0.0)), base);
       sums.deep += static_cast<unsigned>(std::popcount(bits(relative > around.deep) & lane_mask));
     }
     BodyLoad& load = sums.body[body];
@@ -294,6 +297,9 @@ class LawPass final : public ForcePass {
     };
     add_to(load.force, body_force);
     add_to(load.torque, body_torque);
+    slipping.add_to(load.slip);
+    load.contacts += touching;
+    sums.wall_contacts += touching;
     tool_work.add_to(sums.tool_work, around.time_step);
     dissipated.add_to(sums.dissipated);
     for (int k = 0; k < lanes; ++k) sums.max_overlap = std::max(sums.max_overlap, static_cast<double>(max_overlap[k]));

@@ -171,6 +171,14 @@ TEST_CASE("a mixture runs to its torque, and its coordination and stress are tho
   CHECK(coordination > 0.5);
   CHECK(coordination < 6.0);
   CHECK(dem::output(result, "torque").mean > 0.0);
+  const double tip = dem::tool_speed(c);
+  CHECK(dem::output(result, "tool_contacts").mean > 0.0);
+  CHECK(dem::output(result, "tool_contacts").mean < coordination);
+  CHECK(dem::output(result, "tool_slip").mean > 0.0);
+  CHECK(dem::output(result, "tool_slip").mean < tip);
+  // The bed turns with the mixer, and slips on the trough that holds it back.
+  CHECK(dem::output(result, "wall_slip").mean > 0.0);
+  CHECK(dem::output(result, "wall_slip").mean < tip);
   // Of the order of the weight of the bed on its bottom.
   const double weight = 9.81 * dem::summarise_bed(c).mass / (c.rig.pitch * 2.0 * c.rig.trough_radius);
   CHECK(dem::output(result, "normal_stress").mean > 0.1 * weight);

@@ -1,8 +1,12 @@
 // A sphere on a plane: sliding into rolling, rolling and sliding on an incline, and a path that does not know the
 // triangles.
 #include <catch2/catch.hpp>
+#include <numbers>
 
 #include "tests/dem/shot.hpp"
+
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
 
 namespace {
 
@@ -84,6 +88,29 @@ TEST_CASE("a sphere rolls over 2, 200 and 20,000 triangles on the same path, to 
     INFO("ends at " << end.x << ", " << end.y << ", " << end.z);
     CHECK(dem::length(end - ends[0]) < 1e-9 * 0.5e-3);
   }
+}
+
+TEST_CASE("a sphere slips on a plane at its speed less that of its rolling, and so on a plane that moves") {
+  dem::Case c = ball();
+  c.contact.friction = 0.0;
+  const double r = 0.5 * c.material.diameter, speed = 0.07, dive = 0.05;
+  const auto slip = [&](dem::Vec3 velocity, double spin, bool moves) {
+    dem::Setup setup = resting(c, velocity, 1, 1);
+    setup.spheres.spin = {{0.0, spin, 0.0}};
+    if (moves)  // along x, at 0.03 m/s when it begins
+      setup.bodies.at(0).motion.oscillations = {
+          {dem::OscillationKind::along, {1.0, 0.0, 0.0}, 0.03 / (2.0 * std::numbers::pi * 5.0), 5.0, 0.0}};
+    dem::Simulation s(std::move(setup));
+    s.step();  // bodies rest until time 0 is over
+    REQUIRE(s.sums().body[0].contacts == 1);
+    return s.sums().body[0].slip;
+  };
+  // The overlap of a sphere at rest is less than 1e-3 of its radius, by which its lever is shorter.
+  CHECK_THAT(slip({speed, 0.0, 0.0}, 0.0, false), WithinRel(speed, 1e-12));
+  CHECK_THAT(slip({speed, 0.0, -dive}, 0.0, false), WithinRel(speed, 1e-12));
+  CHECK_THAT(slip({speed, 0.0, 0.0}, speed / r, false), WithinAbs(0.0, 1e-3 * speed));
+  CHECK_THAT(slip({speed, 0.0, 0.0}, -speed / r, false), WithinRel(2.0 * speed, 1e-3));
+  CHECK_THAT(slip({speed, 0.0, 0.0}, 0.0, true), WithinRel(speed - 0.03, 1e-6));
 }
 
 TEST_CASE("an edge or a vertex of a box pushes a sphere like a point, once, and with the same force from either side") {

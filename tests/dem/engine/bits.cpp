@@ -125,7 +125,8 @@ TEST_CASE("every instruction set gives the same bits, of the state and of the su
           contacts += now.contacts + now.wall_contacts;
           sums.insert(sums.end(), {now.virial, now.dissipated, now.tool_work, now.max_overlap});
           for (const dem::BodyLoad& b : now.body)
-            sums.insert(sums.end(), {b.force.x, b.force.y, b.force.z, b.torque.x, b.torque.y, b.torque.z});
+            sums.insert(sums.end(), {b.force.x, b.force.y, b.force.z, b.torque.x, b.torque.y, b.torque.z, b.slip,
+                                     static_cast<double>(b.contacts)});
         }
         REQUIRE(contacts > 2000);
         hashes.push_back(XXH3_64bits_withSeed(sums.data(), sums.size() * sizeof sums[0], scene::hash(s.state())));
