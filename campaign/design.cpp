@@ -165,13 +165,17 @@ void write_points(const Workspace& workspace, const std::string& path, const std
                   const std::vector<PointColumn>& more, const std::string& head) {
   const data::Study& study = workspace.study;
   const bool has_materials = study.materials.size() > 1 || !study.materials.front().name.empty();
-  std::vector<std::string> fields;
+  std::vector<std::string> fields, units;
   if (has_materials) fields.push_back("material");
-  for (const data::Parameter& p : study.parameters) fields.push_back(p.name);
-  for (const data::Control& c : study.controls) fields.push_back(c.name);
+  const auto add = [&](const std::string& name, const data::Unit& unit) {
+    fields.push_back(name);
+    units.push_back(data::with_unit(name, unit));
+  };
+  for (const data::Parameter& p : study.parameters) add(p.name, p.unit);
+  for (const data::Control& c : study.controls) add(c.name, c.unit);
   for (const PointColumn& one : more) fields.push_back(one.name);
   for (std::string& field : fields) field = data::csv_field(field);
-  std::string text = head + fmt::format("{}\n", fmt::join(fields, ","));
+  std::string text = head + fmt::format("# units: {}\n{}\n", fmt::join(units, ", "), fmt::join(fields, ","));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& point = points[i];
     fields.clear();

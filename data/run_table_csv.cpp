@@ -291,7 +291,7 @@ void write_table_csv(const std::string& path, const RunTable& table, const Study
   std::string header, units;
   const auto add = [&](const std::string& name, const Unit& unit) {
     header += name + ',';
-    units += fmt::format("{}{} [{}]", units.empty() ? "" : ", ", name, unit.symbol.empty() ? "1" : unit.symbol);
+    units += (units.empty() ? "" : ", ") + with_unit(name, unit);
   };
   for (const Column& column : table.parameters) add(column.name, column.unit);
   for (const Column& column : table.controls) add(column.name, column.unit);

@@ -33,9 +33,15 @@ struct Unit {
 /// Whether a number of this unit is written without a unit.
 inline bool is_bare(std::string_view symbol) { return symbol.empty() || symbol == "1"; }
 
-/// The unit as it is written behind a number: " mN m", or nothing.
+/// The unit as it is written behind a number: " mN m", or nothing; of a unit that is a multiple itself " x 10 rpm".
 inline std::string behind_number(std::string_view symbol) {
-  return is_bare(symbol) ? std::string() : " " + std::string(symbol);
+  if (is_bare(symbol)) return {};
+  return (symbol.front() >= '0' && symbol.front() <= '9' ? " x " : " ") + std::string(symbol);
+}
+
+/// A quantity with its unit, as in a heading or in a line "# units: rpm [rpm], friction [1]" of a table.
+inline std::string with_unit(std::string_view name, const Unit& unit) {
+  return std::string(name) + " [" + (unit.symbol.empty() ? "1" : unit.symbol) + "]";
 }
 
 /// Parses a unit. Throws std::invalid_argument when UDUNITS-2 does not know it.

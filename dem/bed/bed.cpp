@@ -22,27 +22,6 @@ namespace {
 
 using std::numbers::pi;
 
-struct Elastic {
-  double young_modulus, poisson_ratio;
-  double softened;  ///< Pa, stands against contact.true_young_modulus
-  double flexible() const { return (1.0 - poisson_ratio * poisson_ratio) / young_modulus; }
-  double shearing() const { return 2.0 * (2.0 - poisson_ratio) * (1.0 + poisson_ratio) / young_modulus; }
-};
-
-Elastic elastic(const Case& c, const Material& m) {
-  const double modulus = m.young_modulus.value_or(c.contact.young_modulus);
-  return {modulus, m.poisson_ratio.value_or(c.contact.poisson_ratio), modulus};
-}
-
-/// A wall is of the bed's component of that name, or has the walls' modulus, or that of the grain it meets.
-Elastic elastic(const Case& c, const Material& grain, const BodyLabel& body) {
-  for (const Component& k : c.components) {
-    if (k.material.name == body.material) return elastic(c, k.material);
-  }
-  const Elastic as_grain = elastic(c, grain);
-  return {c.contact.wall_young_modulus.value_or(as_grain.young_modulus), as_grain.poisson_ratio, as_grain.softened};
-}
-
 /// Young's modulus of two alike that are as stiff as these two are together [Pa].
 double pair_modulus(const Elastic& a, const Elastic& b) {
   if (a.softened == b.softened) return a.softened;
@@ -121,6 +100,19 @@ PairCoefficients coefficients(const Case& c, const PairContact& its, const Meets
 }
 
 }  // namespace
+
+Elastic elastic(const Case& c, const Material& m) {
+  const double modulus = m.young_modulus.value_or(c.contact.young_modulus);
+  return {modulus, m.poisson_ratio.value_or(c.contact.poisson_ratio), modulus};
+}
+
+Elastic elastic(const Case& c, const Material& grain, const BodyLabel& body) {
+  for (const Component& k : c.components) {
+    if (k.material.name == body.material) return elastic(c, k.material);
+  }
+  const Elastic as_grain = elastic(c, grain);
+  return {c.contact.wall_young_modulus.value_or(as_grain.young_modulus), as_grain.poisson_ratio, as_grain.softened};
+}
 
 double damping_ratio(double restitution) {
   const double l = std::log(restitution);

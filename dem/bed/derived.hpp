@@ -63,6 +63,18 @@ std::vector<std::string> describe(const Case& c, const Derived& d);
 BedCoefficients make_bed(const Case& c, const std::vector<BodyLabel>& bodies);
 BedCoefficients make_bed(const Case& c, std::size_t bodies);
 
+/// The elastic moduli of a grain or a wall, of which those of a pair are made (dem/bed/bed.cpp).
+struct Elastic {
+  double young_modulus = 0.0;  ///< Pa
+  double poisson_ratio = 0.0;
+  double softened = 0.0;  ///< Pa, stands against contact.true_young_modulus
+  double flexible() const { return (1.0 - poisson_ratio * poisson_ratio) / young_modulus; }
+  double shearing() const { return 2.0 * (2.0 - poisson_ratio) * (1.0 + poisson_ratio) / young_modulus; }
+};
+Elastic elastic(const Case& c, const Material& m);
+/// Those of a wall where it meets a grain: of the bed's component of that name, or the walls' modulus, or the grain's.
+Elastic elastic(const Case& c, const Material& grain, const BodyLabel& body);
+
 /// zeta of a linear spring-dashpot with dashpot tension for a restitution in (0, 1].
 double damping_ratio(double restitution);
 

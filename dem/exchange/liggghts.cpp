@@ -12,6 +12,7 @@
 #include "data/file_name.hpp"
 #include "data/origin.hpp"
 #include "dem/bed/derived.hpp"
+#include "dem/case/grains.hpp"
 #include "dem/rig/drive.hpp"
 #include "dem/rig/rig.hpp"
 #include "dem/run/run.hpp"
@@ -89,15 +90,6 @@ std::string table(const Types& types, const BedCoefficients& bed, const Value& v
   return text;
 }
 
-/// E of a body's surface from the pair's E*, that of spheres known: 1/E* = q/E + q/E_wall, q = 1 - nu^2 of both.
-double wall_modulus(const Case& c, const BedCoefficients& bed, std::size_t body) {
-  const double q = 1.0 - c.contact.poisson_ratio * c.contact.poisson_ratio;
-  const double grain = 2.0 * q * bed.grain[0].young_modulus;
-  const double flexible = 1.0 / bed.wall[body].young_modulus - q / grain;
-  constexpr double rigid = 1e15;  // Pa
-  return flexible * rigid > q ? q / flexible : rigid;
-}
-
 std::string properties(const Case& c, const Types& types, const BedCoefficients& bed) {
   std::string text;
   const std::size_t n = types.of.size();
@@ -130,11 +122,15 @@ std::string properties(const Case& c, const Types& types, const BedCoefficients&
       const double z = p.damping_ratio;
       return std::exp(-std::numbers::pi * z / std::sqrt(std::max(1e-12, 1.0 - z * z)));
     });
-    const double q = 1.0 - c.contact.poisson_ratio * c.contact.poisson_ratio;
-    each("youngsModulus", [&](std::size_t t) {
-      return t < types.spheres ? 2.0 * q * bed.grain[0].young_modulus : wall_modulus(c, bed, types.of[t].material);
-    });
-    each("poissonsRatio", [&](std::size_t) { return c.contact.poisson_ratio; });
+    // LIGGGHTS combines the moduli of two types as dem/bed/bed.cpp does those of two materials.
+    const std::vector<Component> parts = components_of(c);
+    const std::vector<BodyLabel> bodies = body_labels(c);
+    const auto of_type = [&](std::size_t t) {
+      const std::size_t index = types.of[t].material;
+      return t < types.spheres ? elastic(c, parts[index].material) : elastic(c, parts[0].material, bodies[index]);
+    };
+    each("youngsModulus", [&](std::size_t t) { return of_type(t).young_modulus; });
+    each("poissonsRatio", [&](std::size_t t) { return of_type(t).poisson_ratio; });
   }
   return text;
 }
@@ -224,7 +220,7 @@ std::string script(const Case& c, const Derived& d, const BuiltRig& rig, const T
       "# -var px N cuts the box into N parts along x; -var nset N and -var nrun N change the lengths.\n"
       "variable dt   index {:.12g}\nvariable nset index {:.0f}\nvariable nrun index {:.0f}\nvariable px   index *\n\n"
       "atom_style granular\natom_modify map array\nboundary {} {} {}\nnewton off\n"
-      "communicate single vel yes\nunits si\nprocessors ${{px}} * *\nread_data bed.data\nneighbor {:.6g} "
+      "communicate single vel yes\nunits si\nsoft_particles yes\nprocessors ${{px}} * *\nread_data bed.data\nneighbor {:.6g} "
       "bin\nneigh_modify delay 0\n\n",
       data::blank_mark(), clock.step, clock.steps(c.run.settle), clock.steps(c.run.longest),
       rig.periodic[0] ? "p" : "f", rig.periodic[1] ? "p" : "f", rig.periodic[2] ? "p" : "f", 0.25 * d.largest);
@@ -322,6 +318,11 @@ std::vector<std::string> write_liggghts(const Case& c, std::uint64_t seed, const
 
 Measured read_liggghts(const Case& c, const std::string& folder) {
   const std::filesystem::path from(folder);
+  for (const char* file : {"torque.dat", "state.dat"})
+    if (!std::filesystem::exists(from / file))
+      throw data::InputError(data::ExitStatus::missing_input,
+                             {(from / file).string(), "is not there: LIGGGHTS has not run in this folder",
+                              "run it there first: liggghts -in in.liggghts"});
   Series series;
   auto torque = averages((from / "torque.dat").string(), 1);
   auto state = averages((from / "state.dat").string(), 2);

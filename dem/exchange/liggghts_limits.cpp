@@ -4,10 +4,24 @@
 #include <algorithm>
 
 #include "dem/bed/derived.hpp"
+#include "dem/case/grains.hpp"
 #include "dem/exchange/liggghts.hpp"
 #include "dem/rig/rig.hpp"
 
 namespace dem {
+namespace {
+
+/// Whether a body's moduli differ from one material of the bed to the other.
+bool follows_its_grain(const Case& c, const BodyLabel& body) {
+  const std::vector<Component> parts = components_of(c);
+  const Elastic first = elastic(c, parts.front().material, body);
+  return std::any_of(parts.begin(), parts.end(), [&](const Component& part) {
+    const Elastic with = elastic(c, part.material, body);
+    return with.young_modulus != first.young_modulus || with.poisson_ratio != first.poisson_ratio;
+  });
+}
+
+}  // namespace
 
 std::vector<data::Problem> not_in_liggghts(const Case& c) {
   std::vector<data::Problem> found;
@@ -34,8 +48,12 @@ std::vector<data::Problem> not_in_liggghts(const Case& c) {
              "area and is not JKR's");
       break;
   }
-  if (law.normal != NormalLaw::linear && c.components.size() > 1)
-    refuse("materials.components", "our Hertz contact of unlike materials", "the nearest is a bed of one material");
+  if (law.normal == NormalLaw::hertz) {
+    const std::vector<BodyLabel> bodies = body_labels(c);
+    if (std::any_of(bodies.begin(), bodies.end(), [&](const BodyLabel& body) { return follows_its_grain(c, body); }))
+      refuse("contact.wall_young_modulus", "wall whose moduli are those of each grain that it meets",
+             "set contact.wall_young_modulus, and one Poisson's ratio for all materials");
+  }
   if (law.normal == NormalLaw::hertz && law.tangential_law() == TangentialLaw::linear)
     refuse("contact.tangential", "linear tangential spring beside the Hertz law",
            "the nearest is tangential = \"mindlin\"");

@@ -39,6 +39,29 @@ TEST_CASE("a campaign that was killed as its last run had ended is not begun a s
   CHECK(plan_campaign(workspace, table, 3).points.size() == 3);
 }
 
+TEST_CASE("a design is read in the units that it was written in, when the study's have changed since") {
+  const TemporaryFolder folder;
+  Workspace workspace = test::small_study(folder.path("out"));
+  make_out(workspace, "runs");
+  const std::vector<Point> points = training_design(workspace, workspace.study.materials.front().name, 0, 3);
+  write_design(workspace, points);
+  const auto differ = [&](double by) {
+    const std::vector<Point> again = read_design(workspace);
+    REQUIRE(again.size() == points.size());
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      REQUIRE(again[k].inputs.size() == points[k].inputs.size());
+      for (std::size_t i = 0; i < points[k].inputs.size(); ++i)
+        if (std::abs(again[k].inputs[i] - points[k].inputs[i]) > by * std::abs(points[k].inputs[i])) return true;
+    }
+    return false;
+  };
+  CHECK_FALSE(differ(0.0));
+  REQUIRE_FALSE(workspace.study.controls.empty());
+  data::Unit& unit = workspace.study.controls.front().unit;
+  unit = data::parse_unit(unit.symbol == "rpm" ? "rad/s" : "rpm");
+  CHECK_FALSE(differ(1e-12));
+}
+
 TEST_CASE(
     "what is dropped of a run changes what its row means, and neither its course nor the file that it is kept in") {
   const TemporaryFolder folder;

@@ -158,7 +158,8 @@ TEST_CASE("design for another code's runs gives further points, as many as are a
   INFO(outcome.err);
   REQUIRE(outcome.status == 0);
   CHECK(nlohmann::json::parse(outcome.out)["points"] == 20);
-  CHECK_THAT(folder.read("out/design.csv"), Contains("\nfriction,cohesion,speed\n"));
+  CHECK_THAT(folder.read("out/design.csv"),
+             Contains("\n# units: friction [1], cohesion [mJ/m2], speed [rpm]\nfriction,cohesion,speed\n"));
   CHECK(nlohmann::json::parse(folder.demcal({"design", "study", "--out", "out", "--json"}).out)["points"] == 16);
 }
 

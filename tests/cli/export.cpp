@@ -56,6 +56,52 @@ TEST_CASE("an exported bed has the spheres, masses and pairs of the study's run"
   CHECK(folder.read("case/bed.data") == "mine\n");
 }
 
+TEST_CASE(
+    "each material of a Hertz bed is exported with its own moduli, and a wall that has none of its own is refused") {
+  const Folder folder;
+  fs::create_directories(folder.path / "mix");
+  folder.write("mix/study.toml", R"(
+[study]
+name = "mix"
+seed = 3
+[rig]
+shaft_radius = "1.5 mm"
+blade_radius = "3.6 mm"
+blade_thickness = "0.8 mm"
+trough_radius = "6.0 mm"
+pitch = "4.8 mm"
+fill = 100
+[materials.mix]
+components = [{ material = "soft", mass_fraction = 0.5 }, { material = "stiff", mass_fraction = 0.5 }]
+[materials.soft]
+density = "3000 kg/m3"
+diameter = "0.8 mm"
+contact = { young_modulus = "2 MPa", poisson_ratio = 0.3 }
+[materials.stiff]
+density = "6090 kg/m3"
+diameter = "0.9 mm"
+contact = { young_modulus = "20 MPa", poisson_ratio = 0.2 }
+[contact]
+normal = "hertz"
+poisson_ratio = 0.3
+wall_young_modulus = "50 MPa"
+[parameters.friction]
+target = "contact.friction"
+low = 0.1
+high = 0.8
+[outputs.torque]
+unit = "uN m"
+)");
+  const std::vector<std::string> words{"export", "mix", "case", "--to", "liggghts", "--quiet"};
+  CHECK_THAT(folder.says(words, 78), Contains("contact.wall_young_modulus: LIGGGHTS has no wall whose moduli are"));
+  folder.replace("mix/study.toml", "poisson_ratio = 0.2", "poisson_ratio = 0.3");
+  REQUIRE(folder.demcal(words).status == 0);
+  // Larger spheres come first. The two walls follow.
+  CHECK_THAT(folder.read("case/in.liggghts"),
+             Contains("youngsModulus peratomtype 20000000 2000000 50000000 50000000\n") &&
+                 Contains("poissonsRatio peratomtype 0.3 0.3 0.3 0.3\n"));
+}
+
 TEST_CASE("what LIGGGHTS has not is refused with the nearest, and a folder without its answer says what to do") {
   const Folder folder;
   const auto refuse = [&](const std::vector<std::string>& more) {
@@ -73,7 +119,8 @@ TEST_CASE("what LIGGGHTS has not is refused with the nearest, and a folder witho
 
   CHECK_THAT(folder.demcal({"export", quick, "case"}).err, Contains("--to liggghts"));
   REQUIRE(folder.demcal({"export", quick, "case", "--to", "liggghts", "--quiet", "--at", "hamaker=0"}).status == 0);
-  CHECK_THAT(folder.says({"export", quick, "case", "--collect"}, 66), Contains("torque.dat"));
+  CHECK_THAT(folder.says({"export", quick, "case", "--collect"}, 66),
+             Contains("torque.dat: is not there: LIGGGHTS has not run"));
   CHECK_THAT(folder.says({"export", quick, "case", "--collect", "--set", "contact.restitution=0.5"}, 65),
              Contains("other settings than the study has now"));
 }

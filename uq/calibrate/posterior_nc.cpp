@@ -285,9 +285,8 @@ void write_posterior(const std::string& path, const data::Study& study, const Sa
 std::string draws_csv(const SampledCase& sampled) {
   std::string units = "# units:", head = "chain,draw", rows;
   for (const Unknown& unknown : sampled.model->unknowns) {
-    const std::string& unit = unknown.prior.parameter().unit.symbol;
-    units +=
-        fmt::format("{} {} [{}]", head == "chain,draw" ? "" : ",", variable_name(unknown), unit.empty() ? "1" : unit);
+    units += head == "chain,draw" ? " " : ", ";
+    units += data::with_unit(variable_name(unknown), unknown.prior.parameter().unit);
     head += fmt::format(",{}", data::csv_field(variable_name(unknown)));
   }
   for (std::size_t c = 0; c < sampled.draws.chains.size(); ++c) {
