@@ -145,6 +145,9 @@ Spread read_spread(const Section& section, std::string_view key, const Unit& uni
   const bool number = section.kind(key) == ValueKind::number;
   if (is_percent(section, key) || (number && bare == BareNumber::share)) {
     spread.relative = section.quantity(key, "1", {.low = 0.0, .high = 1.0, .open_low = true});
+    if (unit.offset != 0.0)
+      section.problem(key, fmt::format("is a share of a value in {}, whose zero is arbitrary", unit.symbol),
+                      fmt::format("state it as a difference, such as \"1 {}\"", unit.si_symbol));
     return spread;
   }
   const Unit difference = section_unit != nullptr ? section_unit->differences() : Unit{};

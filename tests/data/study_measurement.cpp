@@ -209,6 +209,9 @@ TEST_CASE("what cannot be meant of a measurement is refused with its place") {
        "observe.bench.common_error: '2 rpm' has the wrong unit");
   says(problem(head + observe + "uncertainty = { speed = { sd = \"2 rpm\", as = \"unknown\" } }\n" + powder),
        "speed differs from point to point of 'bench', so it is not one unknown");
+  std::string warm = head + observe + "uncertainty = { speed = \"2 %\" }\n" + powder;
+  warm.replace(warm.find("unit = \"rpm\""), 12, "unit = \"degC\"");
+  says(problem(warm), "observe.bench.uncertainty.speed: is a share of a value in degC, whose zero is arbitrary");
   std::string clash = head;
   clash.replace(clash.find("friction"), 8, "gain");
   std::string free_gain = powder;

@@ -86,16 +86,62 @@ void check_exchanged(const data::Study& study, const data::RunTable& table, cons
   }
 }
 
+Extent readings_of(const data::ObservationSet& set, std::size_t column) {
+  Extent seen;
+  for (const data::Observation& point : set.points)
+    if (point.has(column)) seen.add(point.values[column]);
+  return seen;
+}
+
+/// Whether the set is of a tool that turns backwards, at a negative setting.
+bool turns_backwards(const data::ObservationSet& set) {
+  return std::any_of(set.points.begin(), set.points.end(), [](const data::Observation& point) {
+    return std::any_of(point.controls.begin(), point.controls.end(), [](double setting) { return setting < 0.0; });
+  });
+}
+
+/// Whether all readings have one sign and all runs the other. Where there are no runs yet, demcal's own will give
+/// positive torques of a tool that turns forwards: those that the drive must supply.
+bool has_other_sign(const data::Study& study, const data::ObservationSet& set, const data::Output& output,
+                    const Extent& runs, const Extent& seen) {
+  if (seen.values.empty()) return false;
+  if (runs.values.empty())
+    return study.training.engine == data::Engine::demcal && seen.high < 0.0 && !turns_backwards(set) &&
+           (output.name == "torque" || output.name == "first_torque" || output.name == "second_torque");
+  return (seen.high < 0.0 && runs.low > 0.0) || (seen.low > 0.0 && runs.high < 0.0);
+}
+
+/// Outputs that are counted the other way round, as by a sensor whose sign is that of the powder on the mixer.
+void check_sign(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
+                std::vector<Finding>& findings) {
+  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    const data::Output& output = study.outputs[set.outputs[column]];
+    const Extent runs = outputs_of_runs(table, set, set.outputs[column]), seen = readings_of(set, column);
+    if (!has_other_sign(study, set, output, runs, seen) || is_scaled(study, set, set.outputs[column])) continue;
+    const char* const sign = seen.high < 0.0 ? "negative" : "positive";
+    findings.push_back(
+        {.kind = data::FindingKind::unit,
+         .place = place_of(set, set.points.front()) + ": " + output.name,
+         .severity = Severity::warning,
+         .what = fmt::format("all readings are {}, {}", sign,
+                             runs.values.empty()
+                                 ? "where demcal's torque, which the drive must supply, is positive"
+                                 : fmt::format("where all runs give {:.4g} to {:.4g}{}", output.unit.from_si(runs.low),
+                                               output.unit.from_si(runs.high), behind_number(output.unit.symbol))),
+         .remedy = fmt::format("multiply {} in {} by -1, if the sensor counts the other way round", output.name,
+                               file_of(set)),
+         .places = {}});
+  }
+}
+
 /// Observed outputs beside those of all runs of the material.
 void check_magnitude(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
                      std::vector<Finding>& findings) {
   for (std::size_t column = 0; column < set.outputs.size(); ++column) {
     const data::Output& output = study.outputs[set.outputs[column]];
-    const Extent runs = outputs_of_runs(table, set, set.outputs[column]);
-    Extent seen;
-    for (const data::Observation& point : set.points)
-      if (point.has(column)) seen.add(point.values[column]);
+    const Extent runs = outputs_of_runs(table, set, set.outputs[column]), seen = readings_of(set, column);
     if (runs.values.size() < 5 || seen.values.empty() || is_scaled(study, set, set.outputs[column])) continue;
+    if (has_other_sign(study, set, output, runs, seen)) continue;  // check_sign
     const double reach = runs.high - runs.low;
     const double ratio = data::median_of(seen.values) / data::median_of(runs.values);
     const bool apart = seen.high < runs.low || seen.low > runs.high;
@@ -174,6 +220,7 @@ std::string place_of(const data::ObservationSet& set, const data::Observation& p
 void check_beside_runs(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
                        std::vector<data::Finding>& findings) {
   check_exchanged(study, table, set, findings);
+  check_sign(study, table, set, findings);
   check_magnitude(study, table, set, findings);
   check_control_unit(study, table, set, findings);
 }

@@ -291,6 +291,18 @@ TEST_CASE("observed magnitudes outside all runs are named, with the factor betwe
   CHECK_THAT(data::describe(found), Contains("check the unit of torque"));
 }
 
+TEST_CASE("readings of the other sign than the runs are named as such", "[uq]") {
+  Files files;
+  files.each_reading([](Row& row) { row.torque = -row.torque; });
+  const data::Finding found = only(files, "unit");
+  CHECK_THAT(found.place, Contains("bench.csv:2: torque"));
+  CHECK_THAT(found.what, Contains("all readings are negative, where all runs give"));
+  CHECK_THAT(found.remedy, Contains("by -1"));
+  files.bench.back().torque = -files.bench.back().torque;  // one of them agrees
+  for (const data::Finding& other : look(files).findings)
+    CHECK_THAT(other.what, !Contains("all readings are negative"));
+}
+
 TEST_CASE("rows of one output in another unit than the others are named, and a model that steps is not", "[uq]") {
   SECTION("the last third of the runs") {
     for (const double factor : {1000.0, 1e-3, 9.80665}) {
