@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs the paper's sweeps and gathers them in sweeps.csv: sweep.py DEMCAL [--out FOLDER] [--jobs 1] [--gather] [--again]
+"""Runs the paper's sweeps and gathers them in sweeps.csv: sweep.py DEMCAL [--out FOLDER] [--jobs 1] [--threads 1] [--only SWEEP] [--gather] [--again]
 
 Every point is one `demcal simulate data/paper`, kept below FOLDER, so that a second start goes on where one was cut
 off. A point that sweeps.csv has is not run, but with --again; --gather only writes the table of what is there. Sweeps:
@@ -8,6 +8,7 @@ off. A point that sweeps.csv has is not run, but with --again; --gather only wri
   choices      what the paper does not state, each alone changed, at the slowest and the fastest speed: minimum
                separation, the load that limits friction, attraction of the walls, stiffness
   machine      the machine of two augers of the same cross-section beside the slice, at two speeds of five points of the first sweeps
+  full mass    the machine of 330 mm with 300 g, the paper's developer: one point, three hours of one core and more (--threads 2)
   ridge        less friction and more cohesion: where the slice's torque is that of a friction of 0.4 with 2e-18 J, and the
                machine there
   grain size   the same bed of spheres of other diameters, slowest and fastest speed: without cohesion, and with a force of
@@ -40,6 +41,8 @@ DIAMETERS = {"spread-1131": 1.1314, "spread-566": 0.5657, "spread-400": 0.4}  # 
 STIFFER = {"contact.stiffness": "600 N/m"}
 MACHINE = STIFFER | {"rig.kind": "machine", "rig.machine_length": "48 mm", "rig.opening": "12 mm", "rig.fill": "20080", "run.start_up_turns": "12",
                      "run.longest": "30 s"}
+# The whole machine, with the paper's 300 g.
+WHOLE = MACHINE | {"rig.machine_length": "330 mm", "rig.fill": "300 g"}
 BASE_DIAMETER, BASE_HAMAKER = 0.8, 9e-18  # mm, J
 KEY = ["sweep", "choice", "material", "friction", "hamaker", "rpm"]
 OUTPUTS = ["torque", "coordination", "axial_flow", "kinetic_energy"]
@@ -66,6 +69,7 @@ def points():
         for rig, settings in (("of two augers", MACHINE), ("the slice", STIFFER)):
             for friction, hamaker in ((0.4, "0"), (0.4, "9e-18"), (0.4, "2e-18"), (0.6, "0"), (0.2, "0")):
                 yield "machine", rig, "spread", friction, hamaker, rpm, settings
+    yield "full mass", "of two augers", "spread", 0.4, "0", 300, WHOLE
     for hamaker in ("4e-18", "6e-18", "4.7e-18"):  # the last one by interpolation between the other two
         yield "ridge", "the slice", "spread", 0.2, hamaker, 300, STIFFER
     yield "ridge", "of two augers", "spread", 0.2, "4.7e-18", 300, MACHINE
@@ -98,7 +102,7 @@ def simulate(arguments, point):
     if kept.exists():
         return
     command = [arguments.demcal, "simulate", str(HERE), "--material", material, "--at", f"friction={friction},hamaker={hamaker},rpm={rpm}",
-               "--json", "--quiet", "--out", str(folder)]
+               "--json", "--quiet", "--threads", str(arguments.threads), "--out", str(folder)]
     for key, value in settings.items():
         command += ["--set", f"{key}={value}"]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -164,13 +168,15 @@ def main():
     parser.add_argument("demcal")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("paper-runs"))
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--threads", type=int, default=1, help="of one run, whose numbers do not depend on it")
+    parser.add_argument("--only", default="", help="the sweep to run")
     parser.add_argument("--gather", action="store_true")
     parser.add_argument("--again", action="store_true")
     arguments = parser.parse_args()
     if not arguments.gather:
         there = {} if arguments.again else rows_there()
         lacking = lambda point: key_of(point) not in there or (in_question(point) and not there[key_of(point)].get(MECHANISM[0]))
-        missing = [point for point in points() if lacking(point)]
+        missing = [point for point in points() if lacking(point) and arguments.only in ("", point[0])]
         with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
             list(pool.map(lambda point: simulate(arguments, point), missing))
     gather(arguments)
