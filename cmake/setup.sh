@@ -3,12 +3,12 @@
 
 say() { printf 'demcal: %s\n' "$*" >&2; }
 
-# install_packages [test]: installs what packages.txt lists and dpkg does not have; with `test`, what tests need too.
+# install_packages [test | fuzz]: installs what packages.txt lists and dpkg does not have; with a word, what it lists under that word too.
 install_packages() {
   local missing=() name only rest
   while read -r name only rest; do
     case "$name" in '' | '#'*) continue ;; esac
-    [ "$only" != test ] || [ "${1:-}" = test ] || continue
+    [ -z "$only" ] || [ "$only" = "${1:-}" ] || continue
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" = installed ] || missing+=("$name")
   done <"$root/packages.txt"
   [ ${#missing[@]} -gt 0 ] || return 0

@@ -2,7 +2,7 @@
 
 # Under sanitizers -O3 and the analysis of pointers cost the compiler minutes per file and find nothing more.
 if(DEMCAL_SANITIZE)
-  set(optimise -fno-tree-pta)
+  set(optimise $<$<CXX_COMPILER_ID:GNU>:-fno-tree-pta>)
 else()
   set(optimise $<$<NOT:$<CONFIG:Debug>>:-O3>)
 endif()
@@ -26,7 +26,7 @@ foreach(isa IN LISTS DEMCAL_FORCES_USED)
   target_link_libraries(${entry} PRIVATE demcal_flags)
   target_include_directories(${entry} PRIVATE $<TARGET_PROPERTY:demcal_contact,INCLUDE_DIRECTORIES>)
   demcal_isa_flags(${isa} flags)
-  target_compile_options(${entry} PRIVATE ${numerics} ${flags} -fno-gnu-unique)
+  target_compile_options(${entry} PRIVATE ${numerics} ${flags} $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
   target_compile_definitions(${entry} PRIVATE DEMCAL_FORCES_ENTRY=${entry})
   set(object ${made}/${entry}.o)
   add_custom_command(OUTPUT ${object}
