@@ -87,6 +87,25 @@ void require_memory(const Workspace& workspace, const Foretold& told, int jobs) 
   throw data::InputError(data::ExitStatus::bad_study, *problem);
 }
 
+namespace {
+
+/// Whether the input changes the rig or its fill, so that the forecast at its ends is another one.
+bool is_of_rig(const data::Input& input) {
+  const std::string name = dem::target(input.target).name;
+  return name.starts_with("rig.") && name != "rig.rpm";
+}
+
+/// What keeps the rig of a point from being simulated, or "".
+std::string wrong_with_rig(const Workspace& workspace, const Point& point) {
+  try {
+    return data::describe(dem::forecast(dem::prepare(case_at(workspace, point)), workspace.study.seed).problems);
+  } catch (const data::InputError& error) {
+    return data::describe(error.problems);
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> problems_at_ends(const Workspace& workspace, const Point& middle) {
   std::vector<std::string> found;
   const std::vector<data::Input> inputs = data::inputs_of(workspace.study);
@@ -99,6 +118,11 @@ std::vector<std::string> problems_at_ends(const Workspace& workspace, const Poin
       if (end == 0.0 && dem::target(inputs[i].target).name == "rig.rpm") continue;
       Point point = middle;
       point.inputs[i] = end;
+      if (is_of_rig(inputs[i]))
+        if (std::string wrong = wrong_with_rig(workspace, point); !wrong.empty()) {
+          found.push_back(fmt::format("at {} {}: {}", inputs[i].name, with_unit(end, inputs[i].unit), wrong));
+          continue;
+        }
       for (const data::Problem& p : dem::problems(case_at(workspace, point)))
         found.push_back(
             fmt::format("at {} {}: {}", inputs[i].name, with_unit(end, inputs[i].unit), data::describe({p})));

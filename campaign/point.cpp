@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "data/hash.hpp"
 #include "data/provenance.hpp"
@@ -43,6 +44,14 @@ double parse_value(const std::string& text, const data::Input& input, const std:
               fmt::format("use {}", input.unit.symbol.empty() ? "a bare number" : input.unit.symbol));
 }
 
+/// The middle of an input's range. Of speeds to either side of a standstill, at which nothing can be simulated, it is the
+/// middle of those forwards.
+double amid(const data::Input& input) {
+  const double middle = 0.5 * (input.axis.low + input.axis.high);
+  const bool at_rest = std::abs(middle) < 1e-9 * input.axis.high && dem::target(input.target).name == "rig.rpm";
+  return at_rest ? 0.5 * input.axis.high : middle;
+}
+
 }  // namespace
 
 std::string choose_material(const data::Study& study, const std::string& wanted) {
@@ -60,7 +69,7 @@ Point parse_point(const Workspace& workspace, const std::string& material, const
   Point point{material, {}};
   for (const data::Input& input : inputs) {
     const auto fixed = rows.fixed.find(input.name);
-    point.inputs.push_back(fixed != rows.fixed.end() ? fixed->second : 0.5 * (input.axis.low + input.axis.high));
+    point.inputs.push_back(fixed != rows.fixed.end() ? fixed->second : amid(input));
   }
   std::vector<std::string> set;
   for (const std::string& assignment : at) {

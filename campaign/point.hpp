@@ -16,7 +16,8 @@ struct Point {
 };
 
 /// Reads a point from texts like "friction=0.4" and "hamaker=2e-18 J". A bare number is in the unit of the parameter or
-/// control. What is not given is the material's fixed value or the middle of the range. Throws InputError (64) on an
+/// control. What is not given is the material's fixed value or the middle of the range, of a speed
+/// to either side of a standstill that of the speeds forwards. Throws InputError (64) on an
 /// unknown name, unit or a value outside the target's physical range.
 Point parse_point(const Workspace& workspace, const std::string& material, const std::vector<std::string>& at);
 

@@ -346,7 +346,9 @@ const std::vector<StudyKey>& study_keys() {
       {"observe.settings.NAME", "quantity", "own", "", "", "value of the control at all points of the file",
        "\"150 rpm\""},
       {"observe.common_error", "table or quantity", "", "", "",
-       "error that all points share: a share of the value, or a value with its unit; or a table by output", "\"2 %\""},
+       "error that all points share: a share of the value, of every output for itself; or a value with its unit, where "
+       "there is one output; or a table by output",
+       "\"2 %\""},
       {"observe.common_error.NAME", "quantity", "", "above 0 to 1", "", "the common error of that output",
        "\"0.5 mN m\""},
       {"observe.meter", "text", "", "", "",

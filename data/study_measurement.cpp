@@ -216,9 +216,16 @@ void read_measurement(const Section& root, const Section& section, const Study& 
       if (const std::string& name = study.outputs[output].name; table.has(name))
         set.common_errors.push_back({output, read_spread(table, name, study.outputs[output].unit, BareNumber::share)});
   } else if (section.kind("common_error") != ValueKind::missing) {
-    const std::size_t output = set.outputs.empty() ? 0 : set.outputs.front();
-    set.common_errors.push_back(
-        {output, read_spread(section, "common_error", study.outputs[output].unit, BareNumber::share)});
+    const std::vector<std::size_t> outputs = set.outputs.empty() ? std::vector<std::size_t>{0} : set.outputs;
+    const Spread spread = read_spread(section, "common_error", study.outputs[outputs[0]].unit, BareNumber::share);
+    if (outputs.size() > 1 && spread.absolute > 0.0)
+      section.problem(
+          "common_error", fmt::format("is a value with a unit, and '{}' measures {} outputs", set.name, outputs.size()),
+          fmt::format(
+              "say whose it is: common_error = {{ {} = {} }}", study.outputs[outputs[0]].name,
+              section.kind("common_error") == ValueKind::text ? '"' + section.text("common_error") + '"' : "..."));
+    // A share holds of every output, each of which has an error of its own.
+    for (const std::size_t output : outputs) set.common_errors.push_back({output, spread});
   }
 
   if (section.has("meter")) {

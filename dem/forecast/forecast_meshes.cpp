@@ -95,12 +95,21 @@ void check_sweeps(const Case& c, const BuiltRig& rig, Forecast& f) {
     else
       f.problems.push_back({"rig.mesh." + one.name, what, axis_hint(one)});
   }
-  for (const Gap& gap : sweeps.gaps) {
-    const bool is_cut = std::any_of(sweeps.cuts.begin(), sweeps.cuts.end(), [&](const Cut& cut) {
-      return std::minmax(cut.body, cut.other) == std::minmax(gap.body, gap.other);
+  const auto is_in = [](const auto& all, std::size_t one, std::size_t other) {
+    return std::any_of(all.begin(), all.end(), [&](const auto& found) {
+      return std::minmax(found.body, found.other) == std::minmax(one, other);
     });
+  };
+  for (const Through& one : sweeps.throughs)
+    if (!is_in(sweeps.cuts, one.body, one.other))
+      f.warnings.push_back(fmt::format(
+          "{} sticks out by {} mm through {} at {} as it turns: spheres are pinched along the wall (correct the mesh's "
+          "unit or size; or {})",
+          meshes[one.body].name, mm(one.by), meshes[one.other].name, mm(one.at), axis_hint(meshes[one.body])));
+  for (const Gap& gap : sweeps.gaps) {
     const std::size_t one = std::min(gap.body, gap.other), other = std::max(gap.body, gap.other);
-    if (!is_cut) say_gap(f, meshes[one].name + " and " + meshes[other].name, gap.width);
+    if (!is_in(sweeps.cuts, one, other) && !is_in(sweeps.throughs, one, other))
+      say_gap(f, meshes[one].name + " and " + meshes[other].name, gap.width);
   }
 }
 
@@ -136,8 +145,7 @@ double bottom_of(const Room& room, const std::vector<std::uint8_t>& wet) {
 }
 
 /// How often a ray from the point meets the mesh: an odd number inside a closed one.
-bool within(const TriangleMesh& mesh, Vec3 p) {
-  const Vec3 way = unit(Vec3{0.5377, 0.2661, 0.8000});
+int crossings(const TriangleMesh& mesh, Vec3 p, Vec3 way) {
   int count = 0;
   for (const auto& t : mesh.triangles) {
     const Vec3 a = mesh.vertices[t[0]] - p, b = mesh.vertices[t[1]] - p, c = mesh.vertices[t[2]] - p;
@@ -145,38 +153,65 @@ bool within(const TriangleMesh& mesh, Vec3 p) {
     if (!((u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0))) continue;
     count += dot(a, cross(b, c)) / (u + v + w) > 0.0;
   }
-  return count % 2 == 1;
+  return count;
 }
 
-/// Spheres inside a body that lies inside another are in its material, not in the vessel.
-void check_inside(const Case& c, const BuiltRig& rig, Forecast& f) {
+/// Whether most of three rays, about square to each other, leave the mesh: the open top of a vessel, or the open end of
+/// a tube, lets one of them out.
+bool within(const TriangleMesh& mesh, Vec3 p, Vec3 down) {
+  const Vec3 first = unit(down + Vec3{0.0137, 0.0261, 0.0091});
+  const Vec3 second = unit(cross(first, unit(Vec3{0.5377, 0.2661, 0.8000}))), third = cross(first, second);
+  int inside = 0;
+  for (const Vec3 way : {first, second, third}) inside += crossings(mesh, p, way) % 2;
+  return inside >= 2;
+}
+
+/// Whether a mesh lies inside another's box: inside in two directions, and beside it along at least half of itself in the
+/// third, as a shaft through a wall does.
+bool lies_in(const Extent& own, const Extent& other) {
+  int inside = 0;
+  bool beside = true;
+  for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    const double low = own.low.*axis, high = own.high.*axis, a = other.low.*axis, b = other.high.*axis;
+    inside += low > a && high < b;
+    beside = beside && std::min(high, b) - std::max(low, a) >= 0.5 * (high - low);
+  }
+  return inside >= 2 && beside;
+}
+
+/// Spheres on both sides of a mesh's surface, between which no powder can pass: those inside are in a tool's material. A
+/// vessel that stands in a casing has all of them, or those above its rim can come in.
+void check_inside(const Case& c, const BuiltRig& rig, const Room& room, Forecast& f) {
   const std::vector<RigMesh>& meshes = c.rig.stl->meshes;
   const std::size_t every = rig.position.size() / 40 + 1;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
     const Extent own = extent_of(meshes[k].mesh);
-    const bool in_another = std::any_of(meshes.begin(), meshes.end(), [&](const RigMesh& other) {
-      // Inside in two directions, and beside the other along at least half of itself in the third: a shaft through a
-      // wall.
-      const Extent e = extent_of(other.mesh);
-      int inside = 0;
-      bool beside = true;
-      for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
-        const double low = own.low.*axis, high = own.high.*axis, a = e.low.*axis, b = e.high.*axis;
-        inside += low > a && high < b;
-        beside = beside && std::min(high, b) - std::max(low, a) >= 0.5 * (high - low);
-      }
-      return inside >= 2 && beside;
+    if (std::none_of(meshes.begin(), meshes.end(),
+                     [&](const RigMesh& other) { return lies_in(own, extent_of(other.mesh)); }))
+      continue;
+    std::vector<Vec3> in, out;
+    for (std::size_t s = 0; s < rig.position.size(); s += every)
+      (within(meshes[k].mesh, rig.position[s], rig.down) ? in : out).push_back(rig.position[s]);
+    if (in.size() * 10 <= in.size() + out.size()) continue;
+    if (out.empty()) {
+      if (moves(rig.bodies[k].motion))
+        f.warnings.push_back(fmt::format(
+            "all spheres start inside the mesh {}, which lies inside another: as they should where it is the vessel "
+            "(if it is a tool, give a rig.region outside it)",
+            meshes[k].name));
+      continue;
+    }
+    const std::vector<std::uint8_t> reached = reached_from(room, room.at(in.front()));
+    const bool joined = std::any_of(out.begin(), out.end(), [&](Vec3 p) {
+      const std::size_t cell = room.at(p);
+      return cell != room.total() && reached[cell] != 0;
     });
-    if (!in_another) continue;
-    std::size_t count = 0, asked = 0;
-    for (std::size_t s = 0; s < rig.position.size(); s += every, ++asked)
-      count += within(meshes[k].mesh, rig.position[s]);
-    if (count * 10 > asked)
-      f.problems.push_back({"rig.region",
-                            fmt::format("makes spheres start inside the mesh {}, which lies inside another: {} of {} "
-                                        "looked at",
-                                        meshes[k].name, count, asked),
-                            "give a region in the vessel, outside its tools"});
+    if (joined) continue;
+    f.problems.push_back({"rig.region",
+                          fmt::format("makes spheres start inside the mesh {}, which lies inside another, and others "
+                                      "outside it: {} of {} looked at are inside",
+                                      meshes[k].name, in.size(), in.size() + out.size()),
+                          "give a region in the vessel, outside its tools"});
   }
 }
 
@@ -286,8 +321,7 @@ void check_reach(const Case& c, const BuiltRig& rig, const Room& room, Forecast&
 }
 
 /// Where the powder comes to rest, and what it touches there.
-void check_powder(const Case& c, const BuiltRig& rig, Forecast& f) {
-  const Room room = make_room(rig, summarise_bed(c).smallest);
+void check_powder(const Case& c, const BuiltRig& rig, const Room& room, Forecast& f) {
   const double volume = summarise_bed(c).volume / packing_fraction;
   const Poured bed = pour_bed(room, rig, volume);
   check_held(c, rig, room, bed, f);
@@ -306,8 +340,9 @@ Forecast forecast_of_meshes(const Case& c, std::uint64_t seed, Forecast f) {
   say_bodies(c, rig, f);
   check_region(c, f);
   check_sweeps(c, rig, f);
-  check_inside(c, rig, f);
-  if (f.problems.empty()) check_powder(c, rig, f);
+  const Room room = make_room(rig, summarise_bed(c).smallest);
+  check_inside(c, rig, room, f);
+  if (f.problems.empty()) check_powder(c, rig, room, f);
   return f;
 }
 

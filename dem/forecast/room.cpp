@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <queue>
 
 #include "dem/rig/packing.hpp"
@@ -122,6 +123,12 @@ class Flood {
 
 }  // namespace
 
+std::vector<std::uint8_t> reached_from(const Room& room, std::size_t start) {
+  std::vector<std::uint8_t> reached(room.total(), 0);
+  for (Flood flood(room, start); !flood.empty();) reached[flood.next().cell] = 1;
+  return reached;
+}
+
 std::array<int, 3> Room::index(std::size_t k) const {
   const auto s = static_cast<int>(k);
   return {s / (n[1] * n[2]), s / n[2] % n[1], s % n[2]};
@@ -183,18 +190,20 @@ Room make_room(const BuiltRig& rig, double smallest) {
 Poured pour(const Room& room, std::size_t start, double volume) {
   Poured bed;
   bed.wet.assign(room.total(), 0);
-  // Down to where it first stands.
-  std::size_t bottom = start;
+  // Down to where it first stands: to a wide cell, since the powder does not flow on from the narrow ones under it.
+  std::optional<std::size_t> lowest;
   for (Flood flood(room, start); !flood.empty();) {
     const Waiting w = flood.next();
-    if (w.height > room.height(bottom) + 1e-9 * room.cell.z) break;
-    if (w.height < room.height(bottom)) bottom = w.cell;
+    if (room.narrow[w.cell]) continue;
+    if (lowest && w.height > room.height(*lowest) + 1e-9 * room.cell.z) break;
+    if (!lowest || w.height < room.height(*lowest)) lowest = w.cell;
     if (flood.open()) {
       bed.leaves = true;
       bed.leaves_at = room.centre(w.cell);
       return bed;
     }
   }
+  const std::size_t bottom = lowest.value_or(start);
   // Up from there: `wet` as far as the powder goes, and on until the vessel runs over.
   const double cell = room.volume();
   const double layer =

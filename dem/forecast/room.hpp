@@ -55,6 +55,9 @@ struct Poured {
 /// Pours a bed of `volume` [m3] at a cell.
 Poured pour(const Room& room, std::size_t start, double volume);
 
+/// Per cell, whether powder could come there from a cell, whatever its weight.
+std::vector<std::uint8_t> reached_from(const Room& room, std::size_t start);
+
 /// Whether a sphere let go at a point falls straight out of the box: no wall is under it.
 bool falls_out(const Room& room, Vec3 point);
 

@@ -19,6 +19,7 @@ struct Mark {
   Vec3 at;         ///< m, in the body's frame
   Vec3 direction;  ///< unit: normal of a face, direction of an edge
   On on = On::face;
+  bool apart = false;  ///< on the other side of a wall than the powder
 };
 
 /// About `count` points, evenly by area, by length along sharp edges, and corners; the same at every call.
@@ -135,10 +136,17 @@ class Follower {
 
   /// How often the way between two points, shorter than twice the reach, crosses the surface.
   int crossings(Vec3 a, Vec3 b) {
-    const double half = 0.5 * length(b - a);
-    if (half == 0.0) return 0;
-    find_features(surface_, 0.5 * (a + b), std::min(reach_, half * (1.0 + 1e-9) + 1e-12), near_);
     int count = 0;
+    each_crossing(a, b, [&](Vec3, Vec3) { ++count; });
+    return count;
+  }
+
+  /// Calls visit(place, normal of the face) for each of these crossings.
+  template <class Visit>
+  void each_crossing(Vec3 a, Vec3 b, Visit&& visit) {
+    const double half = 0.5 * length(b - a);
+    if (half == 0.0) return;
+    find_features(surface_, 0.5 * (a + b), std::min(reach_, half * (1.0 + 1e-9) + 1e-12), near_);
     for (const NearFeature& n : near_) {
       if (n.feature >= surface_.faces.size()) continue;
       const Face& f = surface_.faces[n.feature];
@@ -147,9 +155,8 @@ class Follower {
       const Vec3 at = a + before / (before - after) * (b - a);
       bool inside = true;
       for (int k = 0; k < 3; ++k) inside = inside && dot(f.out[k], at) < f.bound[k];
-      count += inside;
+      if (inside) visit(at, f.normal);
     }
-    return count;
   }
 
  private:
@@ -167,11 +174,18 @@ bool faces(const Mark& mark, Vec3 in_body_direction) {
   return mark.on == Mark::On::face ? cosine > std::numbers::sqrt2 / 2.0 : cosine < std::numbers::sqrt2 / 2.0;
 }
 
-/// Whether an edge of one body goes through the other's surface as they start.
-bool joined_at_start(const Body& one, const Body& other, double reach) {
+/// A place where an edge of one body goes through the other's surface as they start.
+struct Piercing {
+  Vec3 at;      ///< m, in the box
+  Vec3 normal;  ///< unit, of the face that is pierced
+};
+
+/// Some of the places where edges of `one` go through `other`.
+std::vector<Piercing> piercings(const Body& one, const Body& other, double reach) {
   const Surface surface = make_surface(other.mesh, reach);
   Follower follower(surface, reach);
   const Pose mine = pose(one.motion, 0.0), its = pose(other.motion, 0.0);
+  std::vector<Piercing> found;
   std::size_t asked = 0;
   for (const auto& t : one.mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -181,12 +195,66 @@ bool joined_at_start(const Body& one, const Body& other, double reach) {
       const Vec3 b = to_body(other.motion, its, to_box(one.motion, mine, one.mesh.vertices[to]));
       const int parts = static_cast<int>(length(b - a) / (1.9 * reach)) + 1;
       for (int p = 0; p < parts; ++p) {
-        if (follower.crossings(a + (1.0 * p / parts) * (b - a), a + ((p + 1.0) / parts) * (b - a)) > 0) return true;
-        if (++asked > 50000) return false;
+        follower.each_crossing(a + (1.0 * p / parts) * (b - a), a + ((p + 1.0) / parts) * (b - a),
+                               [&](Vec3 at, Vec3 normal) {
+                                 found.push_back({to_box(other.motion, its, at), rotate(its.rotation, normal)});
+                               });
+        if (found.size() > 1000 || ++asked > 50000) return found;
       }
     }
   }
-  return false;
+  return found;
+}
+
+double farthest_from_axis(const Body& body) {
+  double far = 0.0;
+  for (const Vec3 v : body.mesh.vertices) far = std::max(far, length(cross(body.motion.axis, v - body.motion.point)));
+  return far;
+}
+
+/// How far a body that turns sticks out through a wall along its axis. A shaft goes through walls across it, and is not
+/// meant.
+std::optional<Through> through_side(const BuiltRig& rig, std::size_t body, std::size_t other,
+                                    const std::vector<Piercing>& pierced, double tolerance) {
+  const Motion& motion = rig.bodies[body].motion;
+  if (!turns(motion)) return {};
+  std::optional<Through> worst;
+  const double far = farthest_from_axis(rig.bodies[body]);
+  for (const Piercing& one : pierced) {
+    if (std::abs(dot(one.normal, motion.axis)) > 0.5 || !in_box(rig, one.at)) continue;
+    const double by = far - length(cross(motion.axis, one.at - motion.point));
+    if (by > tolerance && (!worst || by > worst->by)) worst = Through{body, other, by, one.at};
+  }
+  return worst;
+}
+
+/// Marks the points that a wall parts from the powder, of which `powder` [m] is a place.
+void part_from_powder(std::vector<Mark>& marks, const Body& mine, const Body& wall, Vec3 powder) {
+  const Pose here = pose(mine.motion, 0.0), its = pose(wall.motion, 0.0);
+  const Vec3 to = to_body(wall.motion, its, powder);
+  for (Mark& mark : marks) {
+    const Vec3 from = to_body(wall.motion, its, to_box(mine.motion, here, mark.at)), way = to - from;
+    int count = 0;
+    for (const auto& t : wall.mesh.triangles) {
+      const Vec3 a = wall.mesh.vertices[t[0]] - from, b = wall.mesh.vertices[t[1]] - from,
+                 c = wall.mesh.vertices[t[2]] - from;
+      const double u = dot(way, cross(a, b)), v = dot(way, cross(b, c)), w = dot(way, cross(c, a));
+      if (!((u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0))) continue;
+      const double share = dot(a, cross(b, c)) / (u + v + w);
+      count += share > 0.0 && share < 1.0;
+    }
+    mark.apart = count % 2 == 1;
+  }
+}
+
+double box_volume(const TriangleMesh& mesh) {
+  Vec3 low = mesh.vertices.at(0), high = low;
+  for (const Vec3 v : mesh.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  const Vec3 size = high - low;
+  return size.x * size.y * size.z;
 }
 
 struct Pairing {
@@ -220,7 +288,7 @@ void follow(const BuiltRig& rig, const Pairing& of, const std::vector<Mark>& mar
       const double depth = std::min(deepest[0], deepest[1]);
       if (depth > of.tolerance && (!cut || depth > cut->depth) && in_box(rig, here))
         cut = Cut{of.body, of.other, depth, of.times[k], here};
-      if (!nearest || side == 1 || (gap && away >= gap->width) || !in_box(rig, here)) continue;
+      if (mark.apart || !nearest || side == 1 || (gap && away >= gap->width) || !in_box(rig, here)) continue;
       const Vec3 across = rotate_back(my_pose[k].rotation, rotate(its_pose[k].rotation, nearest->normal));
       if (faces(mark, across)) gap = Gap{of.body, of.other, away, here};
     }
@@ -293,11 +361,23 @@ Sweeps follow_bodies(const BuiltRig& rig, const RunControl& run, double largest)
       const std::size_t points = std::clamp<std::size_t>(most_looks / at.size(), 200, 1500);
       const std::size_t cuts = found.cuts.size(), gaps = found.gaps.size();
       const Pairing pair{a, b, at, 2.0 * stride, 0.25 * largest, 0.02 * largest};
-      follow(rig, pair, marks_of(one.mesh, points), found);
-      follow(rig, {b, a, at, pair.reach, pair.tolerance, pair.touching}, marks_of(other.mesh, points), found);
+      const std::vector<Piercing> by_one = piercings(one, other, pair.reach),
+                                  by_other = piercings(other, one, pair.reach);
+      const bool joined = !by_one.empty() || !by_other.empty();
+      for (const auto& through :
+           {through_side(rig, a, b, by_one, pair.tolerance), through_side(rig, b, a, by_other, pair.tolerance)})
+        if (through) found.throughs.push_back(*through);
+      std::vector<Mark> marks = marks_of(one.mesh, points), others = marks_of(other.mesh, points);
+      if (joined && !rig.position.empty()) {
+        // What the smaller one has outside the larger one's wall is in no powder, and the gap there is none.
+        const bool first = box_volume(one.mesh) < box_volume(other.mesh);
+        part_from_powder(first ? marks : others, first ? one : other, first ? other : one, rig.position.front());
+        for (Mark& mark : first ? others : marks) mark.apart = true;
+      }
+      follow(rig, pair, marks, found);
+      follow(rig, {b, a, at, pair.reach, pair.tolerance, pair.touching}, others, found);
       keep_worst(found.cuts, cuts, [](const Cut& x, const Cut& y) { return x.depth > y.depth; });
-      if (found.cuts.size() > cuts)
-        found.cuts[cuts].joined = joined_at_start(one, other, pair.reach) || joined_at_start(other, one, pair.reach);
+      if (found.cuts.size() > cuts) found.cuts[cuts].joined = joined;
       keep_worst(found.gaps, gaps, [](const Gap& x, const Gap& y) { return x.width < y.width; });
     }
   }

@@ -6,10 +6,11 @@
 // of the slowest body, or through the programme, in the frame of the other body. Bodies that move together therefore
 // never meet, and two tools that mesh do not count as cutting each other merely because their sweeps overlap. A point
 // that crosses the other's surface, and goes deeper than a quarter of the largest sphere on both sides of it, has cut
-// it. A shaft that passes through a wall turns in its hole and crosses nothing.
+// it. A shaft that passes through a wall across its axis turns in its hole and crosses nothing. A blade that goes
+// through a wall beside its axis all the way round crosses nothing either, and is said.
 //
 // A gap is the least distance of a point from the other's surface, taken across the gap: where the surfaces face each
-// other within 45 degrees, not where one runs into the other.
+// other within 45 degrees, not where one runs into the other. What a shaft has outside its wall makes no gap.
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,8 +42,16 @@ struct Excursion {
   double most = 0.0, least = 0.0;  ///< shares of its surface that are in the box, over its way
 };
 
+/// A body that turns and sticks out through another's wall beside it, all the time, so that it crosses nothing.
+struct Through {
+  std::size_t body = 0, other = 0;
+  double by = 0.0;  ///< m, from where it goes through to its farthest point from the axis
+  Vec3 at;          ///< m, in the box
+};
+
 struct Sweeps {
-  std::vector<Cut> cuts;              ///< the deepest of each pair of bodies
+  std::vector<Cut> cuts;  ///< the deepest of each pair of bodies
+  std::vector<Through> throughs;
   std::vector<Gap> gaps;              ///< of each pair, those narrower than twice the largest sphere
   std::vector<Excursion> excursions;  ///< of each body that moves
 };

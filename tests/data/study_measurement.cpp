@@ -145,6 +145,19 @@ TEST_CASE("errors common to a set and of its controls are a share or a value wit
   CHECK(set("", "uncertainty = 3\n").setting_errors.at(0).spread.absolute == Approx(3.0 * std::numbers::pi / 30.0));
 }
 
+TEST_CASE("a common share holds of every output of the set, and a common value only where there is one") {
+  const std::string both = "speed,torque,torque_se,flow,flow_se\n50,8.1,0.2,1,0.1\n300,9.3,0.3,2,0.1\n";
+  const auto errors =
+      study_with(head + observe + "common_error = \"3 %\"\n" + powder, both).observations[0].common_errors;
+  REQUIRE(errors.size() == 2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    CHECK(errors[k].output == k);
+    CHECK(errors[k].spread.relative == Approx(0.03));
+  }
+  says(problem(head + observe + "common_error = \"0.1 mN m\"\n" + powder, both),
+       "observe.bench.common_error: is a value with a unit, and 'bench' measures 2 outputs");
+}
+
 TEST_CASE("sets that name one meter state one common error") {
   const auto two = [](const std::string& first, const std::string& second) {
     const std::string again = observe + second;

@@ -172,6 +172,49 @@ TEST_CASE("a sweep that cuts the vessel, another tool, or leaves the box is said
   }
 }
 
+/// A tube along x with this many sides, from the axis y = z = 0; its ends open.
+dem::TriangleMesh tube(double radius, double from, double to, std::uint32_t sides) {
+  dem::TriangleMesh mesh;
+  for (std::uint32_t k = 0; k < sides; ++k) {
+    const double angle = 2.0 * 3.14159265358979 * k / sides;
+    for (const double x : {from, to}) mesh.vertices.push_back({x, radius * std::cos(angle), radius * std::sin(angle)});
+    const std::uint32_t next = (k + 1) % sides;
+    mesh.triangles.push_back({2 * k, 2 * k + 1, 2 * next});
+    mesh.triangles.push_back({2 * next, 2 * k + 1, 2 * next + 1});
+  }
+  return mesh;
+}
+
+TEST_CASE("a blade that sticks out through the wall all round is said, and what a shaft has outside makes no gap") {
+  Mixer m;
+  m.rig.low = {-0.012, -0.014, -0.014};
+  m.rig.high = {0.012, 0.014, 0.014};
+  m.rig.region.low = {-0.009, -0.005, -0.009};
+  m.rig.region.high = {0.009, 0.005, -0.004};
+  m.c.rig.fill = 400.0;
+  m.bar().motion.axis = {1.0, 0.0, 0.0};
+  m.vessel().mesh = tube(0.01, -0.01, 0.01, 64);
+  dem::TriangleMesh ends = box({-0.0105, -0.0102, -0.0102}, {-0.01, 0.0102, 0.0102});
+  m.rig.meshes.push_back(part("end", ends));
+  m.rig.meshes.push_back(part("other end", box({0.01, -0.0102, -0.0102}, {0.0105, 0.0102, 0.0102})));
+  SECTION("it fits") {
+    m.bar().mesh = box({-0.006, -0.006, -0.0005}, {0.006, 0.006, 0.0005});
+    CHECK_THAT(listed(m.told().warnings), !Contains("sticks out"));
+  }
+  SECTION("its diameter was taken for its radius") {
+    m.bar().mesh = box({-0.006, -0.012, -0.0005}, {0.006, 0.012, 0.0005});
+    CHECK_THAT(listed(m.told().warnings), Contains("bar sticks out by 2") && Contains("through vessel"));
+    CHECK(m.told().gaps.empty());
+  }
+  SECTION("a shaft that ends just outside the end wall") {
+    m.bar().mesh = box({-0.0115, -0.002, -0.0021}, {0.006, 0.002, 0.0021});
+    INFO(m.said());
+    const dem::Forecast f = m.told();
+    CHECK_THAT(listed(f.warnings), !Contains("sticks out"));
+    for (const dem::NamedGap& gap : f.gaps) CHECK(gap.between.find("end") == std::string::npos);
+  }
+}
+
 TEST_CASE("powder that nothing holds is said: outside the vessel, through an open end, upwards, over the rim") {
   Mixer m;
   SECTION("the region is the box") {
@@ -212,7 +255,56 @@ TEST_CASE("spheres inside a tool that is inside the vessel are said") {
   m.bar().mesh = box({-0.006, -0.006, 0.001}, {0.006, 0.006, 0.013});
   m.rig.region.low = {-0.005, -0.005, 0.002};
   m.rig.region.high = {0.005, 0.005, 0.012};
+  // All of them: right if the bar is a drum in its casing.
+  CHECK(m.said() == "");
+  CHECK_THAT(listed(m.told().warnings), Contains("all spheres start inside the mesh bar"));
+  // A packing that was made without the bar.
+  for (int x = -8; x <= 8; x += 2)
+    for (int y = -8; y <= 8; y += 2)
+      for (int z = 2; z <= 12; z += 2) m.rig.packing.push_back({1e-3 * x, 1e-3 * y, 1e-3 * z});
+  std::erase_if(m.rig.packing, [](dem::Vec3 p) {
+    return std::max(std::abs(p.x), std::abs(p.y)) > 0.0055 && std::max(std::abs(p.x), std::abs(p.y)) < 0.0065;
+  });
+  m.rig.packing_line.assign(m.rig.packing.size(), 1);
+  m.c.rig.fill = static_cast<double>(m.rig.packing.size());
   CHECK_THAT(m.said(), Contains("rig.region") && Contains("inside the mesh bar"));
+}
+
+TEST_CASE("a vessel may stand in a casing, in a frame, or have lifters that go through its wall") {
+  Mixer m;
+  const dem::Forecast alone = m.told();
+  SECTION("a casing") {
+    m.rig.meshes.push_back(part("jacket", box({-0.0115, -0.0115, -0.001}, {0.0115, 0.0115, 0.041})));
+  }
+  SECTION("a frame") {
+    m.rig.meshes.push_back(part("left", box({-0.0115, -0.0115, -0.001}, {-0.0105, 0.0115, 0.045})));
+    m.rig.meshes.push_back(part("right", box({0.0105, -0.0115, -0.001}, {0.0115, 0.0115, 0.045})));
+  }
+  SECTION("powder that starts above the rim") {
+    m.rig.meshes.push_back(part("jacket", box({-0.0115, -0.0115, -0.001}, {0.0115, 0.0115, 0.0495})));
+    m.rig.region.high = {0.01, 0.01, 0.048};
+  }
+  INFO(listed(m.told().warnings));
+  CHECK(m.said() == "");
+  CHECK(*m.told().surface == Approx(*alone.surface).margin(1e-4));
+}
+
+TEST_CASE("the bed's surface is that of arithmetic wherever the box begins, and however thin the bed") {
+  // A floor just below the centre of a cell leaves two narrow cells under the wide ones.
+  for (const double size : {1e-3, 1.3e-3}) {
+    for (int shift = 0; shift < 12; ++shift) {
+      Mixer m;
+      m.c.material.diameter = size;
+      m.c.rig.fill = 1500.0;
+      m.rig.low.z = -0.5e-3 - 0.05e-3 * shift;
+      m.rig.low.x = -0.0112 - 0.05e-3 * shift;
+      const double bar = 0.012 * 0.002 * 0.004;
+      const double bed = 1500.0 * 3.14159265358979 / 6.0 * size * size * size / 0.6;
+      const double depth = (bed + bar) / (0.02 * 0.02);
+      INFO(size << ", " << shift << ": " << m.said());
+      CHECK(*m.told().surface == Approx(depth).margin(0.4 * size));
+    }
+  }
 }
 
 TEST_CASE("normals turned inwards change nothing that is said") {
