@@ -47,8 +47,9 @@ Cost cost_of(const dem::PreparedCase& prepared) {
   cost.effort = dem::measure_effort(c, derived);
   const double spheres = static_cast<double>(derived.spheres);
   cost.steps = (c.run.settle + c.run.longest) / derived.time_step;
-  cost.seconds = cost.steps * spheres / cost.effort.rate;
-  cost.bytes = 2.0 * spheres * cost.effort.bytes_per_sphere;  // the state, and the last good one
+  cost.seconds = cost.steps * (spheres / cost.effort.rate + cost.effort.seconds_at_walls);
+  // The state, and the last good one; and the meshes.
+  cost.bytes = 2.0 * spheres * cost.effort.bytes_per_sphere + cost.effort.bytes_of_meshes;
   const double machine = data::machine_memory();
   if (cost.bytes > 0.8 * machine)
     cost.warnings.push_back(fmt::format("a run needs about {:.2g} GB of memory, and this machine has {:.2g} GB",
@@ -64,6 +65,13 @@ Cost cost_of(const dem::PreparedCase& prepared) {
 std::optional<data::Problem> too_large(const Cost& cost, std::int64_t spheres, int jobs, double machine) {
   const double bytes = jobs * cost.bytes;
   if (bytes <= machine) return {};
+  if (cost.effort.bytes_of_meshes > 0.5 * cost.bytes)
+    return data::Problem{"rig.mesh",
+                         fmt::format("has triangles that need about {:.2g} GB of memory in {}, and this machine has "
+                                     "{:.2g} GB",
+                                     1e-9 * jobs * cost.effort.bytes_of_meshes,
+                                     jobs == 1 ? "a run" : fmt::format("{} runs at a time", jobs), 1e-9 * machine),
+                         "give a coarser mesh: triangles of half a sphere's diameter are fine enough"};
   return data::Problem{
       "[rig] fill",
       fmt::format(
@@ -78,9 +86,12 @@ std::optional<data::Problem> too_large(const Cost& cost, std::int64_t spheres, i
 }
 
 void require_memory(const Workspace& workspace, const Foretold& told, int jobs) {
-  constexpr std::int64_t surely_fits = 100000;  // some 80 MB
+  constexpr std::int64_t surely_fits = 100000;  // spheres, and triangles: some 80 MB
   const auto spheres = static_cast<std::int64_t>(told.prepared.derived().spheres);
-  if (spheres * jobs <= surely_fits) return;
+  std::int64_t triangles = 0;
+  if (const auto& stl = told.prepared.given().rig.stl)
+    for (const dem::RigMesh& m : stl->meshes) triangles += static_cast<std::int64_t>(m.mesh.triangles.size());
+  if ((spheres + triangles) * jobs <= surely_fits) return;
   std::optional<data::Problem> problem = too_large(cost_of(told.prepared), spheres, jobs, data::machine_memory());
   if (!problem) return;
   problem->place = workspace.study.file + ": " + problem->place;

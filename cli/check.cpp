@@ -69,7 +69,7 @@ MaterialsForetold foretell_materials(const Common& common, const Workspace& work
     for (const std::string& line : dem::describe(c, told.prepared.derived())) answer(common, "  " + line);
     for (const std::string& line : dem::describe(told.forecast)) answer(common, "  " + line);
     answer(common,
-           fmt::format("  a run: at most {:.3g} steps, {} of processor time, {:.2g} MB; {} missing: {} (at {:.2g} "
+           fmt::format("  a run: at most {:.3g} steps, {} of processor time, {:.3g} MB; {} missing: {} (at {:.2g} "
                        "million particle-steps/s, measured on this machine just now)",
                        cost.steps, data::rough_duration_text(cost.seconds), 1e-6 * cost.bytes,
                        data::counted(static_cast<std::size_t>(runs), "run"), data::rough_duration_text(seconds),

@@ -13,8 +13,10 @@ constexpr double border = 1e-9;
 // Directions closer than this to opposite are one plane or one line.
 constexpr double straight = 1e-6;
 // A grid of large meshes is coarser than half the reach: of no more cells than this, or than 128 along its longest
-// axis.
+// axis. One of many features, each of which stands in all cells within its reach, has cells as wide as the reach: some 30
+// entries for each instead of 100.
 constexpr double many_cells = 1 << 17;
+constexpr std::size_t many_features = 50000;
 
 Face make_face(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t) {
   Face f;
@@ -99,39 +101,37 @@ void make_grid(const std::vector<Box>& boxes, Surface& s) {
   }
   const Vec3 size = high - low;
   s.low = low;
-  s.cell = std::max(0.5 * s.reach, std::min(std::max({size.x, size.y, size.z}) / 128.0,
-                                            std::cbrt(size.x * size.y * size.z / many_cells)));
+  s.cell =
+      std::max((boxes.size() < many_features ? 0.5 : 1.0) * s.reach,
+               std::min(std::max({size.x, size.y, size.z}) / 128.0, std::cbrt(size.x * size.y * size.z / many_cells)));
   for (int a = 0; a < 3; ++a) s.cells[a] = static_cast<int>((a == 0 ? size.x : a == 1 ? size.y : size.z) / s.cell) + 1;
   const auto index = [&](double x, double origin, int n) {
     return std::clamp(static_cast<int>((x - origin) / s.cell), 0, n - 1);
   };
-  // Counting sort of what is found, box by box: ascending feature order in every cell.
-  struct Found {
-    std::uint32_t cell, feature;
-  };
-  std::vector<Found> found;
   const double near = s.reach + 0.5 * std::sqrt(3.0) * s.cell;
-  for (std::uint32_t f = 0; f < boxes.size(); ++f) {
-    const Box& b = boxes[f];
-    const int x_end = index(b.high.x, low.x, s.cells[0]), y_end = index(b.high.y, low.y, s.cells[1]),
-              z_end = index(b.high.z, low.z, s.cells[2]);
-    for (int x = index(b.low.x, low.x, s.cells[0]); x <= x_end; ++x) {
-      for (int y = index(b.low.y, low.y, s.cells[1]); y <= y_end; ++y) {
-        for (int z = index(b.low.z, low.z, s.cells[2]); z <= z_end; ++z) {
-          const Vec3 centre = low + Vec3{(x + 0.5) * s.cell, (y + 0.5) * s.cell, (z + 0.5) * s.cell};
-          if (distance_at_least(s, f, centre, near) > near) continue;
-          found.push_back(
-              {static_cast<std::uint32_t>((static_cast<std::size_t>(x) * s.cells[1] + y) * s.cells[2] + z), f});
+  const auto each_entry = [&](auto&& visit) {  // box by box, so that features ascend in every cell
+    for (std::uint32_t f = 0; f < boxes.size(); ++f) {
+      const Box& b = boxes[f];
+      const int x_end = index(b.high.x, low.x, s.cells[0]), y_end = index(b.high.y, low.y, s.cells[1]),
+                z_end = index(b.high.z, low.z, s.cells[2]);
+      for (int x = index(b.low.x, low.x, s.cells[0]); x <= x_end; ++x) {
+        for (int y = index(b.low.y, low.y, s.cells[1]); y <= y_end; ++y) {
+          for (int z = index(b.low.z, low.z, s.cells[2]); z <= z_end; ++z) {
+            const Vec3 centre = low + Vec3{(x + 0.5) * s.cell, (y + 0.5) * s.cell, (z + 0.5) * s.cell};
+            if (distance_at_least(s, f, centre, near) > near) continue;
+            visit((static_cast<std::size_t>(x) * s.cells[1] + y) * s.cells[2] + z, f);
+          }
         }
       }
     }
-  }
+  };
+  // Counted first, so that a fine mesh's entries are in memory once.
   s.first.assign(static_cast<std::size_t>(s.cells[0]) * s.cells[1] * s.cells[2] + 1, 0);
-  for (const Found& one : found) ++s.first[one.cell + 1];
+  each_entry([&](std::size_t cell, std::uint32_t) { ++s.first[cell + 1]; });
   for (std::size_t c = 1; c < s.first.size(); ++c) s.first[c] += s.first[c - 1];
   std::vector<std::uint32_t> next = s.first;
-  s.features.resize(found.size());
-  for (const Found& one : found) s.features[next[one.cell]++] = one.feature;
+  s.features.resize(s.first.back());
+  each_entry([&](std::size_t cell, std::uint32_t f) { s.features[next[cell]++] = f; });
 }
 
 }  // namespace
