@@ -37,7 +37,9 @@ void check_target(const data::Section& section, const data::Input& input) {
   }
   if (!data::convertible(unit.symbol, target->unit)) {
     section.problem("unit", fmt::format("'{}' does not measure {} ({})", unit.symbol, target->name, target->unit),
-                    "use a unit of that dimension");
+                    target->name == "rig.fill" && data::convertible(unit.symbol, "kg")
+                        ? "it is a number of spheres; the fill as a mass is target = \"rig.fill_mass\""
+                        : "use a unit of that dimension");
     return;
   }
   const auto outside = [&](const char* key, double value) {

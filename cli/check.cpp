@@ -78,7 +78,7 @@ MaterialsForetold foretell_materials(const Common& common, const Workspace& work
     for (const auto& list : {told.forecast.warnings, cost.warnings, problems_at_ends(workspace, middle)})
       for (const std::string& warning : list) all.warnings.push_back(of + warning);
     if (material == workspace.cases.begin()->first)
-      for (const std::string& warning : dem::rig_warnings(c)) all.warnings.push_back(warning);
+      for (const std::string& note : dem::rig_warnings(c)) say(common, "note: " + note);
     nlohmann::json one = to_json(told, cost);
     one["name"] = material;
     one["missing_runs"] = runs;
@@ -90,15 +90,16 @@ MaterialsForetold foretell_materials(const Common& common, const Workspace& work
   return all;
 }
 
-std::vector<std::string> case_warnings(const data::Study& study) {
+/// What cannot be calibrated yet, which is no fault of a study that is only begun.
+std::vector<std::string> case_notes(const data::Study& study) {
   if (study.cases.empty())
     return {"there is no [[calibrate]] case yet: the study can train and plan (demcal plan --prior), not calibrate"};
-  std::vector<std::string> warnings;
+  std::vector<std::string> notes;
   for (const data::CalibrationCase& one : study.cases)
     if (one.observe.empty())
-      warnings.push_back(fmt::format(
+      notes.push_back(fmt::format(
           "case '{}' observes nothing yet: it can be planned (demcal plan --prior), not calibrated", one.name));
-  return warnings;
+  return notes;
 }
 
 nlohmann::json to_json(const std::vector<data::Finding>& findings) {
@@ -147,7 +148,7 @@ data::ExitStatus check(const Common& common) {
   for (const std::string& note : uq::effort_notes(study, rows.table, surrogates)) say(common, "note: " + note);
   const MaterialsForetold foretold = foretell_materials(common, workspace, rows);
   add(foretold.warnings);
-  add(case_warnings(study));
+  for (const std::string& note : case_notes(study)) say(common, "note: " + note);
 
   for (const std::string& warning : warnings) say(common, "warning: " + warning);
   data::refuse(rows.findings);

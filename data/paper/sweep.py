@@ -150,7 +150,13 @@ def row_of(arguments, point):
 
 def gather(arguments):
     there = rows_there()
-    rows = [row for row in (row_of(arguments, point) or there.get(key_of(point)) for point in points()) if row]
+
+    def row(point):
+        made, known = row_of(arguments, point), there.get(key_of(point))
+        # A run that ended before it was long enough for the mechanism's outputs leaves the torque that is known.
+        return known if known and (not made or made["state"].startswith("failed")) else made
+
+    rows = [one for one in map(row, points()) if one]
     columns = KEY + [c for o in OUTPUTS + MECHANISM for c in (o, o + "_se")] + [
         "bond_number", "turns", "seed", "settings", "state"]
     with open(HERE / "sweeps.csv", "w", newline="") as file:

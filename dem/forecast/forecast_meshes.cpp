@@ -85,7 +85,13 @@ void check_sweeps(const Case& c, const BuiltRig& rig, Forecast& f) {
                                       100.0 * e.most, 100.0 * e.least),
                           axis_hint(meshes[e.body]) + ", or make rig.box larger"});
   }
+  const auto is_in = [](const auto& all, std::size_t one, std::size_t other) {
+    return std::any_of(all.begin(), all.end(), [&](const auto& found) {
+      return std::minmax(found.body, found.other) == std::minmax(one, other);
+    });
+  };
   for (const Cut& cut : sweeps.cuts) {
+    if (cut.joined && is_in(sweeps.throughs, cut.body, cut.other)) continue;  // flat sides of a round wall
     const bool first = moves(rig.bodies[cut.body].motion);
     const RigMesh &one = meshes[first ? cut.body : cut.other], &other = meshes[first ? cut.other : cut.body];
     const std::string what = fmt::format("cuts {} by {} mm at {} as it moves, {:.3g} s after the start", other.name,
@@ -95,13 +101,10 @@ void check_sweeps(const Case& c, const BuiltRig& rig, Forecast& f) {
     else
       f.problems.push_back({"rig.mesh." + one.name, what, axis_hint(one)});
   }
-  const auto is_in = [](const auto& all, std::size_t one, std::size_t other) {
-    return std::any_of(all.begin(), all.end(), [&](const auto& found) {
-      return std::minmax(found.body, found.other) == std::minmax(one, other);
-    });
-  };
   for (const Through& one : sweeps.throughs)
-    if (!is_in(sweeps.cuts, one.body, one.other))
+    if (std::none_of(sweeps.cuts.begin(), sweeps.cuts.end(), [&](const Cut& cut) {
+          return !cut.joined && std::minmax(cut.body, cut.other) == std::minmax(one.body, one.other);
+        }))
       f.warnings.push_back(fmt::format(
           "{} sticks out by {} mm through {} at {} as it turns: spheres are pinched along the wall (correct the mesh's "
           "unit or size; or {})",

@@ -125,6 +125,9 @@ Binding of_component(std::string_view component, const ComponentKey& key) {
   };
   const auto unused = [=, which = std::string(key.key)](const Case& c) -> std::string {
     const auto it = find(c.components);
+    if (c.components.empty())
+      return fmt::format("is that of a component, and this bed has none: write {}.{}",
+                         which == "young_modulus" || which == "poisson_ratio" ? "contact" : "material", which);
     if (it == c.components.end())
       return fmt::format("is of no component of this bed ({})", fmt::join(grain_names(c), ", "));
     if (which == "diameter" && !it->material.sizes.empty()) return "is not read with a list of sizes";
