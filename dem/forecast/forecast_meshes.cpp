@@ -91,7 +91,7 @@ void check_sweeps(const Case& c, const BuiltRig& rig, Forecast& f) {
     });
   };
   for (const Cut& cut : sweeps.cuts) {
-    if (cut.joined && is_in(sweeps.throughs, cut.body, cut.other)) continue;  // flat sides of a round wall
+    if (is_in(sweeps.throughs, cut.body, cut.other)) continue;  // said below
     const bool first = moves(rig.bodies[cut.body].motion);
     const RigMesh &one = meshes[first ? cut.body : cut.other], &other = meshes[first ? cut.other : cut.body];
     const std::string what = fmt::format("cuts {} by {} mm at {} as it moves, {:.3g} s after the start", other.name,
@@ -102,13 +102,10 @@ void check_sweeps(const Case& c, const BuiltRig& rig, Forecast& f) {
       f.problems.push_back({"rig.mesh." + one.name, what, axis_hint(one)});
   }
   for (const Through& one : sweeps.throughs)
-    if (std::none_of(sweeps.cuts.begin(), sweeps.cuts.end(), [&](const Cut& cut) {
-          return !cut.joined && std::minmax(cut.body, cut.other) == std::minmax(one.body, one.other);
-        }))
-      f.warnings.push_back(fmt::format(
-          "{} sticks out by {} mm through {} at {} as it turns: spheres are pinched along the wall (correct the mesh's "
-          "unit or size; or {})",
-          meshes[one.body].name, mm(one.by), meshes[one.other].name, mm(one.at), axis_hint(meshes[one.body])));
+    f.warnings.push_back(fmt::format(
+        "{} sticks out by {} mm through {} at {} as it turns: spheres are pinched along the wall (correct the mesh's "
+        "unit or size; or {})",
+        meshes[one.body].name, mm(one.by), meshes[one.other].name, mm(one.at), axis_hint(meshes[one.body])));
   for (const Gap& gap : sweeps.gaps) {
     const std::size_t one = std::min(gap.body, gap.other), other = std::max(gap.body, gap.other);
     if (!is_in(sweeps.cuts, one, other) && !is_in(sweeps.throughs, one, other))
