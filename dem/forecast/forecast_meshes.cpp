@@ -8,6 +8,7 @@
 
 #include "dem/case/grains.hpp"
 #include "dem/forecast/forecast_words.hpp"
+#include "dem/forecast/mesh_shape.hpp"
 #include "dem/forecast/room.hpp"
 #include "dem/forecast/sweep.hpp"
 #include "dem/rig/packing.hpp"
@@ -31,18 +32,6 @@ std::string motion_text(const RigMesh& m, const Motion& motion) {
     text += fmt::format("{}oscillates at {:.4g} Hz", text.empty() ? "" : ", ", o.frequency);
   if (text.empty()) text = m.speed_ratio != 0.0 ? "turns" : "rests";
   return text;
-}
-
-struct Extent {
-  Vec3 low, high;
-};
-Extent extent_of(const TriangleMesh& mesh) {
-  Extent e{mesh.vertices.at(0), mesh.vertices.at(0)};
-  for (const Vec3 v : mesh.vertices) {
-    e.low = {std::min(e.low.x, v.x), std::min(e.low.y, v.y), std::min(e.low.z, v.z)};
-    e.high = {std::max(e.high.x, v.x), std::max(e.high.y, v.y), std::max(e.high.z, v.z)};
-  }
-  return e;
 }
 
 bool is_measured(const StlRig& rig, std::size_t mesh) {
@@ -144,25 +133,13 @@ double bottom_of(const Room& room, const std::vector<std::uint8_t>& wet) {
   return lowest;
 }
 
-/// How often a ray from the point meets the mesh: an odd number inside a closed one.
-int crossings(const TriangleMesh& mesh, Vec3 p, Vec3 way) {
-  int count = 0;
-  for (const auto& t : mesh.triangles) {
-    const Vec3 a = mesh.vertices[t[0]] - p, b = mesh.vertices[t[1]] - p, c = mesh.vertices[t[2]] - p;
-    const double u = dot(way, cross(a, b)), v = dot(way, cross(b, c)), w = dot(way, cross(c, a));
-    if (!((u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0))) continue;
-    count += dot(a, cross(b, c)) / (u + v + w) > 0.0;
-  }
-  return count;
-}
-
 /// Whether most of three rays, about square to each other, leave the mesh: the open top of a vessel, or the open end of
 /// a tube, lets one of them out.
 bool within(const TriangleMesh& mesh, Vec3 p, Vec3 down) {
   const Vec3 first = unit(down + Vec3{0.0137, 0.0261, 0.0091});
   const Vec3 second = unit(cross(first, unit(Vec3{0.5377, 0.2661, 0.8000}))), third = cross(first, second);
   int inside = 0;
-  for (const Vec3 way : {first, second, third}) inside += crossings(mesh, p, way) % 2;
+  for (const Vec3 way : {first, second, third}) inside += crossings(mesh, p, way, INFINITY) % 2;
   return inside >= 2;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "dem/forecast/mesh_shape.hpp"
 #include "dem/walls/surface.hpp"
 
 namespace dem {
@@ -233,28 +234,9 @@ void part_from_powder(std::vector<Mark>& marks, const Body& mine, const Body& wa
   const Pose here = pose(mine.motion, 0.0), its = pose(wall.motion, 0.0);
   const Vec3 to = to_body(wall.motion, its, powder);
   for (Mark& mark : marks) {
-    const Vec3 from = to_body(wall.motion, its, to_box(mine.motion, here, mark.at)), way = to - from;
-    int count = 0;
-    for (const auto& t : wall.mesh.triangles) {
-      const Vec3 a = wall.mesh.vertices[t[0]] - from, b = wall.mesh.vertices[t[1]] - from,
-                 c = wall.mesh.vertices[t[2]] - from;
-      const double u = dot(way, cross(a, b)), v = dot(way, cross(b, c)), w = dot(way, cross(c, a));
-      if (!((u > 0.0 && v > 0.0 && w > 0.0) || (u < 0.0 && v < 0.0 && w < 0.0))) continue;
-      const double share = dot(a, cross(b, c)) / (u + v + w);
-      count += share > 0.0 && share < 1.0;
-    }
-    mark.apart = count % 2 == 1;
+    const Vec3 from = to_body(wall.motion, its, to_box(mine.motion, here, mark.at));
+    mark.apart = crossings(wall.mesh, from, to - from, 1.0) % 2 == 1;
   }
-}
-
-double box_volume(const TriangleMesh& mesh) {
-  Vec3 low = mesh.vertices.at(0), high = low;
-  for (const Vec3 v : mesh.vertices) {
-    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-  }
-  const Vec3 size = high - low;
-  return size.x * size.y * size.z;
 }
 
 struct Pairing {
@@ -370,7 +352,7 @@ Sweeps follow_bodies(const BuiltRig& rig, const RunControl& run, double largest)
       std::vector<Mark> marks = marks_of(one.mesh, points), others = marks_of(other.mesh, points);
       if (joined && !rig.position.empty()) {
         // What the smaller one has outside the larger one's wall is in no powder, and the gap there is none.
-        const bool first = box_volume(one.mesh) < box_volume(other.mesh);
+        const bool first = extent_of(one.mesh).volume() < extent_of(other.mesh).volume();
         part_from_powder(first ? marks : others, first ? one : other, first ? other : one, rig.position.front());
         for (Mark& mark : first ? others : marks) mark.apart = true;
       }
