@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -48,34 +49,52 @@ std::string short_words(const std::string& text) {
   return small == lower_case(text) ? text : small;
 }
 
+/// What stands before the force in a text of a force and a length, in either order: "m" in "mNm". Empty where the text is
+/// no such pair, or has before the force what is no prefix of SI.
+std::optional<std::string_view> prefix_of_force(std::string_view text, std::string_view force,
+                                                std::string_view length) {
+  static constexpr std::array<std::string_view, 9> prefixes{"", "u", "m", "c", "d", "da", "k", "n", "M"};
+  const auto before_force = [&](std::string_view part) -> std::optional<std::string_view> {
+    if (!part.ends_with(force)) return {};
+    part.remove_suffix(force.size());
+    if (std::find(prefixes.begin(), prefixes.end(), part) == prefixes.end()) return {};
+    return part;
+  };
+  if (text.ends_with(length))
+    if (const auto prefix = before_force(text.substr(0, text.size() - length.size()))) return prefix;
+  if (text.starts_with(length)) return before_force(text.substr(length.size()));
+  return {};
+}
+
 /// "mNm" -> "mN m", "kgfcm" -> "kgf cm", "in-lb" -> "lbf in": a force and a length in any order, with any sign or none
 /// between them. A mass stands for its weight; grams do so beside mm and cm alone, as "gm" may be grams. "NM" is no
 /// other unit than Nm.
 std::string torque_spelling(const std::string& text) {
-  static constexpr std::array forces{"kgf", "gf", "kp", "ozf", "lbf", "lb", "oz", "kg", "dyn", "N", "g"};
-  static constexpr std::array lengths{"mm", "cm", "m", "in", "ft"};
-  static constexpr std::array prefixes{"", "u", "m", "c", "d", "da", "k", "n", "M"};
+  /// A force as instruments write it, and its weight's name or its number of them in UDUNITS.
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 11> forces{
+      {{"kgf", "kgf"},
+       {"gf", "0.001 kgf"},
+       {"kp", "kgf"},
+       {"ozf", "0.0625 lbf"},
+       {"lbf", "lbf"},
+       {"lb", "lbf"},
+       {"oz", "0.0625 lbf"},
+       {"kg", "kgf"},
+       {"dyn", "dyne"},
+       {"N", "N"},
+       {"g", "0.001 kgf"}}};
+  static constexpr std::array<std::string_view, 5> lengths{"mm", "cm", "m", "in", "ft"};
   std::string joined;
   for (const char c : short_words(text))
     if (c != ' ' && c != '.' && c != '-') joined += c;
   if (joined == "NM") return "N m";
-  for (const char* force : forces)
-    for (const char* length : lengths)
-      for (const char* prefix : prefixes)
-        if (joined == std::string(prefix) + force + length || joined == std::string(length) + prefix + force) {
-          const std::string name = force;
-          const std::string udunits = name == "kp" || name == "kg" ? "kgf"
-                                      : name == "g"                ? "gf"
-                                      : name == "lb"               ? "lbf"
-                                      : name == "oz"               ? "ozf"
-                                      : name == "dyn"              ? "dyne"
-                                                                   : name;
-          if (name != "N" && *prefix != '\0') continue;
-          if (name == "g" && joined != "gcm" && joined != "gmm") continue;
-          if (udunits == "gf") return std::string("0.001 kgf ") + length;
-          if (udunits == "ozf") return std::string("0.0625 lbf ") + length;
-          return prefix + udunits + " " + length;
-        }
+  for (const auto& [force, udunits] : forces)
+    for (const std::string_view length : lengths) {
+      const auto prefix = prefix_of_force(joined, force, length);
+      if (!prefix || (force != "N" && !prefix->empty())) continue;
+      if (force == "g" && joined != "gcm" && joined != "gmm") continue;
+      return std::string(*prefix).append(udunits).append(" ").append(length);
+    }
   return text;
 }
 
