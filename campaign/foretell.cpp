@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "data/progress.hpp"
 #include "data/provenance.hpp"
 #include "dem/reading/prepare.hpp"
@@ -26,6 +28,12 @@ void refuse_absurd(const Workspace& workspace, const dem::Derived& derived) {
        "check the diameter and its unit and the fill; use fewer or larger spheres (coarse_graining)"});
 }
 
+/// Whether the input changes the rig or its fill, so that the forecast at its ends is another one.
+bool is_of_rig(const data::Input& input) {
+  const std::string name = dem::target(input.target).name;
+  return name.starts_with("rig.") && name != "rig.rpm";
+}
+
 }  // namespace
 
 Foretold foretell(const Workspace& workspace, const Point& point) {
@@ -38,6 +46,11 @@ Foretold foretell(const Workspace& workspace, const Point& point) {
   if (std::string short_of = too_short(workspace, {point}); !short_of.empty())
     told.forecast.warnings.push_back(std::move(short_of));
   return told;
+}
+
+bool changes_rig(const data::Study& study) {
+  const std::vector<data::Input> inputs = data::inputs_of(study);
+  return std::any_of(inputs.begin(), inputs.end(), is_of_rig);
 }
 
 Cost cost_of(const dem::PreparedCase& prepared) {
@@ -99,12 +112,6 @@ void require_memory(const Workspace& workspace, const Foretold& told, int jobs) 
 }
 
 namespace {
-
-/// Whether the input changes the rig or its fill, so that the forecast at its ends is another one.
-bool is_of_rig(const data::Input& input) {
-  const std::string name = dem::target(input.target).name;
-  return name.starts_with("rig.") && name != "rig.rpm";
-}
 
 /// What keeps the rig of a point from being simulated, or "".
 std::string wrong_with_rig(const Workspace& workspace, const Point& point) {

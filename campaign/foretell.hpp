@@ -21,6 +21,9 @@ struct Foretold {
 /// The forecast of the point's run. Throws data::InputError (78) with every problem that makes the run nonsense.
 Foretold foretell(const Workspace& workspace, const Point& point);
 
+/// Whether an input of the study changes the rig or its fill, so that each point has a forecast of its own.
+bool changes_rig(const data::Study& study);
+
 /// The cost of a run, by a measurement on this machine.
 struct Cost {
   double steps = 0.0;    ///< time steps at most

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "campaign/foretell.hpp"
 #include "data/atomic_file.hpp"
 #include "dem/contact/isa.hpp"
 #include "dem/reading/prepare.hpp"
@@ -42,9 +43,10 @@ std::optional<dem::SavedRun> earlier(const std::string& path, const dem::Case& c
 }
 
 /// Whether the file knows all outputs that the study has: one that came after it was written is in none of its series.
+/// A run that was interrupted or failed has no outputs yet, or none at all.
 bool has_all(const dem::SavedRun& saved, const data::Study& study) {
   return std::all_of(study.outputs.begin(), study.outputs.end(), [&](const data::Output& output) {
-    return saved.result.status == dem::RunStatus::interrupted ||
+    return saved.result.status != dem::RunStatus::done ||
            std::find(saved.outputs.begin(), saved.outputs.end(), output.name) != saved.outputs.end();
   });
 }
@@ -74,8 +76,17 @@ std::uint64_t steps_made(const Workspace& workspace, const Point& point, const s
   return before ? before->result.checkpoint.state.step : 0;
 }
 
-dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options) {
-  const dem::PreparedCase prepared = dem::prepare(case_at(workspace, point));
+namespace {
+
+/// The case of the point. Throws InputError (78) where its rig cannot be simulated. Where no input changes the rig, its
+/// forecast at the middle of the ranges has been for all points.
+dem::PreparedCase possible(const Workspace& workspace, const Point& point) {
+  if (changes_rig(workspace.study)) return foretell(workspace, point).prepared;
+  return dem::prepare(case_at(workspace, point));
+}
+
+dem::RunResult make_run(const Workspace& workspace, const Point& point, const PointRun& options) {
+  const dem::PreparedCase prepared = possible(workspace, point);
   const dem::Case& c = prepared.given();
   const std::uint64_t seed = run_seed(workspace, point);
   data::require_replaceable(options.path);
@@ -118,6 +129,21 @@ dem::RunResult run_point(const Workspace& workspace, const Point& point, const P
   if (judged_anew || (steady && !options.keep_state)) result.checkpoint = {};
   dem::write_run(options.path, c, result);
   return result;
+}
+
+}  // namespace
+
+dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options) {
+  try {
+    return make_run(workspace, point, options);
+  } catch (const data::InputError& error) {
+    if (error.status != data::ExitStatus::bad_study) throw;
+    dem::RunResult failed{
+        .status = dem::RunStatus::failed, .reason = data::describe(error.problems), .seed = run_seed(workspace, point)};
+    failed.diagnostics.isa = dem::isa();
+    dem::write_run(options.path, case_at(workspace, point), failed);
+    return failed;
+  }
 }
 
 }  // namespace campaign

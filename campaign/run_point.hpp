@@ -32,6 +32,8 @@ std::uint64_t steps_made(const Workspace& workspace, const Point& point, const s
 /// Makes the run, and returns the result, which the file holds too. A finished run of which the study now wants more,
 /// or less, goes on from its last state or is cut short: to the same bits as a new run. A file of another point, seed
 /// or setting is replaced.
+/// A point whose rig cannot be simulated (a blade wider than its trough) is a failed run with the reason: the other
+/// points of a campaign are made. Throws InputError (73) where the file cannot be written.
 dem::RunResult run_point(const Workspace& workspace, const Point& point, const PointRun& options);
 
 }  // namespace campaign

@@ -191,7 +191,8 @@ data::ExitStatus simulate(const SimulateOptions& options) {
   }
   if (result.status == dem::RunStatus::failed)
     throw data::InputError(data::ExitStatus::bad_study,
-                           {describe(workspace.study, point), result.reason, "its last good state is in " + path});
+                           {describe(workspace.study, point), result.reason,
+                            result.checkpoint.state.position.empty() ? "" : "its last good state is in " + path});
   for (const std::string& warning : result.warnings) say(common, "warning: " + warning);
   answer(common,
          (data::answers_go_elsewhere() ? at + "\n" : "") + summary(workspace, point, told.prepared, result) + path);

@@ -85,9 +85,10 @@ std::optional<double> read_quantity(const Section::Node& node, std::string_view 
       if (const auto last = unit_text.find_last_not_of(" \t"); last != std::string::npos) unit_text.resize(last + 1);
     }
   }
+  const std::string_view usual_unit = si_unit == "rad/s" ? "rpm" : si_unit;
   const std::string example = default_unit != nullptr ? fmt::format("\"1 {}\"", default_unit->symbol)
                               : dimensionless         ? std::string("0.5")
-                                                      : fmt::format("\"1 {}\"", si_unit);
+                                                      : fmt::format("\"1 {}\"", usual_unit);
   if (!number) {
     node.problem(key, fmt::format("{} is not a quantity", shown_value(value)),
                  fmt::format("write a number with its unit, like {}", example));
@@ -100,7 +101,7 @@ std::optional<double> read_quantity(const Section::Node& node, std::string_view 
     }
     if (dimensionless) return check_range(node, key, *number, range, {shown_value(value), BoundText{}});
     node.problem(key, fmt::format("{} has no unit", shown_value(value)),
-                 fmt::format("write it with a unit of {}, like \"{:.10g} {}\"", si_unit, *number, si_unit));
+                 fmt::format("write it with a unit of {}, like \"{:.10g} {}\"", usual_unit, *number, usual_unit));
     return {};
   }
   try {

@@ -17,12 +17,12 @@
 
 namespace test {
 
-inline campaign::Workspace small_study(const std::string& out, const std::string& fill = "200") {
-  return campaign::open_workspace(
-      {.study = DEMCAL_SOURCE_DIR "/data/quick",
-       .out = out,
-       .seed = {},
-       .set = {"rig.fill=" + fill, "run.longest=\"0.4 s\"", "run.start_up_turns=0.25", "training.unsteady=\"use\""}});
+inline campaign::Workspace small_study(const std::string& out, const std::string& fill = "200",
+                                       const std::vector<std::string>& more = {}) {
+  std::vector<std::string> set{"rig.fill=" + fill, "run.longest=\"0.4 s\"", "run.start_up_turns=0.25",
+                               "training.unsteady=\"use\""};
+  set.insert(set.end(), more.begin(), more.end());
+  return campaign::open_workspace({.study = DEMCAL_SOURCE_DIR "/data/quick", .out = out, .seed = {}, .set = set});
 }
 
 inline std::vector<campaign::PlannedRun> planned(const campaign::Workspace& workspace, int runs) {

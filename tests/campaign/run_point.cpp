@@ -8,6 +8,7 @@
 #include "tests/temporary.hpp"
 
 using namespace campaign;
+using Catch::Contains;
 
 TEST_CASE("a steady run that was kept without its last state is read back, and not made again") {
   const TemporaryFolder folder;
@@ -52,4 +53,27 @@ TEST_CASE("a run kept without its last state is measured anew where it is as lon
 
   const dem::RunResult longer = run_point(with_longest(0.45), run.point, {.path = path, .keep_state = true});
   CHECK(longer.series.torque.size() > whole.series.torque.size());
+}
+
+TEST_CASE(
+    "a point whose rig cannot be simulated is a failed run with the reason, and the others of its batch are made") {
+  const TemporaryFolder folder;
+  const Workspace workspace =
+      test::small_study(folder.path("out"), "480",
+                        {"rig.rpm=\"200 rpm\"", "controls.rpm.target=\"rig.blade_radius\"", "controls.rpm.unit=\"mm\"",
+                         "controls.rpm.low=3", "controls.rpm.high=7"});
+  std::vector<PlannedRun> runs = test::planned(workspace, 2);
+  const std::size_t blade = runs[0].point.inputs.size() - 1;
+  runs[0].point.inputs[blade] = 6.9e-3;  // the trough's radius is 6 mm
+  runs[1].point.inputs[blade] = 3.6e-3;
+  for (int start = 0; start < 2; ++start) {
+    const BatchResult batch = run_batch(workspace, runs, data::empty_table(workspace.study), {.jobs = 1});
+    CHECK_FALSE(batch.error);
+    INFO(batch.failures.back());
+    REQUIRE(batch.failures.size() == 1);
+    CHECK_THAT(batch.failures.front(), Contains("6.9 mm") && Contains("the blade turns inside rig.trough_radius"));
+    CHECK(batch.table.rows.size() == 1);
+    const std::string path = run_path(workspace, runs[0].point);
+    CHECK(is_done(workspace, runs[0].point, path));  // a campaign that is started again does not try it again
+  }
 }
