@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "data/error.hpp"
+#include "data/number_text.hpp"
 #include "uq/emulate/surrogates.hpp"
 
 namespace uq {
@@ -148,15 +149,20 @@ std::vector<TrainingRows> training_rows(const data::Study& study, const data::Ru
       found.material = material;
       found.output = output;
       const std::string name = material.empty() ? "the study" : "material '" + material + "'";
-      const auto demand = [&](Eigen::Index rows, std::size_t needed, const std::string& level) {
-        if (static_cast<std::size_t>(rows) >= needed) return;
-        problems.push_back({table_place(study),
-                            fmt::format("{} has {} runs of {}{}, fewer than the {} that {} inputs need at the very "
-                                        "least",
-                                        name, rows, study.outputs[output].name, level, needed, found.inputs.size()),
-                            study.training.engine == data::Engine::none
-                                ? "add rows to the table, ten per input is a good start"
-                                : "run `demcal train` for more, ten per input is a good start"});
+      const auto demand = [&](Eigen::Index count, std::size_t needed, const std::string& level) {
+        const auto rows = static_cast<std::size_t>(count);
+        if (rows >= needed && !found.inputs.empty()) return;
+        const std::string has =
+            fmt::format("{} has {} of {}{}", name, data::counted(rows, "run"), study.outputs[output].name, level);
+        problems.push_back(
+            {table_place(study),
+             found.inputs.empty()
+                 ? has + (rows == 1 ? "" : ", all at the same point") + ", too few to tell what any input does"
+                 : fmt::format("{}, fewer than the {} that {} need{} at the very least", has, needed,
+                               data::counted(found.inputs.size(), "input"), found.inputs.size() == 1 ? "s" : ""),
+             study.training.engine == data::Engine::none
+                 ? "add rows to the table, ten per input is a good start"
+                 : "run `demcal train` for more, ten per input is a good start"});
       };
       const std::size_t needed = found.inputs.size() + 2;
       demand(high.y.size(), found.low ? 3 : needed, "");

@@ -79,6 +79,10 @@ TEST_CASE("a study without cases, a case without data and a table without enough
   Input input = other_code();
   input.table.rows.resize(4);
   CHECK(message_of(input).find("4 runs of torque, fewer than") != std::string::npos);
+  input.table.rows.resize(1);
+  CHECK(message_of(input).find("1 run of torque, too few to tell") != std::string::npos);
+  input.table.rows.resize(6, input.table.rows.front());
+  CHECK(message_of(input).find("6 runs of torque, all at the same point") != std::string::npos);
   input.table.rows.clear();
   CHECK(message_of(input).find("there are no training runs") != std::string::npos);
   input = other_code();
