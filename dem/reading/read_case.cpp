@@ -35,34 +35,25 @@ void read(const Section& s, std::string_view section, std::string_view key, Case
     s.problem(key, why, "remove it, or choose what reads it");
 }
 
-/// A bare number counts spheres, a quantity is a mass. The reader tells them apart by a unit that only a bare number
-/// gets, and that turns it negative.
+/// A bare number counts spheres, a quantity is a mass.
 void read_fill(const Section& s, Case& c) {
-  const data::Unit count{.symbol = "spheres", .factor = -1.0, .offset = 0.0};
   if (!s.has("fill")) return;
+  const data::Range range{.low = 0.0, .high = target("fill").high, .open_low = true};
   constexpr double unread = std::numeric_limits<double>::quiet_NaN();  // what is wrong with it is recorded already
-  const double fill =
-      s.quantity("fill", "kg", {.low = -target("fill").high, .high = target("fill_mass").high}, unread, &count);
-  const bool text = s.kind("fill") == data::ValueKind::text;
-  const std::string written = text ? s.text("fill") : "";
-  const bool negative = text ? written.find('-') == written.find_first_not_of(" \t") && !written.empty() : fill > 0.0;
+  const bool counted = s.kind("fill") == data::ValueKind::number;
+  const double fill = counted ? s.number("fill", range, unread) : s.quantity("fill", "kg", range, unread);
   if (std::isnan(fill)) return;
-  if (negative) {
-    s.problem("fill", fmt::format("is {}", text ? written : fmt::format("{:g}", -fill)),
-              "give a number of spheres, or a mass with its unit, above 0");
-  } else if (fill < 0.0 && std::round(fill) != fill) {
-    s.problem("fill", fmt::format("is {:g}, and a number of spheres is whole", -fill),
+  if (counted && std::round(fill) != fill) {
+    s.problem("fill", fmt::format("is {:g}, and a number of spheres is whole", fill),
               "give a whole number, or a mass with its unit");
-  } else if (fill < 0.0) {
-    c.rig.fill = -fill;
-    c.rig.fill_mass.reset();
-    c.rig.level.reset();
-  } else if (fill > 0.0) {
-    c.rig.fill_mass = fill;
-    c.rig.level.reset();
-  } else if (fill == 0.0) {
-    s.problem("fill", "is zero", "give a number of spheres, or a mass with its unit");
+    return;
   }
+  c.rig.fill_mass.reset();
+  c.rig.level.reset();
+  if (counted)
+    c.rig.fill = fill;
+  else
+    c.rig.fill_mass = fill;
 }
 
 void read_rig(const Section& s, const std::string& folder, Case& c) {

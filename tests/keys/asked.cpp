@@ -235,6 +235,7 @@ rpm = "15 rpm"
 const char* const machine = R"(
 [rig]
 kind = "machine"
+fill = "4 g"
 machine_length = "66 mm"
 opening = "12 mm"
 partition = "1 mm"
@@ -249,6 +250,7 @@ components = [{ material = "NAME3", mass_fraction = 1 }]
 density = "2500 kg/m3"
 diameter = "1 mm"
 [materials.NAME4]
+fill = "4 g"
 density = "2500 kg/m3"
 distribution = { kind = "log_normal", median = "0.8 mm", geometric_sd = 1.2, low = "0.5 mm", high = "1.2 mm" }
 [rig]
@@ -311,6 +313,7 @@ void collect(const std::string& text, Asked& all) {
       known->second = how;
     else
       type += " or " + how.type;
+    if (known->second.unit.empty()) known->second.unit = how.unit;
   }
   for (const std::string& name : file.looked_for()) all.looked_for.insert(reference_name(name));
 }
