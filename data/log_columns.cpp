@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <optional>
 #include <vector>
@@ -27,9 +28,27 @@ std::optional<double> multiple_of_rpm(const Unit& unit) {
   return std::strtod(unit.symbol.c_str(), nullptr);
 }
 
+/// Whether a column in this unit can only be the quantity of that dimension: a joule is an energy, and a hertz or "1/s" may
+/// be a shear rate or any other frequency.
+bool tells_quantity(const std::string& unit, std::string_view dimension) {
+  static constexpr std::array frequencies{"hz", "khz", "mhz", "1/s", "s-1", "s^-1", "/s"};
+  if (unit.empty() || !unit_meant(unit, dimension)) return false;
+  if (dimension == "N m") return unit.find('J') == std::string::npos;
+  return dimension != "rpm" || std::find(frequencies.begin(), frequencies.end(), lower_case(unit)) == frequencies.end();
+}
+
+/// The columns whose unit tells the quantity, whatever they are called.
+std::vector<std::size_t> by_unit(const Csv& csv, std::string_view dimension) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < csv.columns.size(); ++i)
+    if (tells_quantity(csv.units[i], dimension)) found.push_back(i);
+  return found;
+}
+
 }  // namespace
 
-std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::string& option) {
+std::size_t find_column(const Csv& csv, const LogColumn& wanted, const LogQuantity& quantity,
+                        std::vector<std::string>& took) {
   const auto named = [&](std::size_t i, const std::string& name) {
     return lower_case(csv.columns[i]) == lower_case(name) || lower_case(csv.headings[i]) == lower_case(name);
   };
@@ -53,11 +72,23 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const std::stri
     refuse_data(heading_place(csv),
                 fmt::format("both '{}' and '{}' may be the column '{}'", csv.headings[found[0]], csv.headings[found[1]],
                             wanted.name),
-                fmt::format("say which with --{}", option));
-  if (option == "time" && !csv.no_time.empty())
+                fmt::format("say which with --{}", quantity.option));
+  if (quantity.option == "time" && !csv.no_time.empty())
     refuse_data(csv.file, csv.no_time, "give the samples per second with --rate, if they are even all through");
-  std::string remedy = fmt::format("name it with --{}", option);
-  if (option == "rpm") remedy += ", or give the speed of the whole log with --constant-speed";
+  const bool any_name = !wanted.also.empty();  // the command line named none
+  const std::vector<std::size_t> in_unit = any_name ? by_unit(csv, quantity.dimension) : std::vector<std::size_t>{};
+  if (in_unit.size() == 1) {
+    took.push_back(
+        fmt::format("'{}' as the {}: the only column in a unit of it", csv.headings[in_unit[0]], quantity.word));
+    return in_unit.front();
+  }
+  std::string remedy = fmt::format("name it with --{}", quantity.option);
+  if (in_unit.size() > 1) {
+    std::vector<std::string> names;
+    for (const std::size_t i : in_unit) names.push_back("'" + csv.headings[i] + "'");
+    remedy = fmt::format("name it with --{}: {} are in a unit of it", quantity.option, fmt::join(names, " and "));
+  }
+  if (quantity.option == "rpm") remedy += ", or give the speed of the whole log with --constant-speed";
   if (csv.columns.size() == 1)
     remedy = "its columns are not parted by commas, semicolons, tabs or blanks, or it has one column only";
   refuse_data(
@@ -73,17 +104,15 @@ Unit shown_unit(const Unit& meant, const std::string& given) {
   return unit;
 }
 
-Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted,
-               const std::pair<std::string, std::string>& of) {
-  const auto& [dimension, option] = of;
+Unit find_unit(const Csv& csv, std::size_t column, const LogColumn& wanted, const LogQuantity& quantity) {
   std::string symbol = wanted.unit.empty() ? csv.units[column] : wanted.unit;
   if (symbol.empty()) symbol = wanted.usual;
   if (symbol.empty())
     refuse_data(heading_place(csv), fmt::format("the column '{}' has no unit", csv.headings[column]),
-                fmt::format("write it in the header, '{} [N m]', or give --{}-unit", wanted.name, option));
-  if (const auto unit = unit_meant(symbol, dimension)) return shown_unit(*unit, symbol);
-  refuse_data(heading_place(csv), fmt::format("'{}' is not a unit of {}", symbol, option),
-              fmt::format("a unit like '{}'; --{}-unit overrides the header", dimension, option));
+                fmt::format("write it in the header, '{} [N m]', or give --{}-unit", wanted.name, quantity.option));
+  if (const auto unit = unit_meant(symbol, quantity.dimension)) return shown_unit(*unit, symbol);
+  refuse_data(heading_place(csv), fmt::format("'{}' is not a unit of {}", symbol, quantity.option),
+              fmt::format("a unit like '{}'; --{}-unit overrides the header", quantity.dimension, quantity.option));
 }
 
 double per_shown_unit(const Csv& csv, std::size_t column, const LogColumn& wanted) {
@@ -93,11 +122,11 @@ double per_shown_unit(const Csv& csv, std::size_t column, const LogColumn& wante
 }
 
 void part_headings(Csv& csv, const LogColumns& columns) {
-  for (const auto& [wanted, dimension] :
-       {std::pair(&columns.time, "s"), {&columns.torque, "N m"}, {&columns.speed, "rpm"}})
+  for (const auto& [wanted, quantity] :
+       {std::pair(&columns.time, time_of_log), {&columns.torque, torque_of_log}, {&columns.speed, speed_of_log}})
     for (std::size_t i = 0; i < csv.columns.size(); ++i) {
       if (is_named(csv.columns[i], *wanted)) continue;
-      const auto split = heading_with_unit(csv.headings[i], dimension);
+      const auto split = heading_with_unit(csv.headings[i], quantity.dimension);
       if (!split || !is_named(split->name, *wanted)) continue;
       csv.columns[i] = split->name;
       csv.units[i] = split->unit;

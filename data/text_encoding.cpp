@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
+#include <optional>
 
 #include "data/error.hpp"
 #include "data/unit_text.hpp"
@@ -87,15 +87,37 @@ bool is_shift_jis(std::string_view bytes) {
   return japanese;
 }
 
-std::string from_shift_jis(std::string_view bytes, const std::string& name) {
-  const iconv_t converter = iconv_open("UTF-8", "CP932");
-  if (converter == reinterpret_cast<iconv_t>(-1)) refuse(name, "is Shift-JIS, which this system has no table of");
+/// Whether all that is not ASCII is pairs of bytes of the Chinese and Korean national standards (GB 2312, KS X 1001), most
+/// of them letters and not signs. Words of Latin-1 have single letters with an accent.
+bool is_gb_or_ks(std::string_view bytes) {
+  std::size_t pairs = 0, letters = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    const std::uint8_t c = byte(bytes, at);
+    if (c < 0x80) continue;
+    if (c < 0xa1 || c > 0xf7 || at + 1 == bytes.size() || byte(bytes, at + 1) < 0xa1) return false;
+    ++pairs, ++at;
+    letters += c >= 0xb0;
+  }
+  return letters >= 2 && 2 * letters >= pairs;
+}
+
+/// Whether the pairs are Korean syllables rather than Chinese signs: those stand in the first half of the letters.
+bool is_korean(std::string_view bytes) {
+  for (std::size_t at = 0; at < bytes.size(); ++at)
+    if (byte(bytes, at) >= 0x80 && byte(bytes, at++) > 0xc8) return false;
+  return true;
+}
+
+/// The text in UTF-8, by the system's tables; nothing where it has none of that name, or the bytes are no such text.
+std::optional<std::string> from_charset(std::string_view bytes, const char* charset) {
+  const iconv_t converter = iconv_open("UTF-8", charset);
+  if (converter == reinterpret_cast<iconv_t>(-1)) return {};
   std::string text(4 * bytes.size() + 16, '\0'), copy(bytes);
   char *from = copy.data(), *to = text.data();
   std::size_t from_left = copy.size(), to_left = text.size();
   const bool failed = iconv(converter, &from, &from_left, &to, &to_left) == static_cast<std::size_t>(-1);
   iconv_close(converter);
-  if (failed) refuse(name, "looks like Shift-JIS, but is no text");
+  if (failed) return {};
   text.resize(text.size() - to_left);
   return text;
 }
@@ -179,10 +201,19 @@ DecodedText decode_text(std::string_view bytes, const std::string& name) {
   if (looks_like_utf16(bytes, false)) return {from_utf16(bytes, false, name), "UTF-16, little endian"};
   if (looks_like_utf16(bytes, true)) return {from_utf16(bytes, true, name), "UTF-16, big endian"};
   if (is_utf8(bytes)) return {std::string(bytes), ""};
-  if (is_shift_jis(bytes)) {
-    std::string japanese = from_shift_jis(bytes, name);
-    if (!is_rather_windows_1252(bytes, japanese)) return {std::move(japanese), "Shift-JIS"};
+  if (is_shift_jis(bytes))
+    if (std::optional<std::string> japanese = from_charset(bytes, "CP932");
+        japanese && !is_rather_windows_1252(bytes, *japanese))
+      return {std::move(*japanese), "Shift-JIS"};
+  const std::size_t western = known_units(from_windows_1252(bytes));
+  if (is_gb_or_ks(bytes)) {
+    const bool korean = is_korean(bytes);
+    if (std::optional<std::string> text = from_charset(bytes, korean ? "CP949" : "GB18030");
+        text && known_units(*text) >= western)
+      return {std::move(*text), korean ? "EUC-KR" : "GBK"};
   }
+  if (std::optional<std::string> text = from_charset(bytes, "CP1251"); text && known_units(*text) > western)
+    return {std::move(*text), "Windows-1251"};
   return {from_windows_1252(bytes), "Latin-1"};
 }
 

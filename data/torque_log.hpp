@@ -28,15 +28,23 @@ struct LogColumns {
   LogColumn time{.name = "time",
                  .unit = "",
                  .usual = "s",
-                 .also = {"timestamp", "x_value", "time stamp", "datetime", "date time", "elapsed time", "zeit",
-                          "zeitstempel", "temps", "t"}};
+                 .also = {"timestamp",   "x_value", "time stamp", "datetime", "date time", "elapsed time", "zeit",
+                          "zeitstempel", "temps",   "tiempo",     "tempo",    "czas",      "čas",          "Čas",
+                          "tijd",        "время",   "Время",      "时间",     "時間",      "시간",         "t"}};
   /// No usual unit: it must be said somewhere.
-  LogColumn torque{.name = "torque", .unit = "", .usual = "", .also = {"drehmoment", "moment", "couple", "m"}};
+  LogColumn torque{.name = "torque",
+                   .unit = "",
+                   .usual = "",
+                   .also = {"drehmoment", "moment", "couple", "par", "coppia", "koppel", "момент", "Момент",
+                            "крутящий момент", "Крутящий момент", "扭矩", "转矩", "トルク", "토크", "m"}};
   LogColumn speed{.name = "rpm",
                   .unit = "",
                   .usual = "rpm",
-                  .also = {"speed", "rotational speed", "rotation speed", "velocity", "angular velocity", "drehzahl",
-                           "vitesse", "omega", "n"}};
+                  .also = {"speed",    "rotational speed", "rotation speed", "velocity", "angular velocity",
+                           "drehzahl", "vitesse",          "velocidad",      "velocità", "prędkość",
+                           "otáčky",   "Otáčky",           "toerental",      "скорость", "Скорость",
+                           "обороты",  "Обороты",          "转速",           "轉速",     "回転数",
+                           "回転速度", "회전수",           "속도",           "omega",    "n"}};
   std::optional<double> constant_speed;  ///< rad/s, speed of a log that has no column for it
   std::optional<double> rate;            ///< samples per second (1/s), whatever their stamps say
 };

@@ -103,7 +103,7 @@ Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) 
                                   [&](const CsvRow& row) { return !is_missing(row.fields[column]); });
   stamps.clock = first != csv.rows.end() && read_time(first->fields[column]).has_value();
   stamps.assumed = !stamps.clock && wanted.unit.empty() && csv.units[column].empty();
-  const Unit unit = stamps.clock ? parse_unit("s") : find_unit(csv, column, wanted, {"s", "time"});
+  const Unit unit = stamps.clock ? parse_unit("s") : find_unit(csv, column, wanted, time_of_log);
   const std::optional<std::size_t> dates = stamps.clock ? find_dates(csv, column, *first) : std::nullopt;
   if (dates) stamps.took.push_back(fmt::format("days by the column '{}'", csv.headings[*dates]));
   const auto text_of = [&](const CsvRow& row) {
@@ -239,16 +239,16 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
   part_headings(csv, columns);
   TorqueLog log{.file = csv.file};
   log.took = csv.took;
-  const std::size_t time = columns.rate ? 0 : find_column(csv, columns.time, "time");
-  const std::size_t torque = find_column(csv, columns.torque, "torque");
-  log.torque_unit = find_unit(csv, torque, columns.torque, {"N m", "torque"});
+  const std::size_t time = columns.rate ? 0 : find_column(csv, columns.time, time_of_log, log.took);
+  const std::size_t torque = find_column(csv, columns.torque, torque_of_log, log.took);
+  log.torque_unit = find_unit(csv, torque, columns.torque, torque_of_log);
   std::optional<std::size_t> speed;
   double in_unit = 1.0;
   const std::string given_speed = columns.speed.unit.empty() ? "rpm" : columns.speed.unit;
   log.speed_unit = shown_unit(unit_meant(given_speed, "rpm").value_or(parse_unit("rpm")), given_speed);
   if (!columns.constant_speed) {
-    speed = find_column(csv, columns.speed, "rpm");
-    log.speed_unit = find_unit(csv, *speed, columns.speed, {"rpm", "rpm"});
+    speed = find_column(csv, columns.speed, speed_of_log, log.took);
+    log.speed_unit = find_unit(csv, *speed, columns.speed, speed_of_log);
     in_unit = per_shown_unit(csv, *speed, columns.speed);
   }
   take_words(csv, torque, log);

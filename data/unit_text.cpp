@@ -13,7 +13,27 @@
 namespace data {
 namespace {
 
-/// The text with one spelling for the signs of micro, product, power and the blank.
+/// Units as Russian, Chinese, Japanese and Korean instruments write them, and ours; what holds another stands before it.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 18> units_of_other_scripts{{{"об/мин", "r/min"},
+                                                                                                {"转/分钟", "r/min"},
+                                                                                                {"转/分", "r/min"},
+                                                                                                {"回転/分", "r/min"},
+                                                                                                {"回/分", "r/min"},
+                                                                                                {"회/분", "r/min"},
+                                                                                                {"сек", "s"},
+                                                                                                {"с", "s"},
+                                                                                                {"秒", "s"},
+                                                                                                {"초", "s"},
+                                                                                                {"мин", "min"},
+                                                                                                {"分钟", "min"},
+                                                                                                {"分", "min"},
+                                                                                                {"Н", "N"},
+                                                                                                {"м", "m"},
+                                                                                                {"毫", "m"},
+                                                                                                {"牛", "N"},
+                                                                                                {"米", "m"}}};
+
+/// The text with one spelling for the signs of micro, product, power and the blank, and in our script.
 std::string normalised(std::string_view given) {
   std::string text(trimmed(given));
   for (const auto& [from, to] : std::initializer_list<std::pair<std::string_view, std::string_view>>{
@@ -25,6 +45,7 @@ std::string normalised(std::string_view given) {
            {"\xe2\x81\xb4", "4"}, {"\xe2\x81\xb5", "5"}, {"\xe2\x81\xb6", "6"},
            {"\xe2\x88\x92", "-"}, {"^-1", "-1"},         {"*", " "}})
     replace_all(text, from, to);
+  for (const auto& [from, to] : units_of_other_scripts) replace_all(text, from, to);
   return std::string(trimmed(text));
 }
 
@@ -71,18 +92,17 @@ std::optional<std::string_view> prefix_of_force(std::string_view text, std::stri
 /// other unit than Nm.
 std::string torque_spelling(const std::string& text) {
   /// A force as instruments write it, and its weight's name or its number of them in UDUNITS.
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 11> forces{
-      {{"kgf", "kgf"},
-       {"gf", "0.001 kgf"},
-       {"kp", "kgf"},
-       {"ozf", "0.0625 lbf"},
-       {"lbf", "lbf"},
-       {"lb", "lbf"},
-       {"oz", "0.0625 lbf"},
-       {"kg", "kgf"},
-       {"dyn", "dyne"},
-       {"N", "N"},
-       {"g", "0.001 kgf"}}};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 11> forces{{{"kgf", "kgf"},
+                                                                                         {"gf", "0.001 kgf"},
+                                                                                         {"kp", "kgf"},
+                                                                                         {"ozf", "0.0625 lbf"},
+                                                                                         {"lbf", "lbf"},
+                                                                                         {"lb", "lbf"},
+                                                                                         {"oz", "0.0625 lbf"},
+                                                                                         {"kg", "kgf"},
+                                                                                         {"dyn", "dyne"},
+                                                                                         {"N", "N"},
+                                                                                         {"g", "0.001 kgf"}}};
   static constexpr std::array<std::string_view, 5> lengths{"mm", "cm", "m", "in", "ft"};
   std::string joined;
   for (const char c : short_words(text))
@@ -103,9 +123,9 @@ std::string rotation_spelling(const std::string& text) {
   if (text == "mHz") return "0.06 rpm";
   std::string word = lower_case(text);
   word.erase(std::remove_if(word.begin(), word.end(), [](char c) { return c == ' ' || c == '.'; }), word.end());
-  for (const char* per_minute : {"1/min", "min-1",  "u/min",   "r/min",     "rev/min",  "umdr/min",  "rpm",
-                                 "upm",   "/min",   "cpm",     "tr/min",    "tpm",      "revs/min",  "rot/min",
-                                 "umin",  "ob/min", "obr/min", "tours/min", "giri/min", "rounds/min"})
+  for (const char* per_minute : {"1/min", "min-1",  "u/min",   "r/min",     "rev/min",  "umdr/min",   "rpm",
+                                 "upm",   "/min",   "cpm",     "tr/min",    "tpm",      "revs/min",   "rot/min",
+                                 "umin",  "ob/min", "obr/min", "tours/min", "giri/min", "rounds/min", "ot/min"})
     if (word == per_minute) return "rpm";
   for (const char* per_second : {"hz", "1/s", "s-1", "rps", "u/s", "r/s", "rev/s", "revs/s", "tr/s", "/s"})
     if (word == per_second) return "60 rpm";

@@ -62,7 +62,8 @@ HighFit fit_high(const HighProblem& problem, const TwoLevelParameters& p) {
   result.factor = factor.matrixL();
   const VectorXd residual = high.y - p.rho * low_at_high.mean;
   VectorXd whitened = result.factor.triangularView<Eigen::Lower>().solve(residual);
-  result.whitened_basis = result.factor.triangularView<Eigen::Lower>().solve(basis);
+  result.whitened_basis = basis;
+  if (basis.cols() > 0) result.factor.triangularView<Eigen::Lower>().solveInPlace(result.whitened_basis);
   double log_determinant = 2.0 * result.factor.diagonal().array().log().sum();
   result.coefficients.resize(basis.cols());
   result.basis_factor.resize(basis.cols(), basis.cols());

@@ -22,8 +22,8 @@ TEST_CASE("an exported bed has the spheres, masses and pairs of the study's run"
       folder.demcal({"export", quick, "case", "--to", "liggghts", "--json", "--quiet", "--at", "hamaker=0,rpm=120"});
   INFO(outcome.err);
   REQUIRE(outcome.status == 0);
-  for (const std::string file : nlohmann::json::parse(outcome.out)["files"])
-    CHECK(fs::exists(folder.path / "case" / file));
+  const nlohmann::json answer = nlohmann::json::parse(outcome.out);
+  for (const std::string file : answer["files"]) CHECK(fs::exists(folder.path / "case" / file));
 
   std::istringstream bed(folder.read("case/bed.data"));
   std::string line;

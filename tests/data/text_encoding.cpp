@@ -52,6 +52,21 @@ TEST_CASE("a quotation mark or a unit of Windows-1252 makes no Japanese of it, n
   CHECK(took("\x91\xac\x93\x78[rpm],M[mNm]\n") == "Shift-JIS");
 }
 
+TEST_CASE("tables of Chinese, Korean and Russian programs are told from Latin-1 by their bytes and units") {
+  // The bytes are Python's encodings of the texts.
+  const auto check = [](const std::string& bytes, const std::string& text, const std::string& took) {
+    const data::DecodedText decoded = data::decode_text(bytes, "x");
+    CHECK(decoded.text == text);
+    CHECK(decoded.took == took);
+  };
+  check("\xca\xb1\xbc\xe4(s),\xc5\xa4\xbe\xd8(N\xa1\xa4m)\n", "时间(s),扭矩(N·m)\n", "GBK");
+  check("\xbd\xc3\xb0\xa3(s),\xc5\xe4\xc5\xa9(N\xa1\xa4m)\n", "시간(s),토크(N·m)\n", "EUC-KR");
+  check("\xc2\xf0\xe5\xec\xff (\xf1),\xcc\xee\xec\xe5\xed\xf2 (\xcd\xb7\xec)\n", "Время (с),Момент (Н·м)\n",
+        "Windows-1251");
+  check("Couple cr\xe9\xe9 [N m], g\xe9n\xe9r\xe9\n", "Couple créé [N m], généré\n", "Latin-1");
+  check("t [s],M [\xb5N\xb7m],\xb0,\xd8\xd8\n", "t [s],M [µN·m],°,ØØ\n", "Latin-1");
+}
+
 TEST_CASE("what is no text in any of them is refused by name") {
   const TemporaryFolder folder;
   const auto failure = [&](const std::string& bytes) {

@@ -13,6 +13,8 @@
 #include "data/torque_log.hpp"
 #include "tests/temporary.hpp"
 
+using Catch::Contains;
+
 namespace {
 
 constexpr double rpm = std::numbers::pi / 30.0;
@@ -163,6 +165,24 @@ TEST_CASE("columns are found by their usual names, in several languages and unit
   data::LogColumns constant;
   constant.constant_speed = 50.0 * rpm;
   CHECK(log_of("time,torque [Nm]\n0,1\n1,1\n", constant).speed[1] == Approx(50.0 * rpm));
+}
+
+TEST_CASE("columns of names unknown are found where they alone have a unit of the quantity, and that is said") {
+  const data::TorqueLog log =
+      log_of("Laufzeit [s];Motorwelle [mN m];Antrieb [1/min];Energie [J];Scherrate [1/s]\n0;5;100;1;2\n1;6;100;2;3\n");
+  CHECK(log.torque == std::vector<double>{5e-3, 6e-3});
+  CHECK(log.speed[0] == Approx(100.0 * rpm));
+  for (const char* took :
+       {"'Laufzeit [s]' as the time", "'Motorwelle [mN m]' as the torque", "'Antrieb [1/min]' as the speed"})
+    CHECK(std::any_of(log.took.begin(), log.took.end(), [&](const std::string& one) { return one.starts_with(took); }));
+  // Two of them are asked back; a shear rate is no speed, and a name that is given must be there.
+  CHECK_THAT(refusal("time [s],set [N m],read [N m],rpm\n0,1,2,3\n1,1,2,3\n"),
+             Contains("'torque' is missing") && Contains("'set [N m]' and 'read [N m]' are in a unit of it"));
+  CHECK_THAT(refusal("time [s],torque [N m],rate [1/s]\n0,1,2\n1,1,2\n"), Contains("'rpm' is missing"));
+  data::LogColumns named;
+  named.torque.name = "shaft";
+  named.torque.also.clear();
+  CHECK_THAT(refusal("time [s],motor [N m],rpm\n0,1,2\n1,1,2\n", named), Contains("'shaft' is missing"));
 }
 
 TEST_CASE("an instrument's export of one section a hold is one log") {

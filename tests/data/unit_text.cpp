@@ -12,6 +12,12 @@ TEST_CASE("units as they are spelled on instruments mean what they can only mean
     CHECK(factor(text, "N m") == Approx(1.0));
   for (const std::string text : {"mNm", "mN m", "mN\xc2\xb7m", "mN.m", "mN\xe3\x83\xbbm"})
     CHECK(factor(text, "N m") == Approx(1e-3));
+  for (const std::string text : {"Н·м", "Н м", "牛·米", "牛米"}) CHECK(factor(text, "N m") == Approx(1.0));
+  for (const std::string text : {"мН·м", "毫牛米"}) CHECK(factor(text, "N m") == Approx(1e-3));
+  for (const std::string text : {"об/мин", "转/分", "转/分钟", "回転/分", "회/분"})
+    CHECK(factor(text, "rpm") == Approx(std::numbers::pi / 30.0));
+  for (const std::string text : {"с", "сек", "秒", "초"}) CHECK(factor(text, "s") == Approx(1.0));
+  for (const std::string text : {"мин", "分", "分钟"}) CHECK(factor(text, "s") == Approx(60.0));
   for (const std::string text : {"uNm", "\xc2\xb5Nm", "\xc2\xb5N\xc2\xb7m", "\xce\xbcN m"})
     CHECK(factor(text, "N m") == Approx(1e-6));
   for (const std::string text : {"Ncm", "N cm",
