@@ -92,6 +92,8 @@ MaterialsForetold foretell_materials(const Common& common, const Workspace& work
 
 /// What cannot be calibrated yet, which is no fault of a study that is only begun.
 std::vector<std::string> case_notes(const data::Study& study) {
+  if (study.parameters.empty())
+    return {"there is no [parameters.NAME]: the study can simulate and train, and has nothing to calibrate"};
   if (study.cases.empty())
     return {"there is no [[calibrate]] case yet: the study can train and plan (demcal plan --prior), not calibrate"};
   std::vector<std::string> notes;

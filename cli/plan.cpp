@@ -41,6 +41,10 @@ std::vector<std::size_t> chosen_cases(const PlanCommand& options, const Workspac
     names.push_back(workspace.study.cases[i].name);
     if (options.only.empty() || options.only == names.back()) chosen.push_back(i);
   }
+  if (names.empty())
+    throw data::InputError(data::ExitStatus::bad_study, {data::shown_path(workspace.study.file),
+                                                         "names no parameter that is free: nothing can be planned",
+                                                         "add a section like [parameters.friction]"});
   if (chosen.empty())
     throw data::InputError(data::ExitStatus::usage, {"--case", fmt::format("the study has no case '{}'", options.only),
                                                      fmt::format("choose one of: {}", fmt::join(names, ", "))});

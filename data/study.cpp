@@ -260,7 +260,8 @@ Study read_study(const StudyFile& file) {
   read_controls(root, study);
   read_outputs(root, study);
   check_column_names(root, study);
-  if (study.parameters.empty())
+  // A rig may be simulated, and its outputs learnt over the controls, without any; a calibration needs one.
+  if (study.parameters.empty() && (!root.has("rig") || root.has("calibrate")))
     root.problem("parameters", "names no parameter", "add a section like [parameters.friction]");
   read_materials(root, study);
   read_training(root, study);

@@ -164,3 +164,23 @@ TEST_CASE("runs that would be too short are foretold once: amid the ranges, or a
   CHECK(always.first == 1);
   CHECK_THAT(always.second, !Contains("at rpm 50 rpm"));
 }
+
+TEST_CASE("a rig without parameters can be simulated, and what cannot be calibrated or planned is said") {
+  const Folder folder;
+  folder.study("quick");
+  std::string text = folder.read("study/study.toml");
+  text.erase(text.find("[parameters.friction]"), text.find("[controls.rpm]") - text.find("[parameters.friction]"));
+  text.erase(text.find("[[observe]]"));
+  folder.write("study/study.toml", text);
+  const auto checked = folder.demcal({"check", "study"});
+  CHECK(checked.status == 0);
+  CHECK_THAT(checked.err, Contains("the study can simulate and train, and has nothing to calibrate"));
+  const auto simulated = folder.demcal(
+      with_settings({"simulate", "study", "--at", "rpm=200"}, {"run.longest=\"0.4 s\"", "run.start_up_turns=0.25"}));
+  INFO(simulated.err);
+  CHECK(simulated.status == 2);  // too short a run, and said so
+  CHECK_THAT(simulated.out, Contains("torque") && Contains("uN m"));
+  const auto planned = folder.demcal({"plan", "study", "--prior"});
+  CHECK(planned.status == 78);
+  CHECK_THAT(planned.err, Contains("names no parameter that is free"));
+}

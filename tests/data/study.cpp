@@ -210,6 +210,10 @@ TEST_CASE("a study needs a table or a rig, and a case to calibrate") {
         std::string::npos);
   CHECK(problem("[parameters.a]\nlow = 0\nhigh = 1\n[training]\nengine = \"demcal\"\n")
             .find("has no [rig] to simulate") != std::string::npos);
+  // A rig may be simulated without parameters, and not calibrated.
+  CHECK(problem("[rig]\nkind = \"slice\"\n").find("names no parameter") == std::string::npos);
+  CHECK(problem("[rig]\nkind = \"slice\"\n[[calibrate]]\nname = \"a\"\n").find("names no parameter") !=
+        std::string::npos);
   const TemporaryFolder folder;
   const data::Study study = read(folder, head);
   CHECK(failure_of(folder, [&] { data::require_cases(study); }) ==
