@@ -114,7 +114,9 @@ const std::vector<StudyKey>& study_keys() {
        "\"packing.csv\""},
       {"rig.packing_unit", "text", "", "", "m", "unit of these positions, where their headings give none", "\"mm\""},
       {"rig.torque_of", "list of texts", "", "", "the first that moves",
-       "meshes whose torques, summed, are the output; one needs no list", "\"paddle\""},
+       "meshes whose torques, summed, are the output; one needs no list. Of a mesh that turns it is the torque that its drive "
+       "supplies; of one at rest it is the powder's moment about its axis, which changes sign with the others' turning",
+       "\"paddle\""},
       {"rig.box", "table", "", "", "", "the simulated box",
        "{ low = [\"0 mm\", \"-9 mm\", \"-9 mm\"], high = [\"12 mm\", \"9 mm\", \"20 mm\"], periodic = [\"x\"] }"},
       {"rig.box.low", "list of quantities", "m", "", "", "its lower corner", "[\"0 mm\", \"-9 mm\", \"-9 mm\"]"},
