@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <set>
 
 #include "data/error.hpp"
@@ -16,7 +15,8 @@ using Eigen::Index;
 constexpr int runs_looked_at = 150;      // a fit takes the cube of their number
 constexpr std::size_t values_least = 5;  // of an input; few levels are explained by any scale
 constexpr double straight = 3.0;         // length scale in ranges from which nothing bends
-constexpr double wide = 5.0;             // own ratio from which the logarithm differs from the input
+constexpr double half_decade = 3.1622776601683795;
+constexpr double wide = 5.0;  // own ratio from which the logarithm differs from the input
 
 bool has_enough_values(const Eigen::VectorXd& column) {
   std::set<long> values;
@@ -48,6 +48,34 @@ Best best_of(const TrainingSet& training, const FitOptions& options) {
   return best;
 }
 
+/// A stretch of one input that was tried, and what the process learnt on it.
+struct Trial {
+  Index input = 0;
+  double ratio = 1.0;
+  Best fit;
+};
+
+const Trial& best_of(const std::vector<Trial>& trials) {
+  return *std::max_element(trials.begin(), trials.end(),
+                           [](const Trial& a, const Trial& b) { return a.fit.objective < b.fit.objective; });
+}
+
+/// Whether little of the stretched range lies beyond the outermost of n runs. Where much does, the process claims less at
+/// the end than the runs tell.
+bool is_resolved(double ratio, double n) { return Stretch{std::max(ratio, 1.0 / ratio)}.place(1.0 / n) <= 0.15; }
+
+/// The gentlest trial of the best one's input and end that the likelihood hardly speaks against.
+const Trial& gentlest_of(const std::vector<Trial>& trials) {
+  const Trial& best = best_of(trials);
+  const Trial* gentlest = &best;
+  for (const Trial& trial : trials)
+    if (trial.input == best.input && (trial.ratio > 1.0) == (best.ratio > 1.0) &&
+        trial.fit.objective > best.fit.objective - stretch_tie &&
+        std::abs(std::log(trial.ratio)) < std::abs(std::log(gentlest->ratio)))
+      gentlest = &trial;
+  return *gentlest;
+}
+
 }  // namespace
 
 double Stretch::place(double u) const {
@@ -77,31 +105,33 @@ std::vector<Stretch> choose_stretches(const TrainingSet& training, const FitOpti
   FitOptions looking = quick(options);
   looking.between_runs = BetweenRuns::trusted;
   Best now = best_of(runs, looking);
+  const auto tried = [&](Index input, double ratio) {
+    TrainingSet other = runs;
+    for (double& u : other.x.col(input)) u = Stretch{ratio}.place(u);
+    looking.first_start = now.logs;
+    return Trial{input, ratio, best_of(other, looking)};
+  };
   while (now.logs.size() > 0) {
-    // The stretch of one more input that raises the likelihood most.
-    Best better = now;
-    std::optional<std::pair<Index, double>> found;
+    // One more input, by the stretch of it that raises the likelihood most.
+    std::vector<Trial> trials;
     const std::vector<int> active = standardise(runs, options.scale).active;
     for (std::size_t j = 0; j < active.size(); ++j) {
       const Index input = active[j];
       if (!chosen_stretches[input].is_none() || !(std::exp(now.logs[static_cast<Index>(j)]) < straight) ||
           !has_enough_values(runs.x.col(input)))
         continue;
-      for (const double ratio : candidates_of(own_ratios[input])) {
-        TrainingSet other = runs;
-        for (double& u : other.x.col(input)) u = Stretch{ratio}.place(u);
-        looking.first_start = now.logs;
-        const Best tried = best_of(other, looking);
-        if (!(tried.objective > better.objective)) continue;
-        better = tried;
-        found = std::pair(input, ratio);
-      }
+      for (const double ratio : candidates_of(own_ratios[input])) trials.push_back(tried(input, ratio));
     }
-    if (!found || !(better.objective > now.objective + stretch_gain)) break;
-    const auto& [input, ratio] = *found;
-    chosen_stretches[input].ratio = ratio;
-    for (double& u : runs.x.col(input)) u = chosen_stretches[input].place(u);
-    now = better;
+    if (trials.empty()) break;
+    Trial found = best_of(trials);
+    if (!(found.fit.objective > now.objective + stretch_gain)) break;
+    if (!is_resolved(found.ratio, static_cast<double>(runs.y.size()))) {
+      trials.push_back(tried(found.input, found.ratio * (found.ratio > 1.0 ? 1.0 / half_decade : half_decade)));
+      found = gentlest_of(trials);
+    }
+    chosen_stretches[found.input].ratio = found.ratio;
+    for (double& u : runs.x.col(found.input)) u = chosen_stretches[found.input].place(u);
+    now = found.fit;
   }
   return chosen_stretches;
 }

@@ -31,9 +31,14 @@ struct Stretch {
 /// What a stretch must raise the log of the marginal likelihood by to be chosen.
 inline constexpr double stretch_gain = 3.0;
 
+/// What the log of the marginal likelihood of a gentler stretch may lack, where the runs do not resolve the strongest: less is
+/// not worth more than a bare mention (R. E. Kass & A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773).
+inline constexpr double stretch_tie = 1.0;
+
 /// Stretches of the inputs of `training`, one after the other as long as the likelihood gains by stretch_gain. Tried are
-/// ratios of 10 and 100 at either end, and each input's own (b / a; 1: none). Inputs of fewer than five values, and those
-/// in which the function is all but straight, are left as they are.
+/// ratios of 10 and 100 at either end, and each input's own (b / a; 1: none). Where the best stretches an end so far that
+/// the runs do not resolve it, one of half a decade less is tried too, and the gentlest within stretch_tie is taken. Inputs
+/// of fewer than five values, and those in which the function is all but straight, are left as they are.
 std::vector<Stretch> choose_stretches(const TrainingSet& training, const FitOptions& options,
                                       const std::vector<double>& own_ratios);
 

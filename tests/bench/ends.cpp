@@ -1,6 +1,6 @@
 // Do predictions hold at the ends of a range where the function bends?
 //   bench_ends [--runs N] [--designs N] [--noise SHARE]
-// Twelve functions of two inputs: poles, powers and exponentials that bend at one end, and others that bend alike all over
+// Thirteen functions of two inputs: poles, powers, saturations and exponentials that bend at one end, and others that bend alike all over
 // or not at all. Each design is a scrambled Sobol one with runs of 1 % (--noise), learnt on the inputs' own scales and on
 // those that choose_stretches chooses. Printed, own -> chosen: the share of 90 % intervals that hold at 200 points with b
 // below 0.15, above 0.85 and anywhere, the mean square of the deviations in predicted sds, and the root of the mean squared
@@ -38,6 +38,7 @@ const std::vector<Named> functions{
     {"(1 + a) sqrt(0.01 + b)", [](double a, double b) { return (1.0 + a) * std::sqrt(0.01 + b); }},
     {"(0.5 + a) / (0.05 + b)", [](double a, double b) { return (0.5 + a) / (0.05 + b); }},
     {"(1 + a) / sqrt(1.05 - b)", [](double a, double b) { return (1.0 + a) / std::sqrt(1.05 - b); }},
+    {"(1 + a) (1 + min(b / 0.15, 1))", [](double a, double b) { return (1.0 + a) * (1.0 + std::min(b / 0.15, 1.0)); }},
     {"(1 + a) tanh(5 b)", [](double a, double b) { return (1.0 + a) * std::tanh(5.0 * b); }},
     {"(1 + a) exp(3 b)", [](double a, double b) { return (1.0 + a) * std::exp(3.0 * b); }},
     {"sqrt(0.01 + a) + 0.3 / (0.1 + b)", [](double a, double b) { return std::sqrt(0.01 + a) + 0.3 / (0.1 + b); }},

@@ -119,3 +119,20 @@ TEST_CASE("four values of an input tell no scale, and a constant input has none"
   training.x.col(1).setConstant(0.4);
   CHECK(chosen_for(training)[1].is_none());
 }
+
+TEST_CASE("a response that rises at its low end and levels off is known at that end, whatever the stretch") {
+  // It changes by 1.5 over the stretched end, and by 0.17 between the end and the outermost of 60 runs.
+  const auto levels_off = [](double b) { return 1.0 + std::min(b, 0.15) / 0.15; };
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    TrainingSet training = runs_of(levels_off, 60, seed);
+    const std::vector<Stretch> stretches = chosen_for(training);
+    CAPTURE(seed, stretches[1].ratio);
+    for (Eigen::Index k = 0; k < 2; ++k)
+      for (double& u : training.x.col(k)) u = stretches[k].place(u);
+    Eigen::MatrixXd end(1, 2);
+    end << stretches[0].place(0.5), 0.0;
+    const MarginalPrediction found = fit(training, fit_options).predict_marginal(end);
+    CHECK(std::sqrt(found.variance[0]) < 0.25);
+    CHECK(std::abs(found.mean[0] - 1.5) < 0.25);
+  }
+}

@@ -13,8 +13,11 @@
 namespace uq {
 namespace {
 
+/// The edition of how surrogates are chosen and fitted: those that another one fitted are fitted again.
+constexpr int fit_edition = 2;
+
 surrogate::SurrogateKey key_of(const data::Study& study, const data::RunTable& table, const SurrogateOptions& options) {
-  std::string text = fmt::format("{} {}\n", data::program_version(), report_edition);
+  std::string text = fmt::format("{} {} {}\n", data::program_version(), report_edition, fit_edition);
   for (const data::Input& one : data::inputs_of(study))
     text += fmt::format("{} {} {} {} {}\n", one.name, one.unit.symbol, one.axis.low, one.axis.high,
                         one.axis.scale == data::Scale::log);
