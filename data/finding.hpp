@@ -35,6 +35,7 @@ enum class FindingKind {
   no_logarithm,               ///< no logarithm exists of an output that is 0 or less
   no_response,                ///< an output that does not vary
   copied_observations,        ///< the same readings more than once
+  shared_errors,              ///< readings of one setting that agree too well to be independent
   standard_errors,            ///< standard errors of readings, too small or too large to be meant
   prior_not_stated,           ///< no prior is stated for a parameter whose range spans decades
   errors_apart,               ///< common errors of several sets that may be one meter's
@@ -60,6 +61,7 @@ inline constexpr std::array texts_of<FindingKind> = {"copied rows",
                                                      "no logarithm",
                                                      "no response",
                                                      "copied observations",
+                                                     "shared errors",
                                                      "standard errors",
                                                      "prior not stated",
                                                      "errors apart",

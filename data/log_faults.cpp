@@ -206,6 +206,30 @@ std::string idle_in_words(const Used& used) {
       used.at, used.log.time[first + from], used.log.time[first + to - 1]);
 }
 
+/// A while in which the torque stays at one value amid samples that change: a sensor or a logger that was stuck. Runs of
+/// equal samples are about geometric in length where the logger is coarse or repeats its samples, of n runs of mean m the
+/// longest about m log n; one of m (log n + 10) comes of itself once in 20,000 logs.
+std::string stuck_in_words(const Used& used) {
+  std::size_t runs = 1, longest = 0, longest_at = 0, from = 0;
+  const std::size_t count = used.values.size();
+  for (std::size_t i = 1; i <= count; ++i) {
+    if (i < count && used.values[i] == used.values[i - 1]) continue;
+    if (i - from > longest) longest = i - from, longest_at = from;
+    if (i < count) ++runs;
+    from = i;
+  }
+  if (runs < 10 || longest < 20) return "";
+  const double mean = static_cast<double>(count - longest) / static_cast<double>(runs - 1);
+  if (!(static_cast<double>(longest) > mean * (std::log(static_cast<double>(runs)) + 10.0))) return "";
+  const Unit& unit = used.log.torque_unit;
+  const std::size_t first = used.plateau.used_from + longest_at;
+  return fmt::format(
+      "{}: the torque stays at {:.5g} {} from {:.4g} to {:.4g} s, {:.0f} % of the samples, and changes before and after: "
+      "a sensor or logger that was stuck (cut these lines out of the log)",
+      used.at, unit.from_si(used.log.torque[first]), unit.symbol, used.log.time[first],
+      used.log.time[first + longest - 1], 100.0 * static_cast<double>(longest) / used.count());
+}
+
 /// Samples farther than eight sd from the median.
 std::vector<std::size_t> spikes_of(const std::vector<double>& values, const MedianSpread& spread) {
   std::vector<std::size_t> spikes;
@@ -254,6 +278,7 @@ std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& pla
   const Used used{log, plateau, place_of(log, plateau), std::move(values), std::move(levels)};
 
   std::vector<std::string> words = limits_in_words(used);
+  if (words.empty()) words.push_back(stuck_in_words(used));
   words.push_back(resolution_in_words(used));
   for (std::string& one : speed_in_words(used)) words.push_back(std::move(one));
   words.push_back(idle_in_words(used));

@@ -10,6 +10,7 @@
 #include "data/atomic_file.hpp"
 #include "data/file_name.hpp"
 #include "data/observations.hpp"
+#include "data/repeats.hpp"
 #include "data/study_parts.hpp"
 
 namespace data {
@@ -272,6 +273,7 @@ Study read_study(const StudyFile& file) {
   read_cases(root, study);
   read_unused_data(root, study);
   replace_missing_errors(study, files);
+  for (ObservationSet& set : study.observations) average_shared_errors(set, study);
   for (const Section& section : root.array("calibrate")) check_file_name(section, section.text("name"));
 
   if (!files.problems.empty()) {

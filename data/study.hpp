@@ -149,6 +149,13 @@ struct ObservationCopy {
   int line = 0, of = 0;
 };
 
+/// Readings of one setting that agree far better than their errors say (data/repeats.hpp): they were averaged.
+struct SharedErrors {
+  std::size_t output = 0;                  ///< index into Study::outputs
+  std::size_t readings = 0, settings = 0;  ///< readings with a partner, and the settings at which they were made
+  double scatter = 0.0;                    ///< scatter over that which the errors state
+};
+
 /// An error of the measurement that all points of a set share (a calibration, a mounting).
 struct CommonError {
   std::size_t output = 0;  ///< index into Study::outputs
@@ -169,8 +176,9 @@ struct ObservationSet {
   std::string material;
   std::string file;                  ///< absolute path
   std::vector<std::size_t> outputs;  ///< indices into Study::outputs, of the columns that the file has
-  std::vector<Observation> points;   ///< without copies
+  std::vector<Observation> points;   ///< without copies; the means of readings that share their error
   std::vector<ObservationCopy> copies = {};
+  std::vector<SharedErrors> repeats = {};
   std::vector<std::size_t> empty_outputs = {};      ///< indices into Study::outputs, of columns without any value
   std::vector<std::string> parameter_columns = {};  ///< names of the study's parameters of which the file has columns
   std::string meter = {};  ///< sets that name one meter share its common errors; empty: each set has its own

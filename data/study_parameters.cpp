@@ -194,7 +194,11 @@ void check_column_names(const Section& root, const Study& study) {
   };
   const Section parameters = root.child("parameters"), controls = root.child("controls"),
                 outputs = root.child("outputs");
-  for (const Parameter& item : study.parameters) check(parameters, item.name, "a parameter");
+  for (const Parameter& item : study.parameters) {
+    check(parameters, item.name, "a parameter");
+    if (item.name == "chain" || item.name == "draw")
+      parameters.problem(item.name, "is a dimension of the posterior's file", "choose another name");
+  }
   for (const Control& item : study.controls) check(controls, item.name, "a control");
   for (const Output& item : study.outputs) {
     check(outputs, item.name, "an output");

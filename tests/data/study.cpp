@@ -195,6 +195,8 @@ TEST_CASE("ranges and names of parameters are checked where they stand") {
         "78: study.toml:3: parameters.a b: is not a name (use letters, digits and _, beginning with a letter)");
   CHECK(with("[parameters.a]\nlow = 0\nhigh = 1\n[controls.a]\nlow = 0\nhigh = 1\n") ==
         "78: study.toml:6: controls.a: the name is taken by a parameter (choose another name)");
+  CHECK(with("[parameters.draw]\nlow = 0\nhigh = 1\n").find("a dimension of the posterior's file") !=
+        std::string::npos);
   CHECK(with("[parameters.seed]\nlow = 0\nhigh = 1\n").find("a column that the run table keeps for itself") !=
         std::string::npos);
   CHECK(with("[parameters.torque_se]\nlow = 0\nhigh = 1\n")

@@ -105,6 +105,11 @@ TEST_CASE("a good log has no faults, and each fault is named") {
   CHECK(named(made([](int, double torque) { return 0.1 * std::round(10.0 * torque); }), "the logger's resolution"));
   CHECK(named(made([](int i, double torque) { return i % 150 == 75 ? 40.0 : torque; }), "spikes, the largest 40 mN m"));
   CHECK(named(made([](int i, double torque) { return torque + 0.001 * i; }), "drifts"));
+  CHECK(named(made([](int i, double torque) { return i >= 300 && i < 400 ? 3.05 : torque; }),
+              "the torque stays at 3.05 mN m from 30 to 39.9 s, 17 % of the samples"));
+  CHECK_FALSE(named(made([](int, double torque) { return 0.05 * std::round(20.0 * torque); }), "stays at"));
+  double held = 0.0;  // a logger that repeats each sample ten times
+  CHECK_FALSE(named(made([&](int i, double torque) { return i % 10 == 0 ? held = torque : held; }), "stays at"));
   data::TorqueLog negative = made([](int i, double torque) { return i % 100 == 3 ? -999.0 : torque; });
   CHECK(data::remove_no_values(negative).size() == 1);
   CHECK(negative.time.size() == 594);

@@ -11,9 +11,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "data/error.hpp"
+#include "data/number_text.hpp"
 #include "data/observations.hpp"
+#include "data/repeats.hpp"
 #include "data/time_series.hpp"
 #include "uq/calibrate/data_columns.hpp"
 #include "uq/emulate/surrogates.hpp"
@@ -42,6 +45,22 @@ void check_copies(const data::ObservationSet& set, std::vector<Finding>& finding
       set.copies.size(), set.copies.size() + set.points.size(), set.copies.front().line, set.copies.front().of);
   finding.remedy = "remove the copies; a repeated measurement differs in its last digits";
   findings.push_back(std::move(finding));
+}
+
+/// Readings of one setting that share their error, which repetition does not lessen (data/repeats.hpp).
+void check_repeats(const data::Study& study, const data::ObservationSet& set, std::vector<Finding>& findings) {
+  for (const data::SharedErrors& repeats : set.repeats) {
+    const std::string& name = study.outputs[repeats.output].name;
+    Finding finding = data::about_rows(data::FindingKind::shared_errors, Severity::warning, {file_of(set)});
+    finding.what = fmt::format(
+        "{} readings of {} at {} scatter {:.2g} times as much as their standard errors say: repeats share an error, and "
+        "more of them do not lessen it. Each setting counts as one reading",
+        repeats.readings, name, data::counted(repeats.settings, "setting"), repeats.scatter);
+    finding.remedy = fmt::format(
+        "if they are independent, write their scatter into {0}_se; if all settings share the error, into common_error",
+        name);
+    findings.push_back(std::move(finding));
+  }
 }
 
 /// Outputs that a set's file has and that were not measured everywhere.
@@ -174,7 +193,10 @@ void check_errors(const data::Study& study, const data::ObservationSet& whole, c
         gsl_cdf_chisq_Q(chi2(*found, percent), dof) > 1e-3 && chi2(*found, percent) > chi2(*found, error);
     const double left = gsl_cdf_chisq_Q(chi2(*bent, share), dof - 1.0);
     const bool share_fits = left > 1e-3 && left < 1.0 - 1e-3;  // nor are the readings too close for such errors
-    const bool too_small = above < 1e-9 && share_fits && value.minCoeff() > 1.5 && !follows(error, value) &&
+    // Torque meters are hardly better; errors that are not as small may be meant, and the readings drift or scatter.
+    constexpr double meters_best = 0.005;
+    const bool too_small = above < 1e-9 && share_fits && value.minCoeff() > 1.5 &&
+                           (error / value).maxCoeff() < meters_best && !follows(error, value) &&
                            !one_spoils_all(study, set, column);
     if (!(too_large && percent_fits) && !too_small) continue;
     const double scatter =
@@ -290,6 +312,62 @@ void check_correlations(const data::Study& study, const data::ObservationSet& se
   }
 }
 
+/// Whether the sets say of an output what their errors share: by their meter, or by a correlation.
+bool states_sharing(const data::ObservationSet& set, const data::ObservationSet& other, std::size_t output) {
+  const auto names = [output](const data::ObservationSet& one, const data::ObservationSet& two) {
+    return std::any_of(one.correlations.begin(), one.correlations.end(), [&](const data::ErrorCorrelation& stated) {
+      return stated.output == output && stated.other_set == two.name;
+    });
+  };
+  return (!set.meter.empty() && set.meter == other.meter) || names(set, other) || names(other, set);
+}
+
+/// Two sets whose readings at the same settings agree too well to be independent: a table and its copy with fewer digits.
+void check_agreement(const data::Study& study, const data::ObservationSet& set, const data::ObservationSet& other,
+                     const std::string& consequence, std::vector<Finding>& findings) {
+  if (set.material != other.material) return;
+  const auto pairs = data::points_at_same_settings(study, set, other);
+  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    const std::optional<std::size_t> other_column = other.column_of(set.outputs[column]);
+    if (!other_column || states_sharing(set, other, set.outputs[column])) continue;
+    data::Agreement agreement;
+    for (const auto& [i, j] : pairs) {
+      const data::Observation &one = set.points[i], &two = other.points[j];
+      if (!one.has(column) || !two.has(*other_column)) continue;
+      agreement.add(std::pow(one.values[column] - two.values[*other_column], 2) /
+                        (std::pow(one.standard_errors[column], 2) + std::pow(two.standard_errors[*other_column], 2)),
+                    1);
+    }
+    if (!agreement.too_good() || agreement.scatter() == 0.0)
+      continue;  // copies to the last digit are refused elsewhere
+    Finding finding = data::about_rows(data::FindingKind::shared_errors, Severity::warning, {set.place, other.place});
+    finding.what = fmt::format(
+        "{} readings of {} in '{}' and '{}' differ {:.2g} times as much as their standard errors say: they are the same "
+        "readings, or share an error{}",
+        agreement.degrees(), study.outputs[set.outputs[column]].name, set.name, other.name, agreement.scatter(),
+        consequence);
+    finding.remedy = "use one of the two, or state what they share: the meter, or [[observe.correlation]]";
+    findings.push_back(std::move(finding));
+  }
+}
+
+/// Sets that a case observes or that are predicted from it, each pair once.
+void check_pairs(const data::Study& study, std::vector<Finding>& findings) {
+  std::set<std::pair<std::string, std::string>> seen;
+  const auto check = [&](const std::string& one, const std::string& two, const std::string& consequence) {
+    if (one == two || !seen.insert(std::minmax(one, two)).second) return;
+    check_agreement(study, study.observations[study.observation_index(one).value()],
+                    study.observations[study.observation_index(two).value()], consequence, findings);
+  };
+  for (const data::CalibrationCase& one : study.cases)
+    for (const std::string& set : one.observe)
+      for (const std::string& other : one.observe) check(set, other, ", which counts twice");
+  for (const data::UnusedData& wanted : study.unused_data)
+    for (const std::string& set : wanted.observe)
+      for (const std::string& other : study.cases[wanted.case_index].observe)
+        check(set, other, "; to predict them says little");
+}
+
 }  // namespace
 
 std::vector<Finding> check_observations(const data::Study& study, const data::RunTable& table,
@@ -298,6 +376,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
   for (const data::ObservationSet& set : study.observations) {
     check_run_table(study, set, findings);
     check_copies(set, findings);
+    check_repeats(study, set, findings);
     check_unmeasured(study, set, findings);
     if (set.points.empty()) continue;
     check_beside_runs(study, table, set, findings);
@@ -307,6 +386,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
     check_idle_error(study, set, findings);
   }
   check_meters(study, findings);
+  check_pairs(study, findings);
   return findings;
 }
 

@@ -51,7 +51,7 @@ std::vector<double> chosen_ratios(const data::Study& study, const TrainingRows& 
   return ratios;
 }
 
-FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const SurrogateOptions& options) {
+FittedSurrogate fit_rows(const data::Study& study, TrainingRows rows, const SurrogateOptions& options) {
   const surrogate::FitOptions fit_options = options_for(study, rows, options);
   FittedSurrogate fitted{.rows = std::move(rows), .process = {}, .two_level = {}, .report = {}};
   surrogate::TrainingSet& many = fitted.rows.low ? *fitted.rows.low : fitted.rows.set;
@@ -87,6 +87,29 @@ FittedSurrogate fit_one(const data::Study& study, TrainingRows rows, const Surro
         "([surrogate] runs_most = {}) take less than half of it, and calibrate --no-scan half again",
         many.y.size(), fitted.rows.inputs.size(), many.y.size() / 2));
   return fitted;
+}
+
+/// The surrogate of the rows. A cheaper level that says nothing of the other spoils what the dear runs know. It is left out
+/// where it does not vary, and where rho cannot be told from 0 and the dear runs predict each other clearly better alone, by
+/// their squared leave-one-out errors.
+FittedSurrogate fit_one(const data::Study& study, const TrainingRows& rows, const SurrogateOptions& options) {
+  constexpr double clearly = 1.5;
+  const bool can_do_alone = rows.low && rows.set.y.size() >= std::ssize(rows.inputs) + 2;
+  if (!can_do_alone) return fit_rows(study, rows, options);
+  TrainingRows dear = rows;
+  dear.low.reset();
+  FittedSurrogate alone = fit_rows(study, std::move(dear), options);
+  std::string why = "it is the same everywhere";
+  if (rows.low->y.maxCoeff() > rows.low->y.minCoeff()) {
+    FittedSurrogate fitted = fit_rows(study, rows, options);
+    const bool unlike = std::abs(fitted.report.rho) < 2.5 * fitted.report.rho_sd;
+    if (!unlike || !(1.0 - fitted.report.q2 > clearly * (1.0 - alone.report.q2))) return fitted;
+    why = fmt::format("the other {} predict each other better without it (Q2 {:.4f}, and {:.4f} with it)",
+                      rows.set.y.size(), alone.report.q2, fitted.report.q2);
+  }
+  alone.report.notes.insert(alone.report.notes.begin(),
+                            fmt::format("the cheaper level, {} runs, is left out: {}", rows.low->y.size(), why));
+  return alone;
 }
 
 /// "torque of carrier".
@@ -187,12 +210,12 @@ std::vector<std::string> surrogate_cautions(const std::vector<FittedSurrogate>& 
 std::vector<FittedSurrogate> fit_surrogates(const data::Study& study, const data::RunTable& table,
                                             const SurrogateOptions& options) {
   std::vector<FittedSurrogate> fitted;
-  for (TrainingRows& rows : training_rows(study, table, options.low)) {
+  for (const TrainingRows& rows : training_rows(study, table, options.low)) {
     if (options.observed_only && !is_observed(study, rows)) continue;
     const auto known = std::find_if(options.known.begin(), options.known.end(), [&](const FittedSurrogate& item) {
       return item.rows.material == rows.material && item.rows.output == rows.output;
     });
-    fitted.push_back(known != options.known.end() ? *known : fit_one(study, std::move(rows), options));
+    fitted.push_back(known != options.known.end() ? *known : fit_one(study, rows, options));
   }
   return fitted;
 }

@@ -184,9 +184,11 @@ Remedies widen_range_of_other(const CaseFacts& facts, const SortedParameters& so
 
 Remedies move_bound(const CaseFacts&, const SortedParameters& sorted) {
   if (sorted.bound.empty()) return {};
-  return {
-      {sorted.of_measurement,
-       fmt::format("A smaller measurement error would lower the limit of {} or show a value.", listed(sorted.bound))}};
+  return {{sorted.of_measurement,
+           fmt::format(
+               "A smaller measurement error would lower the limit of {0} or show a value, as far as what is measured "
+               "changes with {1} below the limit; where it does not, measure at other settings, or another quantity.",
+               listed(sorted.bound), one_or(sorted.bound, "it", "them"))}};
 }
 
 /// Last, whatever the widths: what was measured has nothing to do with these.

@@ -34,3 +34,27 @@ TEST_CASE(
   for (const auto severity : {data::Severity::warning, data::Severity::note})
     CHECK_THAT(said_with({0.801, 0.199}, severity), !Catch::Contains(unmatched));
 }
+
+TEST_CASE("two sets that agree better than their errors allow are named, unless they say what they share") {
+  const auto said = [](double apart, const std::string& meter) {
+    std::vector<double> speeds, torques;
+    for (int i = 0; i < 8; ++i) {
+      speeds.push_back(0.1 + 0.1 * i);
+      torques.push_back(14.0 + 0.1 * i);
+    }
+    data::Study study = formula::study(speeds, torques, 0.1);
+    data::ObservationSet again = study.observations[0];
+    again.name = "again";
+    for (std::size_t i = 0; i < again.points.size(); ++i) again.points[i].values[0] += (i % 2 == 0 ? apart : -apart);
+    study.observations[0].meter = again.meter = meter;
+    study.cases.at(0).observe.push_back("again");
+    study.observations.push_back(again);
+    std::string all;
+    for (const data::Finding& finding : uq::check_observations(study, data::empty_table(study), {}))
+      if (finding.kind == data::FindingKind::shared_errors) all += data::describe(finding);
+    return all;
+  };
+  CHECK_THAT(said(0.004, ""), Catch::Contains("8 readings of torque") && Catch::Contains("which counts twice"));
+  CHECK(said(0.004, "cell").empty());
+  CHECK(said(0.14, "").empty());  // as two independent readings of 0.1 differ
+}
