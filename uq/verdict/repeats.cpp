@@ -87,11 +87,13 @@ PathWords::PathWords(const std::vector<PathPoint>& points, const std::vector<Eig
     local.log_certificates = point.log_certificates;
     local.pull_of_certificates = point.pull_of_certificates;
     local.slopes = point.slopes(rows, Eigen::all);
-    local.covariance.matrixL().solveInPlace(local.slopes);
-    Eigen::MatrixXd precision = local.slopes.transpose() * local.slopes;
-    precision.diagonal() += point.precision;
-    local.bent.compute(precision);
-    if (local.slopes.cols() > 0 && local.bent.info() != Eigen::Success) continue;
+    if (local.slopes.cols() > 0) {  // else no other unknown bends with this one
+      local.covariance.matrixL().solveInPlace(local.slopes);
+      Eigen::MatrixXd precision = local.slopes.transpose() * local.slopes;
+      precision.diagonal() += point.precision;
+      local.bent.compute(precision);
+      if (local.bent.info() != Eigen::Success) continue;
+    }
     local.at_end = point.at_end;
     local.others = point.others;
     points_.push_back(std::move(local));
