@@ -55,6 +55,12 @@ struct Extent {
 void check_beside_runs(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
                        std::vector<data::Finding>& findings);
 
+/// Looks at what the errors of a set's readings share; adds what it finds.
+void check_shared_errors(const data::Study& study, const data::ObservationSet& set,
+                         std::vector<data::Finding>& findings);
+/// The same of sets beside each other: of one meter, and readings that agree too well.
+void check_errors_of_sets(const data::Study& study, std::vector<data::Finding>& findings);
+
 /// Factors between units that a quantity of this unit is written in by mistake, the likeliest first.
 std::vector<UnitFactor> unit_factors(const data::Unit& unit);
 

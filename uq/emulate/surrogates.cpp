@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "uq/emulate/outlying_runs.hpp"
 #include "uq/emulate/surrogate_report.hpp"
@@ -94,19 +95,18 @@ FittedSurrogate fit_rows(const data::Study& study, TrainingRows rows, const Surr
 /// their squared leave-one-out errors.
 FittedSurrogate fit_one(const data::Study& study, const TrainingRows& rows, const SurrogateOptions& options) {
   constexpr double clearly = 1.5;
-  const bool can_do_alone = rows.low && rows.set.y.size() >= std::ssize(rows.inputs) + 2;
-  if (!can_do_alone) return fit_rows(study, rows, options);
+  if (!rows.low || rows.set.y.size() < std::ssize(rows.inputs) + 2) return fit_rows(study, rows, options);
+  std::optional<FittedSurrogate> both;  // none of a level that is the same everywhere
+  if (rows.low->y.maxCoeff() > rows.low->y.minCoeff()) both = fit_rows(study, rows, options);
+  if (both && std::abs(both->report.rho) >= 2.5 * both->report.rho_sd) return std::move(*both);
   TrainingRows dear = rows;
   dear.low.reset();
   FittedSurrogate alone = fit_rows(study, std::move(dear), options);
-  std::string why = "it is the same everywhere";
-  if (rows.low->y.maxCoeff() > rows.low->y.minCoeff()) {
-    FittedSurrogate fitted = fit_rows(study, rows, options);
-    const bool unlike = std::abs(fitted.report.rho) < 2.5 * fitted.report.rho_sd;
-    if (!unlike || !(1.0 - fitted.report.q2 > clearly * (1.0 - alone.report.q2))) return fitted;
-    why = fmt::format("the other {} predict each other better without it (Q2 {:.4f}, and {:.4f} with it)",
-                      rows.set.y.size(), alone.report.q2, fitted.report.q2);
-  }
+  if (both && !(1.0 - both->report.q2 > clearly * (1.0 - alone.report.q2))) return std::move(*both);
+  const std::string why =
+      both ? fmt::format("the other {} predict each other better without it (Q2 {:.4f}, and {:.4f} with it)",
+                         rows.set.y.size(), alone.report.q2, both->report.q2)
+           : "it is the same everywhere";
   alone.report.notes.insert(alone.report.notes.begin(),
                             fmt::format("the cheaper level, {} runs, is left out: {}", rows.low->y.size(), why));
   return alone;
