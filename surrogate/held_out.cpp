@@ -33,7 +33,7 @@ int hold_out(Validation& validation, const HeldOutData& data, const std::vector<
   const Index n = training.y.size();
   validation.held_out_mean = VectorXd::Constant(n, training.y.mean());
   validation.held_out_standardised = VectorXd::Zero(n);
-  double worst = 1.0;
+  double worst = 1.0, reach = 0.0;
   int predicted = 0;
   for (const std::vector<int>& left : folds) {
     std::vector<int> kept;
@@ -45,6 +45,7 @@ int hold_out(Validation& validation, const HeldOutData& data, const std::vector<
     validation.held_out_mean(left) = found.prediction.mean;
     validation.held_out_standardised(left) =
         (error.array() / found.prediction.covariance.diagonal().array().sqrt()).matrix();
+    reach = std::max({reach, error.cwiseAbs().maxCoeff(), std::sqrt(found.prediction.covariance.diagonal().maxCoeff())});
     HeldOutFold fold;
     fold.runs = left;
     fold.converged = found.converged;
@@ -69,6 +70,7 @@ int hold_out(Validation& validation, const HeldOutData& data, const std::vector<
   const double noise = training.noise_variance.mean() + data.scatter_variance;
   const double variance = (training.y.array() - training.y.mean()).square().mean();
   const double error = (training.y - validation.held_out_mean).squaredNorm() / static_cast<double>(n);
+  if (predicted == n && variance > 0.0) validation.held_out_reach = reach / std::sqrt(variance);
   validation.q2_attainable = variance > 0.0 ? 1.0 - noise / variance : 0.0;
   validation.q2_function =
       variance > noise ? std::min(1.0, 1.0 - (error - noise) / (variance - noise)) : validation.q2_held_out;

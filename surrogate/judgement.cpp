@@ -44,6 +44,9 @@ bool too_wide(const Validation& v) {
   return v.coverage_held_out.observed[2] >= 0.95 && distance < degrees && !v.noise.understated();
 }
 
+/// Whether no run is missed by an error, and none predicted with one, that any measurement would feel.
+bool negligible(const Validation& v, const ValidationThresholds& t) { return v.held_out_reach < t.negligible; }
+
 /// "a and b, a and c" or "any two of the inputs"; empty where there are none.
 std::string named_pairs(const std::vector<ApartPair>& pairs) {
   constexpr std::size_t most = 3;
@@ -131,8 +134,9 @@ SurrogateVerdict judge(const Validation& v, int predicted, const FitDiagnostics&
                                      [](const BoundHit& hit) { return !hit.harmless; });
   const bool between =
       std::any_of(v.levels.begin(), v.levels.end(), [&](const LevelCheck& check) { return doubtful(check, t); });
-  if (v.q2_function < t.q2_good || !diagnostics.converged || bad_bound || between || !v.apart.empty() ||
-      noise_doubtful(v) || coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability ||
+  if (between || !v.apart.empty()) return SurrogateVerdict::caution;
+  if (negligible(v, t) && coverage95 >= 0.95) return SurrogateVerdict::good;
+  if (v.q2_function < t.q2_good || !diagnostics.converged || bad_bound || noise_doubtful(v) || coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability ||
       v.mahalanobis_probability < t.mahalanobis_probability)
     return SurrogateVerdict::caution;
   return SurrogateVerdict::good;

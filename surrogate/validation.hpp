@@ -17,6 +17,7 @@
 // Noise here is the known noise; the nugget joins it only where five or more replicates show that it is scatter.
 // All errors are on the process's own scale (log y on the log scale).
 #include <array>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct ValidationThresholds {
   double coverage95_unusable = 0.7;
   double mahalanobis_probability = 0.01;  ///< over all folds (Bonferroni)
   double noise_dominated = 0.67;  ///< noise variance over variance: above, the runs hardly differ beyond their noise
+  double negligible = 0.02;       ///< held-out reach below which careful intervals are no reason for caution
 };
 
 struct ValidationOptions {
@@ -95,6 +97,9 @@ struct Validation {
   Eigen::VectorXd held_out_mean;          ///< unit of y
   Eigen::VectorXd held_out_standardised;  ///< e_i / sqrt(V_ii)
   std::vector<HeldOutFold> folds;
+  /// Largest error and largest predicted standard deviation of a held-out run, the larger of the two, in standard
+  /// deviations of the runs' output. That of an exact code of a smooth response is next to nothing.
+  double held_out_reach = std::numeric_limits<double>::infinity();
   double q2_leave_one_out = 0.0, q2_held_out = 0.0, q2_attainable = 0.0, q2_function = 0.0;
   Coverage coverage_leave_one_out, coverage_held_out;
   std::vector<LevelCheck> levels;  ///< inputs of few values

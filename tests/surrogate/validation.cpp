@@ -73,6 +73,21 @@ TEST_CASE("standard errors that are too large make intervals that are too wide, 
   CHECK(v.more_runs == 0);
 }
 
+TEST_CASE("an exact code of a smooth response makes a good surrogate, however careful its tiny intervals are") {
+  const auto parabola = [](const VectorXd& x) { return 1.0 + x[0] * x[0] + 0.3 * x[1] + 0.2 * x[0] * x[1]; };
+  const auto wave = [](const VectorXd& x) { return std::sin(9.0 * x[0]) + x[1]; };
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    TrainingSet exact = runs_of(parabola, 60, 2, 0.0, seed);
+    const Validation v = validate(exact, {}, fit(exact));
+    CAPTURE(seed, v.finding, v.held_out_reach);
+    CHECK(v.held_out_reach < 0.02);
+    CHECK(v.verdict == SurrogateVerdict::good);
+    // What the response does between few runs is felt.
+    exact = runs_of(wave, 15, 2, 0.0, seed);
+    CHECK(validate(exact, {}, fit(exact)).held_out_reach > 0.1);
+  }
+}
+
 TEST_CASE("runs that move one input at a time leave their interplay unknown, which is said") {
   constexpr int steps = 12;
   const auto star = [](bool with_joint) {

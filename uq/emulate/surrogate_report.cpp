@@ -308,7 +308,8 @@ SurrogateReport report_of(const data::Study& study, const FittedSurrogate& fitte
     return report;
   }
   add_outlying(report, fitted, fit_options, study);
-  if (report.outlying.empty()) add_better_scale(report, study, fitted, fit_options);
+  const bool exact = found.held_out_reach < validation_options.thresholds.negligible;
+  if (report.outlying.empty() && !exact) add_better_scale(report, study, fitted, fit_options);
   return report;
 }
 

@@ -192,7 +192,7 @@ std::vector<std::string> surrogate_warnings(const std::vector<FittedSurrogate>& 
                       "what rests on it. {}",
                       described(report), report.runs, report.remedy));
     if (!report.errors_in_doubt.empty()) warnings.push_back(described(report) + ": " + report.errors_in_doubt);
-    if (!report.converged)
+    if (!report.converged && report.verdict != SurrogateWord::good)
       warnings.push_back(fmt::format("the fit of the surrogate of {} did not converge", described(report)));
   }
   return warnings;
