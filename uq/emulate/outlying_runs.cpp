@@ -8,6 +8,7 @@
 
 #include "data/error.hpp"
 #include "data/time_series.hpp"
+#include "uq/emulate/scaled_runs.hpp"
 
 namespace uq {
 namespace {
@@ -15,7 +16,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Errors over their predicted sd, of the runs kept and of those put aside, on the process's own scale.
+/// Errors over their predicted sd, of the runs kept and of those put aside, on the process's own scale. `sd` of those put
+/// aside is that of the process alone: the error that a wrong run states is as wrong as the run.
 struct Errors {
   VectorXd standardised, sd, expected;
 };
@@ -44,10 +46,10 @@ Errors errors_of(const surrogate::TrainingSet& training, const std::vector<int>&
       const double spread = std::log1p(variance / (mean * mean));
       const double sd = std::sqrt(spread + nugget * nugget + noise / (y * y));
       found.standardised[aside[i]] = (std::log(y) - std::log(mean) + 0.5 * spread) / sd;
-      found.sd[aside[i]] = sd * mean;
+      found.sd[aside[i]] = std::sqrt(spread + nugget * nugget) * mean;
     } else {
-      found.sd[aside[i]] = std::sqrt(variance + nugget * nugget + noise);
-      found.standardised[aside[i]] = (y - mean) / found.sd[aside[i]];
+      found.sd[aside[i]] = std::sqrt(variance + nugget * nugget);
+      found.standardised[aside[i]] = (y - mean) / std::sqrt(variance + nugget * nugget + noise);
     }
   }
   return found;
@@ -157,7 +159,8 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
   const int n = static_cast<int>(training.y.size());
   if (n < 8) return {};
   const auto at_once = static_cast<std::size_t>(std::max(1, n / 12));
-  const double most = options.share_max * n;
+  const std::vector<int> scaled = scaled_runs(training);
+  const double most = std::min(0.5 * n, options.share_max * n + static_cast<double>(scaled.size()));
 
   // All runs are kept at first.
   Sorted now{.kept = std::vector<int>(static_cast<std::size_t>(n)),
@@ -175,8 +178,9 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
     const std::vector<int> suspects = suspects_among(now, options, at_once);
     std::vector<int> next = suspects;
     if (round == 0)
-      for (const int i : repeated_outputs(training))
-        if (std::find(next.begin(), next.end(), i) == next.end()) next.push_back(i);
+      for (const std::vector<int>& together : {repeated_outputs(training), scaled})
+        for (const int i : together)
+          if (std::find(next.begin(), next.end(), i) == next.end()) next.push_back(i);
     if (static_cast<double>(next.size()) > most) next = suspects;  // coarse numbers, no failures
     for (const int i : now.aside) {
       if (standing_out(now.errors, now.scale, i, 1.0) > options.screen)

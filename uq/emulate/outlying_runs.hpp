@@ -9,12 +9,12 @@
 //        z_i = (e_i / s_i - median) / max(1, 1.4826 median |e / s - median|)
 //   2  the runs with |z| above `screen`, the largest first and at most a few at a time, are put aside; at the very
 //      first those, too, whose output is equal to the last digit in three runs or more (failed runs, written as one
-//      number)
+//      number), and those that may be a multiple of what the others say (scaled_runs.hpp)
 //   3  fitted again, the runs put aside are predicted; those within `screen` come back
 //   until nothing changes. What is still aside, and further than `outlying` from what the others predict, is outlying.
 // P. J. Rousseeuw & A. M. Leroy, Robust Regression and Outlier Detection (1987), chapter 6, for deletion and masking;
 // the standardised errors are those of surrogate/gaussian_process.hpp (O. Dubrule 1983).
-// A run is only called outlying where the process without it is sharp (its predictive sd, noise included, is at most a
+// A run is only called outlying where the process without it is sharp (its predictive sd, nugget included, is at most a
 // part of the spread of all runs), the difference is a part of that spread that could spoil a result, and the suspects
 // together do harm: with them the leave-one-out errors of all other runs are larger than without. A lone run on a peak
 // surprises the others, too, but helps to predict them.

@@ -12,6 +12,7 @@
 #include "surrogate/gaps.hpp"
 #include "uq/emulate/outlying_runs.hpp"
 #include "uq/emulate/scale_hint.hpp"
+#include "uq/emulate/scaled_runs.hpp"
 #include "uq/emulate/sensitivity.hpp"
 #include "uq/findings/study_units.hpp"
 
@@ -48,6 +49,16 @@ void add_levels(SurrogateReport& report, const FittedSurrogate& fitted, const da
     report.notes.push_back("cheaper level: " + note);
 }
 
+/// The factor by which these runs differ from what the others say, if they have one in common.
+std::optional<CommonFactor> factor_of(const std::vector<OutlyingRun>& runs) {
+  std::vector<double> observed, expected;
+  for (const OutlyingRun& run : runs) {
+    observed.push_back(run.observed);
+    expected.push_back(run.expected);
+  }
+  return common_factor(observed, expected);
+}
+
 /// Runs that the others contradict, and whether the runs' errors say what they scatter.
 void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const surrogate::FitOptions& options,
                   const data::Study& study) {
@@ -75,6 +86,12 @@ void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const 
     report.outlying_together = fmt::format(
         "They lie together at {} {} (rank-sum test, p {:.1g}), as good runs do where the surrogate does not bend. {}",
         end->low ? "low" : "high", named.name, end->p, bend_hint(study, input, covered, end->low));
+  }
+  if (const auto common = factor_of(report.outlying)) {
+    const bool all = common->runs == static_cast<int>(report.outlying.size());
+    report.outlying_together += fmt::format(
+        "{}{} of them are about {:.3g} times what the others say, as rows in another unit are.",
+        report.outlying_together.empty() ? "" : " ", all ? "All" : std::to_string(common->runs), common->factor);
   }
   if (!report.outlying_together.empty()) {
     const bool one = report.outlying.size() == 1;
