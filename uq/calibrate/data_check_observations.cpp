@@ -145,6 +145,39 @@ bool one_spoils_all(const data::Study& study, const data::ObservationSet& set, s
   return false;
 }
 
+/// Readings whose standard error is far smaller than the others', as it stands and as a share of the value: a slipped digit
+/// or another unit. Such a reading outweighs all others.
+void check_outweighing(const data::Study& study, const data::ObservationSet& set, std::vector<Finding>& findings) {
+  constexpr double far_smaller = 50.0;
+  constexpr std::size_t least = 4;  // readings, for the others to have a size
+  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    if (data::noise_instead(study, set, set.outputs[column]) != nullptr) continue;  // nothing reads them
+    const std::vector<std::size_t> rows = data::points_with(set, column);
+    std::vector<double> errors, shares;
+    for (const std::size_t i : rows) {
+      errors.push_back(set.points[i].standard_errors[column]);
+      shares.push_back(set.points[i].standard_errors[column] / std::abs(set.points[i].values[column]));
+    }
+    if (rows.size() < least) continue;
+    const double error = data::median_of(errors), share = data::median_of(shares);
+    const data::Output& output = study.outputs[set.outputs[column]];
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const double times = std::min(error / errors[k], share / shares[k]);
+      if (!(times > far_smaller) || !(errors[k] > 0.0)) continue;
+      findings.push_back(
+          {.kind = data::FindingKind::standard_errors,
+           .place = fmt::format("{}: {}_se", place_of(set, set.points[rows[k]]), output.name),
+           .severity = Severity::warning,
+           .what = fmt::format(
+               "the standard error, {:.3g}{}, is {:.0f} times smaller than the other readings' ({:.3g} in the "
+               "middle): this reading outweighs all others",
+               errors[k] / output.unit.factor, behind_number(output.unit.symbol), times, error / output.unit.factor),
+           .remedy = "look for a slipped digit or another unit; where it is meant, give the reading a file of its own",
+           .places = {}});
+    }
+  }
+}
+
 void check_errors(const data::Study& study, const data::ObservationSet& whole, const DataCheckThresholds& t,
                   std::vector<Finding>& findings) {
   for (std::size_t column = 0; column < whole.outputs.size(); ++column) {
@@ -225,6 +258,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
     if (set.points.empty()) continue;
     check_beside_runs(study, table, set, findings);
     check_errors(study, set, thresholds, findings);
+    check_outweighing(study, set, findings);
     check_shared_errors(study, set, findings);
   }
   check_errors_of_sets(study, findings);

@@ -58,3 +58,20 @@ TEST_CASE("two sets that agree better than their errors allow are named, unless 
   CHECK(said(0.004, "cell").empty());
   CHECK(said(0.14, "").empty());  // as two independent readings of 0.1 differ
 }
+
+TEST_CASE("a reading whose standard error is far smaller than all others' is named: it would decide alone") {
+  const auto said = [](const std::vector<double>& torques, const std::vector<double>& errors) {
+    data::Study study = formula::study({0.1, 0.3, 0.5, 0.7, 0.9}, torques, 0.1);
+    for (std::size_t i = 0; i < errors.size(); ++i) study.observations[0].points[i].standard_errors[0] = errors[i];
+    std::string all;
+    for (const data::Finding& finding : uq::check_observations(study, data::empty_table(study), {}))
+      if (finding.kind == data::FindingKind::standard_errors) all += data::describe(finding);
+    return all;
+  };
+  const std::vector<double> level{14.0, 14.1, 14.2, 14.3, 14.4}, decades{0.014, 0.14, 1.4, 14.0, 140.0};
+  CHECK_THAT(said(level, {0.1, 0.12, 1e-4, 0.1, 0.1}),
+             Catch::Contains("outweighs all others") && Catch::Contains("0.0001") && Catch::Contains("993 times"));
+  CHECK(said(level, {0.1, 0.12, 0.01, 0.1, 0.1}).empty());           // ten times better
+  CHECK(said(decades, {1.4e-4, 1.4e-3, 0.014, 0.14, 1.4}).empty());  // shares of the value
+  CHECK(said(decades, {0.1, 0.1, 0.1, 0.1, 0.1}).empty());           // a meter's resolution
+}
