@@ -84,6 +84,27 @@ void say_outlying_reading(Words& words, const data::Study& study, const Outlying
   words.remedies = {check_reading};
 }
 
+void say_lack_of_fit(Words& words, const LackOfFit& lack) {
+  words.finding += fmt::format(
+      " The settings' means lie {:.2g} times farther from the model than their readings let expect (p {:.1g}): readings "
+      "of one setting share an error, or the model is off.",
+      std::sqrt(lack.f), lack.p);
+  words.consequence =
+      fmt::format("The errors given are too small: {} readings of {} settings were taken for {} independent ones.",
+                  lack.readings, lack.settings, lack.readings);
+  words.remedies.insert(
+      words.remedies.begin(),
+      "Give each setting one row, the mean of its readings, so that the means' scatter about the model "
+      "sets the errors; then look at what their residuals have in common.");
+}
+
+std::string lack_of_fit_warning(const std::string& name, const LackOfFit& lack) {
+  return fmt::format(
+      "case {}: the means of {} settings lie {:.2g} times farther from the model than their {} readings let expect (F "
+      "test, p {:.1g}): the errors given are too small",
+      name, lack.settings, std::sqrt(lack.f), lack.readings, lack.p);
+}
+
 void say_misfit(Words& words, const CaseReport& report, const data::Study& study, const CaseModel& model,
                 const Identification& found, const VerdictThresholds& thresholds) {
   if (const std::string off = farthest_off(report.predictive); !off.empty()) words.finding += " " + off;

@@ -9,6 +9,7 @@
 #include "uq/findings/case_results.hpp"
 #include "uq/verdict/contradiction.hpp"
 #include "uq/verdict/identifiability.hpp"
+#include "uq/verdict/lack_of_fit.hpp"
 #include "uq/verdict/outlying_reading.hpp"
 #include "uq/verdict/verdict.hpp"
 #include "uq/verdict/verdict_words.hpp"
@@ -34,5 +35,11 @@ void say_lone_reading(CaseReport& report, Words& words, const data::Study& study
 void say_outlying_reading(Words& words, const data::Study& study, const OutlyingReading& one);
 /// The outlying reading as a warning.
 std::string outlying_warning(const std::string& name, const data::Study& study, const OutlyingReading& one);
+
+/// Words for settings whose means lie farther from the model than their readings let expect, where the errors' size is
+/// unknown.
+void say_lack_of_fit(Words& words, const LackOfFit& lack);
+/// The same as a warning.
+std::string lack_of_fit_warning(const std::string& name, const LackOfFit& lack);
 
 }  // namespace uq

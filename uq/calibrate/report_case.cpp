@@ -15,6 +15,7 @@
 #include "uq/posterior/discrepancy.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/support.hpp"
+#include "uq/verdict/lack_of_fit.hpp"
 #include "uq/verdict/outlying_reading.hpp"
 
 namespace uq {
@@ -246,6 +247,10 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   const std::optional<OutlyingReading> outlying =
       found.fits ? outlying_reading(model, found.best_fit.x, judged.thresholds) : std::nullopt;
   if (outlying) say_outlying_reading(words, study, *outlying);
+  std::optional<LackOfFit> lack =
+      found.fits && report.doubt.empty() && !outlying ? lack_of_fit(model, found.best_fit.x) : std::nullopt;
+  if (lack && !(lack->p < judged.thresholds.best_fit_p)) lack.reset();
+  if (lack) say_lack_of_fit(words, *lack);
   if (found.fits && report.doubt.empty() && found.check.best_fit_p < judged.thresholds.poor_fit_p)
     say_poor_fit(words, found.check);
   report.finding = words.finding;
@@ -253,6 +258,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.remedy = shown_remedy(words);
   add_warnings(report, doubt.of, sampled);
   if (outlying) report.warnings.push_back(outlying_warning(report.name, study, *outlying));
+  if (lack) report.warnings.push_back(lack_of_fit_warning(report.name, *lack));
   add_prior_conflicts(report, sampled, draws, judged.thresholds);
   return report;
 }

@@ -59,4 +59,16 @@ FisherSpectrum fisher_spectrum(const CaseModel& full, const Eigen::VectorXd& u) 
   return found;
 }
 
+void add_free_unknowns(const CaseModel& model, const Eigen::VectorXd& u, Eigen::MatrixXd& covariance) {
+  constexpr double nearly_free = 10.0;  // sds of a parameter's prior
+  const Eigen::MatrixXd slopes = sensitivity(model, u);
+  for (std::size_t s = 0; s < model.unknowns.size(); ++s) {
+    const Unknown& unknown = model.unknowns[s];
+    if (unknown.only_widens()) continue;
+    const double sd = unknown.cut ? unknown.cut->sd : unknown.prior.sd() * (unknown.nuisance ? 1.0 : nearly_free);
+    const Eigen::VectorXd moved = sd * slopes.col(static_cast<Eigen::Index>(s));
+    covariance += moved * moved.transpose();
+  }
+}
+
 }  // namespace uq

@@ -22,4 +22,8 @@ struct FisherSpectrum {
 
 FisherSpectrum fisher_spectrum(const CaseModel& model, const Eigen::VectorXd& u);
 
+/// Adds to a covariance of the data, SI^2, what the unknowns can move about u: parameters nearly freely, nuisances as
+/// far as their priors let them. Of residuals, what a best fit could take away then counts for nothing.
+void add_free_unknowns(const CaseModel& model, const Eigen::VectorXd& u, Eigen::MatrixXd& covariance);
+
 }  // namespace uq

@@ -20,17 +20,9 @@ struct LeftOut {
 };
 
 LeftOut left_out(const CaseModel& model, const Eigen::VectorXd& u) {
-  constexpr double nearly_free = 10.0;  // a parameter, in sds of its prior
   const StackedPrediction prediction = predict(model, u);
   Eigen::MatrixXd covariance = prediction.total();
-  const Eigen::MatrixXd slopes = sensitivity(model, u);
-  for (std::size_t s = 0; s < model.unknowns.size(); ++s) {
-    const Unknown& unknown = model.unknowns[s];
-    if (unknown.only_widens()) continue;
-    const double sd = unknown.cut ? unknown.cut->sd : unknown.prior.sd() * (unknown.nuisance ? 1.0 : nearly_free);
-    const Eigen::VectorXd moved = sd * slopes.col(s);
-    covariance += moved * moved.transpose();
-  }
+  add_free_unknowns(model, u, covariance);
   const Eigen::Index rows = covariance.rows();
   const Factor root = factor(covariance, "the data about the best fit");
   const Eigen::MatrixXd inverse = root.llt.solve(Eigen::MatrixXd::Identity(rows, rows));

@@ -135,6 +135,8 @@ std::vector<std::pair<std::string, std::string>> describe(const VerdictThreshold
                    thresholds.structural_span, thresholds.same_share)},
       {"reading far from all others, errors of unknown size",
        fmt::format("chance below {:g} among so many readings", thresholds.outlying_chance)},
+      {"repeats that say less than their number, errors of unknown size",
+       fmt::format("chance of the settings' lack of fit below {:g}", thresholds.best_fit_p)},
       {"borderline", fmt::format("another word has a probability of at least {:g} over repeats of the measurement",
                                  thresholds.borderline_probability)},
   };

@@ -357,6 +357,34 @@ TEST_CASE("a fit that data of the model's own would seldom give is called poor, 
   CHECK_THAT(found.remedy, Catch::StartsWith("Look first at what the residuals have in common."));
 }
 
+TEST_CASE("repeats that lie together and far from the model are not counted as independent without a word", "[uq]") {
+  Input input = other_code();
+  data::Parameter noise{.name = "noise", .target = "", .low = 0.1, .high = 10.0, .scale = data::Scale::log};
+  noise.prior = {.kind = data::PriorKind::log_normal, .low = 0.1, .high = 10.0, .mean = 1.0, .sd = 1.0};
+  input.study.cases[0].nuisances = {{.kind = data::NuisanceKind::noise_scale, .output = {}, .parameter = noise}};
+  const auto with_repeats = [&](double setting, double reading) {
+    Input read = input;
+    std::vector<data::Observation>& points = read.study.observations[0].points;
+    const std::vector<data::Observation> once = points;
+    points.clear();
+    for (std::size_t i = 0; i < once.size(); ++i)
+      for (int k = 0; k < 4; ++k) {
+        points.push_back(once[i]);
+        const double se = once[i].standard_errors[0];
+        points.back().values[0] += (i % 2 == 0 ? setting : -setting) * se + (k % 2 == 0 ? reading : -reading) * se;
+      }
+    return calibrate_all(read.study, read.table, {.error_scan = {}, .quadrature = false}).report.cases[0];
+  };
+  const CaseReport shared = with_repeats(1.5, 0.1), independent = with_repeats(0.0, 1.0);
+  CHECK_THAT(shared.finding, Catch::Contains("readings of one setting share an error, or the model is off"));
+  CHECK_THAT(shared.consequence, Catch::Contains("24 readings of 6 settings were taken for 24 independent ones"));
+  CHECK_THAT(shared.remedy, Catch::StartsWith("Give each setting one row"));
+  REQUIRE(shared.warnings.size() == 1);
+  CHECK_THAT(shared.warnings[0], Catch::Contains("F test"));
+  CHECK_THAT(independent.finding, !Catch::Contains("share an error"));
+  CHECK(independent.warnings.empty());
+}
+
 TEST_CASE("draws that have not converged carry no word", "[uq]") {
   const Input input = other_code();
   const std::vector<FittedSurrogate> fitted = fit_surrogates(input.study, input.table);
