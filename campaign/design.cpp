@@ -72,7 +72,12 @@ Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, 
   std::set<std::string> known;
   const bool simulated = own_engine(workspace);
   std::map<std::string, int> rows_of;
+  std::vector<Point> lacking;  // points whose rows lack an output that the study has by now
   for (const data::RunRow& row : table.rows) {
+    if (!row.settings.empty() && row.seed == workspace.study.seed && data::lacks_output(table, row)) {
+      lacking.push_back({row.material, row.inputs});
+      continue;
+    }
     if (!data::is_unsteady(row) || workspace.unsteady == Unsteady::use || cannot_do_better(workspace, row))
       known.insert(simulated ? data::row_key(row) : data::row_key({.material = row.material, .inputs = row.inputs}));
     ++rows_of[row.material];
@@ -83,10 +88,13 @@ Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, 
       if (known.insert(point_key(workspace, point)).second) campaign.points.push_back(point);
   };
   std::map<std::string, int> next;
+  std::size_t left = 0;  // of the points, those that the list had
   if (simulated) {
-    const std::vector<Point> left = read_design(workspace);
-    add_missing(left);
-    campaign.continues = !left.empty();  // also where all of them were made, and only their end was not written
+    const std::vector<Point> listed = read_design(workspace);
+    add_missing(listed);
+    left = campaign.points.size();
+    add_missing(lacking);
+    campaign.continues = !listed.empty();  // also where all of them were made, and only their end was not written
     for (const data::Material& material : workspace.study.materials) {
       next[material.name] = material.runs.value_or(workspace.study.training.runs);
       add_missing(training_design(workspace, material.name, 0, next[material.name]));
@@ -103,9 +111,17 @@ Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, 
     for (std::size_t before = campaign.points.size(); campaign.points.size() == before;)
       add_missing(training_design(workspace, material, next[material]++, 1));
   }
-  if (runs > 0 && static_cast<int>(campaign.points.size()) > runs)
-    campaign.points.resize(static_cast<std::size_t>(runs));
+  if (runs > 0 && static_cast<int>(campaign.points.size()) > runs) {
+    const auto most = static_cast<std::size_t>(runs);
+    if (left > most) campaign.later.assign(campaign.points.begin() + runs, campaign.points.begin() + left);
+    campaign.points.resize(most);
+  }
   return campaign;
+}
+
+std::vector<Point> Campaign::listed(std::vector<Point> now) const {
+  now.insert(now.end(), later.begin(), later.end());
+  return now;
 }
 
 std::vector<Point> read_design(const Workspace& workspace) {
@@ -147,17 +163,22 @@ Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& tab
                            {path, "is not there: nothing is known of a posterior yet", "run demcal calibrate first"});
   std::set<std::string> known;
   for (const data::RunRow& row : table.rows) known.insert(data::row_key(row));
-  Campaign campaign;
   const std::vector<Point> listed = read_points(workspace, path), left = read_design(workspace);
-  const auto is_listed = [&](const Point& point) {
-    return std::any_of(listed.begin(), listed.end(),
+  const auto is_in = [&](const std::vector<Point>& points, const Point& point) {
+    return std::any_of(points.begin(), points.end(),
                        [&](const Point& one) { return point_key(workspace, one) == point_key(workspace, point); });
   };
   // Points of the list that an interrupted call left are done first, and then no further points.
-  campaign.continues = !left.empty() && std::all_of(left.begin(), left.end(), is_listed);
-  for (const Point& point : campaign.continues ? left : listed)
+  std::vector<Point> unfinished;
+  for (const Point& point : left)
+    if (is_in(listed, point)) unfinished.push_back(point);
+  Campaign campaign;
+  campaign.continues = !unfinished.empty();
+  for (const Point& point : campaign.continues ? unfinished : listed)
     if (static_cast<int>(campaign.points.size()) < runs && known.insert(point_key(workspace, point)).second)
       campaign.points.push_back(point);
+  for (const Point& point : left)
+    if (known.insert(point_key(workspace, point)).second) campaign.later.push_back(point);
   return campaign;
 }
 

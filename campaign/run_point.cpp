@@ -67,6 +67,12 @@ std::optional<dem::RunResult> ended_run(const Workspace& workspace, const Point&
   return std::move(before->result);
 }
 
+std::optional<dem::RunResult> finished_run(const Workspace& workspace, const Point& point, const std::string& path) {
+  std::optional<dem::SavedRun> before = earlier(path, case_at(workspace, point), run_seed(workspace, point));
+  if (!before || before->result.status != dem::RunStatus::done || !has_all(*before, workspace.study)) return {};
+  return std::move(before->result);
+}
+
 bool is_done(const Workspace& workspace, const Point& point, const std::string& path) {
   return ended_run(workspace, point, path).has_value();
 }

@@ -23,6 +23,8 @@ struct PointRun {
 
 /// The result of this run, finished or failed, when the file holds it and it ended as it would end now.
 std::optional<dem::RunResult> ended_run(const Workspace& workspace, const Point& point, const std::string& path);
+/// The result of a finished run of this point that the file holds, whenever the study would have it end now.
+std::optional<dem::RunResult> finished_run(const Workspace& workspace, const Point& point, const std::string& path);
 /// Whether the file holds this run, ended as it would end now.
 bool is_done(const Workspace& workspace, const Point& point, const std::string& path);
 

@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
+#include "campaign/design.hpp"
 #include "campaign/out_files.hpp"
 #include "campaign/placeholder.hpp"
 #include "campaign/point.hpp"
+#include "campaign/run_batch.hpp"
+#include "campaign/run_point.hpp"
 #include "campaign/training_table.hpp"
+#include "data/atomic_file.hpp"
 #include "data/origin.hpp"
 #include "data/run_table_files.hpp"
 #include "uq/emulate/surrogates.hpp"
@@ -33,6 +38,36 @@ void tell_unknown_rows(const data::Study& study, StudyRows& rows) {
                                .what = fmt::format("leave_out names {}, where no row is read", label),
                                .remedy = "name rows as the messages do: a line of the table, or \"FILE:LINE\"",
                                .places = {}});
+}
+
+/// Takes from the run's file what the row lacks; false where the file is gone, or of another run than the row.
+bool complete(const Workspace& workspace, data::RunRow& row) {
+  const Point point{row.material, row.inputs};
+  const Workspace own = with_seed(workspace, row.seed);
+  const std::optional<dem::RunResult> run = finished_run(own, point, run_path(own, point));
+  if (!run) return false;
+  const data::RunRow whole = to_row(own, point, *run);
+  for (std::size_t i = 0; i < row.outputs.size(); ++i)
+    if (!std::isnan(row.outputs[i]) && row.outputs[i] != whole.outputs[i]) return false;
+  row.outputs = whole.outputs;
+  row.standard_errors = whole.standard_errors;
+  row.unreliable = whole.unreliable;
+  return true;
+}
+
+/// Fills rows that lack an output, since it came to the study after they were written. Says how many lack it still.
+void complete_rows(const Workspace& workspace, data::RunTable& table, std::vector<std::string>& notes) {
+  std::size_t filled = 0, lacking = 0;
+  for (data::RunRow& row : table.rows)
+    if (!row.settings.empty() && data::lacks_output(table, row)) ++(complete(workspace, row) ? filled : lacking);
+  const auto say = [&](std::size_t count, const char* what) {
+    if (count == 0) return;
+    notes.push_back(fmt::format("{}: {} of {} rows were written before all of the study's outputs were: {}",
+                                data::shown_path(training_path(workspace)), count, table.rows.size(), what));
+  };
+  say(filled, "they are completed from their runs in runs/");
+  say(lacking,
+      "they count for their other outputs only, since runs/ has not these runs (demcal train makes them again)");
 }
 
 /// Leaves out the unsteady rows of the study's level or, with `cheaper`, of the level under it.
@@ -79,6 +114,7 @@ StudyRows study_rows(const Workspace& workspace) {
           fmt::format("{}: {} of {} rows were simulated under other settings than the study's and are left out (demcal "
                       "train makes them again)",
                       path, stale, read.table.rows.size()));
+    if (own && own_engine(workspace)) complete_rows(workspace, usable, result.notes);
     result.all = data::merge(result.all, usable);
   };
   if (!study.training.table.empty()) add(study.training.table, data::read_table(study.training.table, study));

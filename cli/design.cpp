@@ -28,7 +28,7 @@ Action add_design(CLI::App& program) {
     const StudyRows rows = study_rows(workspace);
     for (const std::string& note : rows.notes) say(common, "note: " + note);
     const Campaign campaign = plan_campaign(workspace, rows.all, options->runs);
-    write_design(workspace, campaign.points);
+    write_design(workspace, campaign.listed(campaign.points));
     const std::string path = design_path(workspace);
     answer(common, fmt::format("{} to simulate, {} exist: {}", data::counted(campaign.points.size(), "point"),
                                data::counted(rows.all.rows.size(), "row"), path));

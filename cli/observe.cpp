@@ -87,6 +87,9 @@ Observed find_observed(const ObserveOptions& options, const data::TorqueLog& log
     found.refused += held;
     return true;
   });
+  if (plateaus.empty())
+    if (const std::optional<data::Problem> columns = data::doubted_columns(log))
+      throw data::InputError(data::ExitStatus::bad_data, *columns);
   if (plateaus.empty() && before > 0) data::refuse_data(log.file, warnings.back(), "check the sensor's range");
   if (plateaus.empty())
     data::refuse_data(log.file,

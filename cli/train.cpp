@@ -45,8 +45,10 @@ void announce(const Common& common, const Campaign& campaign, std::size_t rows) 
   if (missing == 0) {
     answer(common, fmt::format("nothing is missing: the table has {}. For more: --runs N", data::counted(rows, "run")));
   } else {
-    say(common, fmt::format("{} to make{}; the table has {}", data::counted(missing, "run"),
-                            campaign.continues ? ", left by an unfinished campaign" : "", rows));
+    say(common,
+        fmt::format("{} to make{}; the table has {}{}", data::counted(missing, "run"),
+                    campaign.continues ? ", left by an unfinished campaign" : "", rows,
+                    campaign.later.empty() ? "" : fmt::format("; {} more stay in design.csv", campaign.later.size())));
   }
 }
 
@@ -90,7 +92,7 @@ data::ExitStatus train_missing(const TrainOptions& options, const std::optional<
   for (const std::string& note : rows.notes) say(common, "note: " + note);
   const Campaign campaign = options.at_posterior > 0 ? plan_at_posterior(workspace, rows.all, options.at_posterior)
                                                      : plan_campaign(workspace, rows.all, options.runs);
-  write_design(workspace, campaign.points);
+  write_design(workspace, campaign.listed(campaign.points));
   announce(common, campaign, rows.all.rows.size());
   const std::string foretold = too_short(workspace, campaign.points);
   if (!foretold.empty()) say(common, "warning: " + foretold);
@@ -107,7 +109,7 @@ data::ExitStatus train_missing(const TrainOptions& options, const std::optional<
   std::vector<Point> left;
   for (std::size_t i = 0; i < campaign.points.size(); ++i)
     if (!made.ended[i]) left.push_back(campaign.points[i]);
-  write_design(workspace, left);
+  write_design(workspace, campaign.listed(std::move(left)));
   if (made.error) std::rethrow_exception(made.error);
   return tell_made(common, workspace, made, slurm ? &*slurm : nullptr, !foretold.empty(), interrupt.interrupted());
 }

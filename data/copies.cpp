@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -68,6 +69,24 @@ double resolution(const std::vector<double>& numbers) {
   return std::max(decimal, grid_step(numbers, decimal).value_or(0.0));
 }
 
+namespace {
+
+/// The standard deviation of the different numbers among these outputs of rows at one point; none of fewer than five.
+std::optional<double> scatter_of(const std::vector<RepeatableRow>& rows, const std::vector<std::size_t>& members,
+                                 std::size_t column) {
+  constexpr std::size_t few = 5;
+  std::set<double> different;
+  for (const std::size_t i : members)
+    if (std::isfinite(rows[i].values[column])) different.insert(rows[i].values[column]);
+  if (different.size() < few) return {};
+  double mean = 0.0, squares = 0.0;
+  for (const double value : different) mean += value / static_cast<double>(different.size());
+  for (const double value : different) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / static_cast<double>(different.size() - 1));
+}
+
+}  // namespace
+
 std::vector<std::optional<std::size_t>> copies_of(const std::vector<RepeatableRow>& rows) {
   std::vector<std::optional<std::size_t>> found(rows.size());
   std::map<std::vector<double>, std::vector<std::size_t>> by_place;
@@ -83,6 +102,9 @@ std::vector<std::optional<std::size_t>> copies_of(const std::vector<RepeatableRo
   for (const auto& [unused, members] : by_place) {
     const double count = static_cast<double>(members.size());
     pairs += 0.5 * count * (count - 1.0);
+    std::vector<double> error_most;  // of each output, as the readings themselves scatter
+    for (std::size_t k = 0; k < steps.size(); ++k)
+      error_most.push_back(scatter_of(rows, members, k).value_or(std::numeric_limits<double>::infinity()));
     std::map<std::pair<std::vector<double>, std::vector<double>>, std::size_t> first;
     std::map<std::size_t, double> seen;  // rows equal to that first one, before the next
     for (const std::size_t i : members) {
@@ -98,7 +120,7 @@ std::vector<std::optional<std::size_t>> copies_of(const std::vector<RepeatableRo
       equal += ++seen[there->second];
       double agree = 1.0;  // all outputs at once
       for (std::size_t k = 0; k < steps.size(); ++k) {
-        const double error = rows[i].errors[k];
+        const double error = std::min(rows[i].errors[k], error_most[k]);
         if (std::isnan(rows[i].values[k])) continue;
         agree *= error > 0.0 ? std::min(1.0, steps[k] / (2.0 * std::sqrt(std::numbers::pi) * error)) : 0.0;
       }

@@ -4,7 +4,8 @@
 // Two independent readings of standard error s, written to a resolution d (0.01: two decimals), agree in all digits
 // with probability
 //   p = d / (2 sqrt(pi) s)   (d: two decimals, or a meter's step; the density at 0 of their difference, of variance 2 s^2, times d),
-// at most 1. Of m pairs of rows that share a point, about m p agree by chance. Where as many as do agree have a Poisson
+// at most 1. Readings may scatter less than their errors say: where five or more at a point differ, s is at most the
+// standard deviation of those that do. Of m pairs of rows that share a point, about m p agree by chance. Where as many as do agree have a Poisson
 // probability below 0.01 at that mean, chance does not explain them, and they are copies.
 #include <optional>
 #include <vector>

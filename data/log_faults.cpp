@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace data {
 namespace {
@@ -286,6 +287,24 @@ std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& pla
   if (spikes.empty()) words.push_back(drift_in_words(used));
   std::erase(words, "");
   return words;
+}
+
+std::optional<Problem> doubted_columns(const TorqueLog& log) {
+  constexpr double standing = 1e-3;  // rad/s, a hundredth of a turn a minute
+  if (std::all_of(log.speed.begin(), log.speed.end(), [](double speed) { return std::abs(speed) < standing; }))
+    return Problem{log.file, "the speed is 0 throughout: the machine stood still, or nothing was read into that column",
+                   "name the column of the speed with --rpm, or take the column out and give a constant speed with "
+                   "--constant-speed"};
+  const auto different = [](const std::vector<double>& values) {
+    return std::set<double>(values.begin(), values.end()).size();
+  };
+  constexpr std::size_t few = 20, many_times = 10;
+  const std::size_t torques = different(log.torque), speeds = different(log.speed);
+  if (torques < 2 || torques > few || speeds < many_times * torques) return {};
+  return Problem{
+      log.file,
+      fmt::format("the torque takes {} values and the speed {}: are the two columns exchanged?", torques, speeds),
+      "correct the headings, or name the columns with --torque and --rpm"};
 }
 
 std::vector<std::string> plateau_notes(const TorqueLog& log, const Plateau& plateau) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -29,6 +30,10 @@ std::string row_key(const RunRow& row) {
 
 RunTable merge(const RunTable& first, const RunTable& second) {
   RunTable merged = first;
+  for (const Column& column : second.others)
+    if (std::none_of(merged.others.begin(), merged.others.end(),
+                     [&](const Column& known) { return known.name == column.name; }))
+      merged.others.push_back(column);
   std::set<std::string> there;
   for (const RunRow& row : first.rows) there.insert(row_key(row));
   for (const RunRow& row : second.rows)
@@ -36,13 +41,34 @@ RunTable merge(const RunTable& first, const RunTable& second) {
   return merged;
 }
 
+OutputMean kept_mean(const RunRow& row, const Column& column) {
+  const auto kept = row.others.find(column.name);
+  return kept != row.others.end() ? kept->second : OutputMean{};
+}
+
 bool is_unsteady(const RunRow& row) { return !row.state.empty() && row.state != to_text(FlowState::steady); }
+
+namespace {
+
+/// Whether the word is among those of RunRow::unreliable.
+bool calls(const RunRow& row, const std::string& word) {
+  return fmt::format(" {} ", row.unreliable).find(fmt::format(" {} ", word)) != std::string::npos;
+}
+
+}  // namespace
+
+bool is_unreliable(const RunRow& row, const std::string& output) {
+  return calls(row, output) || calls(row, output + brief_mark);
+}
+
+bool lacks_output(const RunTable& table, const RunRow& row) {
+  for (std::size_t i = 0; i < table.outputs.size(); ++i)
+    if (std::isnan(row.outputs[i]) && !is_unreliable(row, table.outputs[i].name)) return true;
+  return false;
+}
 
 std::vector<std::string> drop_unreliable(RunTable& table, bool scatter_estimated) {
   std::vector<std::string> notes;
-  const auto calls = [](const RunRow& row, const std::string& name) {
-    return fmt::format(" {} ", row.unreliable).find(fmt::format(" {} ", name)) != std::string::npos;
-  };
   for (std::size_t i = 0; i < table.outputs.size(); ++i) {
     const std::string& name = table.outputs[i].name;
     std::size_t dropped = 0, brief = 0;

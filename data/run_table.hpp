@@ -2,6 +2,8 @@
 // The run table: one row per simulated point, whoever simulated it. HDF5 (training.h5, SI with unit attributes) and CSV
 // (the study's units). It is all that calibration knows of the DEM.
 #include <cstdint>
+#include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,12 @@ struct LeftOut {
   explicit operator bool() const { return because != Because::nothing; }
 };
 
+/// A run's mean of an output, SI.
+struct OutputMean {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double standard_error = std::numeric_limits<double>::quiet_NaN();
+};
+
 struct RunRow {
   std::string material;                 ///< "" in a study without materials
   std::vector<double> inputs;           ///< SI: parameters, then controls, in the table's column order
@@ -44,18 +52,26 @@ struct RunRow {
   std::string state = {};  ///< "steady", or why the means are not those of the steady flow; "" where nobody said
   /// Outputs whose errors are not known, by name, separated by spaces; NAME:short where the run was only too short.
   std::string unreliable = {};
+  std::map<std::string, OutputMean> others = {};  ///< outputs that the study no longer has, by name (RunTable::others)
   std::string place = {};  ///< "runs.csv:31": where the row stands, by which the user names it; not stored
   LeftOut left_out = {};   ///< not stored
 };
 /// Whether the row says that its means are not those of the steady flow.
 bool is_unsteady(const RunRow& row);
+/// Whether the row calls the output's mean unreliable, or the run too short to know its error.
+bool is_unreliable(const RunRow& row, const std::string& output);
 
 struct RunTable {
   std::vector<Column> parameters;
   std::vector<Column> controls;
   std::vector<Column> outputs;
   std::vector<RunRow> rows;
+  std::vector<Column> others = {};  ///< outputs of an earlier form of the study: learnt by nobody, and written back
 };
+
+/// Whether the row has no mean of an output and does not call it unreliable, as one that was written before it became
+/// an output.
+bool lacks_output(const RunTable& table, const RunRow& row);
 
 /// An empty table with the study's columns.
 RunTable empty_table(const Study& study);
@@ -80,8 +96,9 @@ std::vector<std::string> drop_unreliable(RunTable& table, bool scatter_estimated
 /// named in `left_out`. Rows that say themselves that they are none keep their place in the table and are marked
 /// (RunRow::left_out): what [training] leave_out names, a status column with a word of failure, an output of exactly 0
 /// with a standard error of exactly 0 among others that have errors, and copies to the last digit. `findings` says so,
-/// and which columns nobody reads. Throws InputError: 66 missing file; 65 truncated, missing column, text for a number
-/// (file:line).
+/// and which columns nobody reads. A table of our own that lacks an output of the study has NaN there; outputs that the study
+/// has no longer are kept in `others`. Throws InputError: 66 missing file; 65 truncated, missing column, text for a
+/// number (file:line).
 struct TableRead {
   RunTable table;
   std::vector<std::string> left_out;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -172,6 +173,22 @@ Missing not_finite(const Csv& csv, const CsvRow& row, const TableColumns& at) {
   return missing;
 }
 
+/// Whether the table is one of our own campaigns.
+bool is_own(const Csv& csv) { return csv.find("settings") && csv.find("state") && csv.find("unreliable"); }
+
+/// Adds empty columns for outputs that came to the study after the table was written.
+void add_lacking(Csv& csv, const std::vector<Column>& outputs) {
+  for (const Column& output : outputs) {
+    if (csv.find(output.name)) continue;
+    for (const std::string& name : {output.name, output.name + "_se"}) {
+      csv.columns.push_back(name);
+      csv.headings.push_back(name);
+      csv.units.emplace_back();
+      for (CsvRow& row : csv.rows) row.fields.emplace_back();
+    }
+  }
+}
+
 /// Reads the rows of a table, each in the units of its columns.
 class RowReader {
  public:
@@ -190,9 +207,12 @@ class RowReader {
       error_units_.push_back(
           (at_.errors[i] ? csv.unit(*at_.errors[i], output_units_.back()) : output_units_.back()).differences());
     }
+    if (is_own(csv)) find_others();
   }
 
   const TableColumns& columns() const { return at_; }
+  /// Outputs that the study has no longer, and where they stand with their errors.
+  const std::vector<std::pair<Column, std::array<std::size_t, 2>>>& others() const { return others_; }
   /// What is said of rows that are left out, and of those that lack an output.
   std::vector<std::string> notes() const { return notes_.texts(); }
 
@@ -215,12 +235,27 @@ class RowReader {
     if (at_.cpu_seconds) row.cpu_seconds = csv_.number(line, *at_.cpu_seconds);
     if (at_.state) row.state = line.fields[*at_.state];
     if (at_.unreliable) row.unreliable = line.fields[*at_.unreliable];
+    for (const auto& [column, at] : others_)
+      if (has_number(csv_, line, at[0]) && has_number(csv_, line, at[1]))
+        row.others[column.name] = {column.unit.to_si(line.fields[at[0]]),
+                                   column.unit.differences().to_si(line.fields[at[1]])};
     row.place = fmt::format("{}:{}", file_name_, line.line);
     row.left_out = left_out_by_its_columns(csv_, line, at_);
     return row;
   }
 
  private:
+  void find_others() {
+    for (const std::size_t column : at_.unread) {
+      const std::optional<std::size_t> errors = csv_.find(csv_.columns[column] + "_se");
+      if (errors) others_.push_back({{csv_.columns[column], parse_unit(csv_.units[column])}, {column, *errors}});
+    }
+    std::erase_if(at_.unread, [this](std::size_t column) {
+      return std::any_of(others_.begin(), others_.end(),
+                         [&](const auto& other) { return other.second[0] == column || other.second[1] == column; });
+    });
+  }
+
   /// Whether a row says anything; what it lacks is noted.
   bool usable(const CsvRow& line) {
     const Missing missing = not_finite(csv_, line, at_);
@@ -266,6 +301,7 @@ class RowReader {
   std::vector<Input> inputs_;
   std::string file_name_;
   std::vector<Unit> input_units_, output_units_, error_units_;
+  std::vector<std::pair<Column, std::array<std::size_t, 2>>> others_;
   RowNotes notes_;
 };
 
@@ -273,11 +309,13 @@ class RowReader {
 
 TableRead read_table_csv(const std::string& path, const Study& study) {
   const std::string text = read_file(path);
-  const Csv csv = parse_csv(text, shown_path(path));
+  Csv csv = parse_csv(text, shown_path(path));
   check_whole(csv, text);
   TableRead result{.table = empty_table(study)};
+  if (is_own(csv)) add_lacking(csv, result.table.outputs);
   RowReader reader(csv, result.table, study, std::filesystem::path(path).filename().string());
   result.findings = column_findings(csv, reader.columns(), result.table);
+  for (const auto& [column, unused] : reader.others()) result.table.others.push_back(column);
   for (const CsvRow& line : csv.rows)
     if (std::optional<RunRow> row = reader.read(line)) result.table.rows.push_back(*std::move(row));
   result.left_out = reader.notes();
@@ -295,10 +333,11 @@ void write_table_csv(const std::string& path, const RunTable& table, const Study
   };
   for (const Column& column : table.parameters) add(column.name, column.unit);
   for (const Column& column : table.controls) add(column.name, column.unit);
-  for (const Column& column : table.outputs) {
-    add(column.name, column.unit);
-    header += column.name + "_se,";
-  }
+  for (const std::vector<Column>* columns : {&table.outputs, &table.others})
+    for (const Column& column : *columns) {
+      add(column.name, column.unit);
+      header += column.name + "_se,";
+    }
   text += fmt::format("# units: {}; NAME_se: the standard error of NAME; cpu_seconds [s]\n# rows: {}\n", units,
                       table.rows.size());
   text += header + "material,seed,settings,isa,origin,cpu_seconds,state,unreliable\n";
@@ -312,6 +351,10 @@ void write_table_csv(const std::string& path, const RunTable& table, const Study
       const Unit& unit = table.outputs.at(i).unit;
       text += text_of(row.outputs[i], unit) + ',';
       text += text_of(row.standard_errors.at(i), unit.differences()) + ',';
+    }
+    for (const Column& column : table.others) {
+      const OutputMean mean = kept_mean(row, column);
+      text += text_of(mean.value, column.unit) + ',' + text_of(mean.standard_error, column.unit.differences()) + ',';
     }
     text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_field(row.material), row.seed, csv_field(row.settings),
                         csv_field(row.isa), csv_field(row.origin), shortest(row.cpu_seconds), csv_field(row.state),

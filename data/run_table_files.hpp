@@ -12,6 +12,9 @@ bool is_status_column(std::string_view name);
 bool is_user_column(std::string_view name);  ///< "use", "include", "keep": the user's own choice of rows
 bool says_failed(std::string_view column, std::string_view field);
 
+/// The row's mean of an output that the study has no longer; NaN where it has none.
+OutputMean kept_mean(const RunRow& row, const Column& column);
+
 /// Whether a label of [training] leave_out ("31", "runs.csv:31") names the row at `place` ("runs.csv:31").
 bool names_row(const std::string& label, const std::string& place);
 

@@ -4,6 +4,7 @@
 //   /runs/            material, seed, settings, isa, origin, cpu_seconds, state, unreliable
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -92,6 +93,19 @@ std::vector<RunRow> empty_rows(const Hdf5Group& root) {
   return std::vector<RunRow>(rows);
 }
 
+/// Reads the outputs that the study has no longer, to be written back.
+void read_others(const Hdf5Group& outputs, const Hdf5Group& errors, RunTable& table) {
+  for (const std::string& name : outputs.names()) {
+    if (std::any_of(table.outputs.begin(), table.outputs.end(), [&](const Column& one) { return one.name == name; }))
+      continue;
+    const Column column{name, parse_unit(outputs.text("study unit", name))};
+    const std::vector<double> values = read_column(outputs, column, table.rows.size()),
+                              standard_errors = read_column(errors, column, table.rows.size());
+    for (std::size_t r = 0; r < values.size(); ++r) table.rows[r].others[name] = {values[r], standard_errors[r]};
+    table.others.push_back(column);
+  }
+}
+
 /// Reads inputs, outputs and their errors into the table's rows.
 void read_numbers(const Hdf5Group& root, RunTable& table) {
   const Hdf5Group parameters = root.group("parameters"), controls = root.group("controls"),
@@ -105,9 +119,17 @@ void read_numbers(const Hdf5Group& root, RunTable& table) {
   for (const Column& column : table.parameters) append(parameters, column, &RunRow::inputs);
   for (const Column& column : table.controls) append(controls, column, &RunRow::inputs);
   for (const Column& column : table.outputs) {
+    if (!outputs.has(column.name) && !errors.has(column.name)) {  // it was no output when the table was written
+      for (RunRow& row : table.rows) {
+        row.outputs.push_back(OutputMean{}.value);
+        row.standard_errors.push_back(OutputMean{}.standard_error);
+      }
+      continue;
+    }
     append(outputs, column, &RunRow::outputs);
     append(errors, column, &RunRow::standard_errors);
   }
+  read_others(outputs, errors, table);
 }
 
 /// Reads into the rows how each run was made and ended.
@@ -179,6 +201,11 @@ void write_table_hdf5(const std::string& path, const RunTable& table, const Stud
       write_column(outputs, table.outputs[i], column_of(table, [i](const RunRow& row) { return row.outputs.at(i); }));
       write_column(errors, table.outputs[i],
                    column_of(table, [i](const RunRow& row) { return row.standard_errors.at(i); }));
+    }
+    for (const Column& column : table.others) {
+      const auto kept = [&](const RunRow& row) { return kept_mean(row, column); };
+      write_column(outputs, column, column_of(table, [&](const RunRow& row) { return kept(row).value; }));
+      write_column(errors, column, column_of(table, [&](const RunRow& row) { return kept(row).standard_error; }));
     }
     std::vector<std::string> materials, settings, isas, origins, states, unreliable;
     std::vector<std::uint64_t> seeds;

@@ -67,10 +67,18 @@ void apply(StudyFile::State& state, const std::string& text) {
     }
     node = next;
   }
+  const std::string above = fmt::format("{}", fmt::join(path.begin(), path.end() - 1, "."));
+  if (const auto* entries = node->as_array(); entries != nullptr && !entries->empty()) {
+    const auto* first = entries->front().as_table();
+    const std::string name = first != nullptr ? (*first)["name"].value_or("0") : "0";
+    const bool one = entries->size() == 1;
+    fail(ExitStatus::bad_study,
+         fmt::format("'{}' has {}", above, one ? "one entry" : fmt::format("{} entries", entries->size())),
+         fmt::format("name {}, or its place from 0: {}.{}.{}", one ? "it" : "one of them", above, name, path.back()));
+  }
   auto* table = node->as_table();
   if (table == nullptr) {
-    fail(ExitStatus::bad_study, fmt::format("'{}' holds no keys", fmt::join(path.begin(), path.end() - 1, ".")),
-         "name a key of a section of the study file");
+    fail(ExitStatus::bad_study, fmt::format("'{}' holds no keys", above), "name a key of a section of the study file");
   }
 
   const std::string value = text.substr(equals + 1);

@@ -109,8 +109,8 @@ def simulate(arguments, point):
     folder.mkdir(parents=True, exist_ok=True)
     if done.returncode in (0, 2):  # 2: done, with a warning
         kept.write_text(done.stdout)
-    elif done.returncode < 0 or done.returncode in (130, 143):
-        raise SystemExit(f"ended by a signal: {' '.join(command)}")
+    elif done.returncode < 0 or done.returncode in (129, 130, 143) or not done.stderr.strip():
+        raise SystemExit(f"ended from outside (status {done.returncode}): {' '.join(command)}")
     else:
         kept.write_text(json.dumps({"error": done.stderr.strip().splitlines()[0]}))
     print(f"{folder.name}: {done.returncode}", flush=True)

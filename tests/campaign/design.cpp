@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "campaign/out_files.hpp"
 #include "campaign/run_point.hpp"
 #include "tests/campaign/fake_slurm.hpp"
 #include "tests/temporary.hpp"
@@ -37,6 +38,39 @@ TEST_CASE("a campaign that was killed as its last run had ended is not begun a s
   CHECK(plan_campaign(workspace, table, 3).points.empty());  // the design still stands
   write_design(workspace, {});
   CHECK(plan_campaign(workspace, table, 3).points.size() == 3);
+}
+
+TEST_CASE("points that somebody listed stay in the list until they are made, whatever a call makes of them") {
+  const TemporaryFolder folder;
+  const Workspace workspace = test::small_study(folder.path("out"));
+  make_out(workspace, "runs");
+  const data::RunTable none = data::empty_table(workspace.study);
+  const std::string material = workspace.study.materials.front().name;
+  const std::vector<Point> mine = training_design(workspace, material, 100, 3);
+  const auto same = [](const std::vector<Point>& a, const std::vector<Point>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Point& one, const Point& other) {
+      return one.material == other.material && one.inputs == other.inputs;
+    });
+  };
+  write_design(workspace, mine);
+  const Campaign one = plan_campaign(workspace, none, 1);
+  CHECK(same(one.points, {mine[0]}));
+  CHECK(same(one.later, {mine[1], mine[2]}));
+  CHECK(same(one.listed(one.points), mine));
+  CHECK(same(one.listed({}), {mine[1], mine[2]}));
+  CHECK(plan_campaign(workspace, none, 0).later.empty());  // all of them, and the design
+
+  // A call that makes other points leaves them, too; what such a call left is done before, and nothing further.
+  const std::vector<Point> posterior = training_design(workspace, material, 200, 3);
+  write_points(workspace, next_runs_path(workspace), posterior);
+  const Campaign two = plan_at_posterior(workspace, none, 2);
+  CHECK(same(two.points, {posterior[0], posterior[1]}));
+  CHECK(same(two.later, mine));
+  write_design(workspace, two.listed({posterior[1]}));
+  const Campaign rest = plan_at_posterior(workspace, none, 2);
+  CHECK(rest.continues);
+  CHECK(same(rest.points, {posterior[1]}));
+  CHECK(same(rest.later, mine));
 }
 
 TEST_CASE("a design is read in the units that it was written in, when the study's have changed since") {

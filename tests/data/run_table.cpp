@@ -168,6 +168,56 @@ TEST_CASE("a run of ours without any mean stays in the table, through either fil
   }
 }
 
+TEST_CASE(
+    "an output that leaves the study stays in its table, and one that comes to it is lacked, through either file") {
+  const TemporaryFolder folder;
+  const data::Study both = study_of(folder, "[outputs.angle]\nunit = \"deg\"\n"), one = study_of(folder);
+  data::RunTable table = random_table(one, 5);
+  for (data::RunRow& row : table.rows) {
+    row.unreliable.clear();
+    row.outputs.push_back(0.5 + row.outputs[0]);
+    row.standard_errors.push_back(0.01);
+  }
+  table.outputs = data::empty_table(both).outputs;
+  for (const char* name : {"t.h5", "t.csv"}) {
+    const std::string path = folder.path(name);
+    const auto write = [&](const data::RunTable& rows, const data::Study& study) {
+      path.ends_with(".h5") ? data::write_table_hdf5(path, rows, study) : data::write_table_csv(path, rows, study);
+    };
+    write(table, both);
+    data::RunTable narrow = data::read_table(path, one).table;
+    REQUIRE(narrow.others.size() == 1);
+    CHECK(narrow.others[0].name == "angle");
+    data::RunRow added = random_table(one, 6).rows.back();  // a run made while there was no such output
+    added.unreliable.clear();
+    narrow.rows.push_back(added);
+    write(data::merge(data::empty_table(one), narrow), one);
+
+    const data::RunTable wide = data::read_table(path, both).table;
+    REQUIRE(wide.rows.size() == 6);
+    for (std::size_t i = 0; i < 5; ++i) {
+      CHECK(wide.rows[i].outputs == table.rows[i].outputs);
+      CHECK(wide.rows[i].standard_errors == table.rows[i].standard_errors);
+      CHECK_FALSE(data::lacks_output(wide, wide.rows[i]));
+    }
+    CHECK(data::lacks_output(wide, wide.rows[5]));
+    CHECK(wide.rows[5].outputs[0] == added.outputs[0]);
+    CHECK(std::isnan(wide.rows[5].outputs[1]));
+
+    write(narrow, one);
+    data::RunTable never = data::read_table(path, one).table;
+    never.others.clear();
+    write(never, one);  // as tables were before the output came
+    const data::TableRead lacking = data::read_table(path, both);
+    REQUIRE(lacking.table.rows.size() == 6);
+    for (const data::RunRow& row : lacking.table.rows) CHECK(data::lacks_output(lacking.table, row));
+  }
+  data::RunRow unknown = table.rows[0];
+  unknown.outputs[1] = std::nan("");
+  unknown.unreliable = "angle:short";
+  CHECK_FALSE(data::lacks_output(table, unknown));
+}
+
 TEST_CASE("rows of which the same is said share one line where they are many") {
   const TemporaryFolder folder;
   const data::Study study = study_of(folder);

@@ -213,6 +213,9 @@ TEST_CASE("a problem in an override names the override") {
         "64: --set training.runs: is not KEY=VALUE (write it like --set training.runs=80)");
   CHECK(problem_of("[[observe]]\n", read, {"observe.bench.file=x"}) ==
         "78: --set observe.bench.file=x: 'observe.bench' is not in the study (name a key of the study file)");
+  CHECK(problem_of("[[calibrate]]\nname = \"powder\"\n", [](const data::Section&) {}, {"calibrate.noise=unknown"}) ==
+        "78: --set calibrate.noise=unknown: 'calibrate' has one entry (name it, or its place from 0: "
+        "calibrate.powder.noise)");
 }
 
 TEST_CASE("a problem in a table or a list that an override brings names the override, too") {

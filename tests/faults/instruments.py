@@ -167,6 +167,9 @@ REFUSED = [
     ("hexadecimal numbers", HEAD + rows(torque=lambda i: hex(i)), [":2", "torque", "0x0"]),
     ("digits of another script", HEAD + rows(torque=lambda i: "\u0665.\u0661"), [":2", "torque", "no numbers"]),
     ("a heading alone", HEAD, ["0 complete samples"]),
+    ("a tachometer that gave nothing", HEAD + rows(speed=lambda i: "0"), ["the speed is 0 throughout", "--constant-speed"]),
+    ("torque and speed exchanged", HEAD + rows(torque=speed, speed=lambda i: f"{5 + (i * 7919 % 397) / 4000:.5f}"),
+     ["the torque takes 2 values and the speed 397", "exchanged", "--torque and --rpm"]),
     ("one sample", HEAD + "0,5,100\n", ["1 complete samples"]),
 ]
 

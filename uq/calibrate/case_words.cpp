@@ -84,6 +84,17 @@ void say_outlying_reading(Words& words, const data::Study& study, const Outlying
   words.remedies = {check_reading};
 }
 
+void say_close_fit(Words& words, const FitCheck& check) {
+  words.finding += fmt::format(
+      " The readings lie {:.2g} times closer to the model than their errors let expect (chi2 {:.2g} for {} degrees of "
+      "freedom).",
+      std::sqrt(check.dof / check.chi2), check.chi2, check.dof);
+  words.consequence += " The intervals are wider than the readings' own scatter makes them.";
+  words.remedies.emplace_back(
+      "Look at the stated errors: a part that all readings share is no scatter, and belongs into common_error of the "
+      "observations.");
+}
+
 void say_lack_of_fit(Words& words, const LackOfFit& lack) {
   words.finding += fmt::format(
       " The settings' means lie {:.2g} times farther from the model than their readings let expect (p {:.1g}): readings "

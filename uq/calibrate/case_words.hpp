@@ -22,6 +22,10 @@ void say_doubt(CaseReport& report, DoubtOf of, Words& words, const data::Study& 
 /// Words for a fit that is not refused, but which data drawn from the model itself would seldom give.
 void say_poor_fit(Words& words, const FitCheck& check);
 
+/// Words for readings that lie closer to the model than their stated errors let expect: the errors are stated too large,
+/// or are shared. Values stay, with intervals wider than need be.
+void say_close_fit(Words& words, const FitCheck& check);
+
 /// Words for a model that does not fit: where it is farthest off, which sets contradict each other, and units that
 /// would explain it.
 void say_misfit(Words& words, const CaseReport& report, const data::Study& study, const CaseModel& model,

@@ -1,5 +1,6 @@
 // The report of a case, made from its draws: verdicts, convergence, bands, warnings.
 #include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "uq/posterior/discrepancy.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/support.hpp"
+#include "uq/verdict/interval_drop.hpp"
 #include "uq/verdict/lack_of_fit.hpp"
 #include "uq/verdict/outlying_reading.hpp"
 
@@ -181,6 +183,12 @@ void add_identification(CaseReport& report, const data::Study& study, const Case
         pair.curves.push_back(std::move(curve));
 }
 
+/// Whether readings of stated errors lie closer to the best fit than the errors let expect.
+bool too_close(const CaseModel& model, const FitCheck& check, const VerdictThresholds& thresholds) {
+  constexpr int least = 3;  // degrees of freedom
+  return !errors_unknown(model) && check.dof >= least && gsl_cdf_chisq_P(check.chi2, check.dof) < thresholds.best_fit_p;
+}
+
 /// What the posterior predicts: at the readings, over the controls, and of a discrepancy.
 void add_bands(CaseReport& report, const data::Study& study, const CaseModel& model, const Eigen::MatrixXd& draws,
                std::uint64_t study_seed) {
@@ -253,6 +261,8 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   if (lack) say_lack_of_fit(words, *lack);
   if (found.fits && report.doubt.empty() && found.check.best_fit_p < judged.thresholds.poor_fit_p)
     say_poor_fit(words, found.check);
+  if (found.fits && report.doubt.empty() && too_close(model, found.check, judged.thresholds))
+    say_close_fit(words, found.check);
   report.finding = words.finding;
   report.consequence = words.consequence;
   report.remedy = shown_remedy(words);

@@ -125,6 +125,8 @@ std::vector<std::pair<std::string, std::string>> describe(const VerdictThreshold
       {"posterior predictive p for a fit", fmt::format("at least {:g}", thresholds.predictive_p)},
       {"chi-squared tail of the best fit for a fit", fmt::format("at least {:g}", thresholds.best_fit_p)},
       {"chi-squared tail of a poor fit", fmt::format("below {:g}", thresholds.poor_fit_p)},
+      {"readings closer to the model than their errors say",
+       fmt::format("chance of so small a chi-squared below {:g}", thresholds.best_fit_p)},
       {"combination of traded parameters",
        fmt::format("its sd at most {:g} of that of any of its terms", thresholds.combination_share)},
       {"curved relation",

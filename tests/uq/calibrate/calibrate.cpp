@@ -357,6 +357,20 @@ TEST_CASE("a fit that data of the model's own would seldom give is called poor, 
   CHECK_THAT(found.remedy, Catch::StartsWith("Look first at what the residuals have in common."));
 }
 
+TEST_CASE("errors stated far too large are told by readings that lie too close to the model", "[uq]") {
+  Input input = other_code();
+  const auto with_errors = [&](double factor) {
+    Input read = input;
+    for (data::Observation& point : read.study.observations[0].points) point.standard_errors[0] *= factor;
+    return calibrate_all(read.study, read.table, {.error_scan = {}, .quadrature = false}).report.cases[0];
+  };
+  const CaseReport wide = with_errors(20.0), stated = with_errors(1.0);
+  CHECK_THAT(wide.finding, Catch::Contains("times closer to the model than their errors let expect"));
+  CHECK_THAT(wide.remedy, Catch::Contains("common_error"));
+  CHECK(wide.fits);
+  CHECK_THAT(stated.finding, !Catch::Contains("closer to the model"));
+}
+
 TEST_CASE("repeats that lie together and far from the model are not counted as independent without a word", "[uq]") {
   Input input = other_code();
   data::Parameter noise{.name = "noise", .target = "", .low = 0.1, .high = 10.0, .scale = data::Scale::log};
