@@ -21,6 +21,7 @@ import concurrent.futures
 import csv
 import json
 import pathlib
+import re
 import subprocess
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -36,8 +37,8 @@ CHOICES = {
     "stiffness 1200 N/m": {"contact.stiffness": "1200 N/m"},
 }
 DIAMETERS = {"spread-1131": 1.1314, "spread-566": 0.5657, "spread-400": 0.4}  # mm; dearest last: 20 minutes a run
-# The slice's cross-section as a machine of two augers, 48 mm long, with the slice's mass for each pitch of a trough: 20,080 spheres, 31.5 g. At 300 N/m
-# spheres that a blade's leading edge pinches overlap too deep.
+# The slice's cross-section as a machine of two augers, 48 mm long: 20,080 spheres, 31.5 g, fill 47 % of the room up to the blades' top, as in the slice.
+# At 300 N/m spheres that a blade's leading edge pinches overlap too deep.
 STIFFER = {"contact.stiffness": "600 N/m"}
 MACHINE = STIFFER | {"rig.kind": "machine", "rig.machine_length": "48 mm", "rig.opening": "12 mm", "rig.fill": "20080", "run.start_up_turns": "12",
                      "run.longest": "30 s"}
@@ -48,6 +49,9 @@ KEY = ["sweep", "choice", "material", "friction", "hamaker", "rpm"]
 OUTPUTS = ["torque", "coordination", "axial_flow", "kinetic_energy"]
 # What tells how the torque comes about. Runs of before there were these outputs are made again where they are in question.
 MECHANISM = ["normal_stress", "centre_x", "centre_z", "tool_contacts", "tool_slip", "wall_slip"]
+# What only some runs say: a machine how its powder goes round, any run an overlap deep enough for a warning and outputs whose errors are not known.
+SOME = ["lap_turns", "lap_turns_se", "fill_least", "fill_most", "largest_overlap", "unreliable"]
+LONGER = "; a longer run failed: "  # in the state of a row whose numbers are those of a shorter run
 
 
 def points():
@@ -131,6 +135,20 @@ def rows_there():
     return {tuple(row[name] for name in KEY): row for row in rows}
 
 
+def some_of(found, rpm):
+    """The columns SOME that a run's result has values for."""
+    row = {}
+    if "circulation" in found:
+        lap = found["circulation"]
+        fill = lap["fill_along_first"] + lap["fill_along_second"]
+        row = {"lap_turns": f"{lap['lap_s'] * rpm / 60:.4g}", "lap_turns_se": f"{lap['lap_standard_error_s'] * rpm / 60:.2g}",
+               "fill_least": f"{min(fill):.3g}", "fill_most": f"{max(fill):.3g}"}
+    overlaps = re.findall(r"overlap by more than .*\(largest ([0-9.]+)\)", " ".join(found["warnings"]))
+    if overlaps:
+        row["largest_overlap"] = overlaps[0]
+    return row | {"unreliable": " ".join(name for name in OUTPUTS + MECHANISM if not found["outputs"][name]["reliable"])}
+
+
 def row_of(arguments, point):
     kept = folder_of(arguments, point) / "result.json"
     if not kept.exists():
@@ -144,6 +162,7 @@ def row_of(arguments, point):
         output = found["outputs"][name]
         row[name] = f"{output['mean']:.6g}"
         row[name + "_se"] = f"{output['standard_error']:.3g}"
+    row |= some_of(found, point[5])
     return row | {"bond_number": f"{found['bond_number']:.4g}", "turns": f"{found['measured']['turns']:.4g}", "seed": found["seed"],
                   "settings": found["settings"], "state": found["state"]}
 
@@ -153,16 +172,22 @@ def gather(arguments):
 
     def row(point):
         made, known = row_of(arguments, point), there.get(key_of(point))
+        if not made or not known:
+            return made or known
         # A run that ended before it was long enough for the mechanism's outputs leaves the torque that is known.
-        return known if known and (not made or made["state"].startswith("failed")) else made
+        if made["state"].startswith("failed") and known["torque"]:
+            return known | {"state": known["state"].split(LONGER)[0] + LONGER + made["state"].removeprefix("failed: ")}
+        return made
 
     rows = [one for one in map(row, points()) if one]
-    columns = KEY + [c for o in OUTPUTS + MECHANISM for c in (o, o + "_se")] + [
+    columns = KEY + [c for o in OUTPUTS + MECHANISM for c in (o, o + "_se")] + SOME + [
         "bond_number", "turns", "seed", "settings", "state"]
     with open(HERE / "sweeps.csv", "w", newline="") as file:
         file.write("# made by sweep.py; torque in uN m, coordination in contacts a sphere, axial_flow in g/s, kinetic_energy in uJ,\n"
                    "# normal_stress in Pa, centre_x and centre_z in mm, tool_slip and wall_slip in mm/s, tool_contacts in contacts a sphere;\n"
-                   "# NAME_se: standard error; bond_number: largest pull-off force over weight; turns: of the measured window\n")
+                   "# NAME_se: standard error; bond_number: largest pull-off force over weight; turns: of the measured window;\n"
+                   "# lap_turns: turns in which a machine's powder goes round once; fill_least, fill_most: along a trough, over its mean; largest_overlap: of a radius,\n"
+                   "# where it is above 0.05; unreliable: outputs whose errors are not known; empty also where a run was gathered before there was such a column\n")
         writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
