@@ -11,6 +11,7 @@
 #include "campaign/foretell.hpp"
 #include "campaign/run_point.hpp"
 #include "campaign/training_table.hpp"
+#include "data/atomic_file.hpp"
 
 namespace campaign {
 namespace {
@@ -48,6 +49,7 @@ void work(const Workspace& workspace, const std::vector<PlannedRun>& runs, const
 
 BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                       const BatchOptions& options) {
+  for (const PlannedRun& run : runs) data::require_replaceable(run_path(with_seed(workspace, run.seed), run.point));
   foretell_materials(workspace, runs, static_cast<int>(std::min<std::size_t>(runs.size(), options.jobs)));
   Shared shared{.ledger = Ledger(std::move(table), runs.size())};
   write_tables(workspace, shared.ledger.result.table, options.kept);

@@ -120,8 +120,13 @@ dem::RunResult make_run(const Workspace& workspace, const Point& point, const Po
     dem::write_run(options.path, c, so_far);
   };
   run.frames = options.frames;
+  std::vector<std::string> lacking;  // frames that could not be written: no reason to lose the run
   run.frame = [&](int index, const dem::Simulation& simulation, double time) {
-    dem::write_frame(dem::frame_path(options.frames_folder, index), simulation, time, tag(index));
+    try {
+      dem::write_frame(dem::frame_path(options.frames_folder, index), simulation, time, tag(index));
+    } catch (const data::InputError& error) {
+      lacking.push_back(data::describe(error.problems));
+    }
   };
   const bool goes_on = before && before->result.status != dem::RunStatus::failed;
   const bool judged_anew = goes_on && no_state && dem::long_enough(prepared, before->result.series);
@@ -134,6 +139,7 @@ dem::RunResult make_run(const Workspace& workspace, const Point& point, const Po
   const bool steady = result.status == dem::RunStatus::done && result.summary.state == data::FlowState::steady;
   if (judged_anew || (steady && !options.keep_state)) result.checkpoint = {};
   dem::write_run(options.path, c, result);
+  for (const std::string& what : lacking) result.warnings.push_back("a frame is lacking: " + what);
   return result;
 }
 

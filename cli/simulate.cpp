@@ -9,6 +9,7 @@
 #include "campaign/run_point.hpp"
 #include "cli/command.hpp"
 #include "cli/point_options.hpp"
+#include "data/atomic_file.hpp"
 #include "data/file_name.hpp"
 #include "data/hash.hpp"
 #include "data/interrupt.hpp"
@@ -16,6 +17,7 @@
 #include "data/terminal.hpp"
 #include "dem/reading/target.hpp"
 #include "dem/rig/rig.hpp"
+#include "dem/run/frame_file.hpp"
 #include "dem/run/mixing.hpp"
 #include "dem/run/run_file.hpp"
 #include "dem/walls/stl.hpp"
@@ -32,16 +34,19 @@ struct SimulateOptions {
   bool stl = false;
 };
 
-/// Time in which the powder of two channels goes round once: its mass over the mean of both flows.
+/// Time in which the powder of two channels goes round once, whichever way: its mass over the mean of both flows. None
+/// where this mean is not told from 0.
 struct Lap {
   double time = 0.0, error = 0.0;  ///< s
 };
-Lap lap_of(const dem::Derived& derived, const dem::RunResult& result) {
+std::optional<Lap> lap_of(const dem::Derived& derived, const dem::RunResult& result) {
   const data::SeriesMean& first = dem::output(result, "first_flow");
   const data::SeriesMean& second = dem::output(result, "second_flow");
-  const double flow = 0.5 * (first.mean + second.mean);
+  const double flow = std::abs(0.5 * (first.mean + second.mean));
+  const double error = 0.5 * std::hypot(first.standard_error, second.standard_error);
+  if (!(flow > 2.0 * error)) return {};
   const double time = static_cast<double>(derived.spheres) * derived.mass / flow;
-  return {time, time * 0.5 * std::hypot(first.standard_error, second.standard_error) / std::abs(flow)};
+  return Lap{time, time * error / flow};
 }
 
 nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem::Derived& derived,
@@ -80,9 +85,10 @@ nlohmann::json to_json(const Workspace& workspace, const Point& point, const dem
       const auto* const first = round->fill.data() + k * dem::places_along;
       return std::vector<double>(first, first + dem::places_along);
     };
-    const Lap lap = lap_of(derived, result);
-    json["circulation"] = {{"lap_s", lap.time},
-                           {"lap_standard_error_s", lap.error},
+    const std::optional<Lap> lap = lap_of(derived, result);
+    const auto number = [&](double Lap::*part) { return lap ? nlohmann::json((*lap).*part) : nlohmann::json(nullptr); };
+    json["circulation"] = {{"lap_s", number(&Lap::time)},
+                           {"lap_standard_error_s", number(&Lap::error)},
                            {"mixing_index", round->mixing_index},
                            {"fill_along_first", channel(0)},
                            {"fill_along_second", channel(1)}};
@@ -97,11 +103,13 @@ std::string circulation_text(const dem::Derived& derived, const dem::RunResult& 
   std::string fill;
   for (std::size_t k = 0; k < round->fill.size(); ++k)
     fill += fmt::format("{}{:.2f}", k == 0 ? "" : k == dem::places_along ? " | " : " ", round->fill[k]);
-  const Lap lap = lap_of(derived, result);
+  const std::optional<Lap> lap = lap_of(derived, result);
   return fmt::format(
-      "  a lap takes {}; mixing index of the two channels {:.2f} at the end\n"
+      "  a lap {}; mixing index of the two channels {:.2f} at the end\n"
       "  powder along the first channel | the second, of the mean: {}\n",
-      uq::format_with_error(lap.time, lap.error, "s", uq::Typography::ascii), round->mixing_index, fill);
+      lap ? "takes " + uq::format_with_error(lap->time, lap->error, "s", uq::Typography::ascii)
+          : "is not known: no flow round the two channels is told from none",
+      round->mixing_index, fill);
 }
 
 std::string summary(const Workspace& workspace, const Point& point, const dem::PreparedCase& prepared,
@@ -141,9 +149,24 @@ std::string file_of(const Workspace& workspace, const Point& point) {
   return (fs::path(workspace.out) / ("run-" + name + ".h5")).string();
 }
 
+/// frames, or, where that holds frames of another run or another number of them, frames-HASH: ParaView takes all files of
+/// a folder for one series.
+std::string frames_folder_of(const Workspace& workspace, const Point& point, int count) {
+  namespace fs = std::filesystem;
+  const fs::path usual = fs::path(workspace.out) / "frames";
+  const dem::FrameTag tag{.index = 0,
+                          .count = count,
+                          .seed = run_seed(workspace, point),
+                          .settings = dem::settings_text(case_at(workspace, point))};
+  const std::string first = dem::frame_path(usual.string(), 0);
+  if (!fs::exists(first) || dem::is_frame(first, tag)) return usual.string();
+  const std::string name = data::hash_text(fmt::format("{} {} {}", tag.settings, tag.seed, count)).substr(0, 12);
+  return usual.string() + "-" + name;
+}
+
 /// The run, its progress shown.
 dem::RunResult run_with_progress(const SimulateOptions& options, const Workspace& workspace, const Point& point,
-                                 const std::string& path, std::stop_token stop) {
+                                 const std::string& path, const std::string& frames_folder, std::stop_token stop) {
   data::Progress progress(
       "simulating (at most)", 1000,
       {.style = options.common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic, .counted = false});
@@ -151,7 +174,7 @@ dem::RunResult run_with_progress(const SimulateOptions& options, const Workspace
                    {.path = path,
                     .threads = options.threads,
                     .frames = options.frames,
-                    .frames_folder = (std::filesystem::path(workspace.out) / "frames").string(),
+                    .frames_folder = frames_folder,
                     .stop = std::move(stop),
                     .progress = [&](const dem::RunProgress& now) {
                       progress.set(static_cast<std::uint64_t>(std::lround(1000.0 * now.fraction)));
@@ -175,7 +198,15 @@ data::ExitStatus simulate(const SimulateOptions& options) {
   if (path != out / "run.h5")
     notes.push_back(fmt::format("run.h5 holds another run and is kept; this one is in {}",
                                 std::filesystem::path(path).filename().string()));
-  if (options.frames > 0) make_out(workspace, "frames");
+  std::string frames_folder;
+  if (options.frames > 0) {
+    frames_folder = frames_folder_of(workspace, point, options.frames);
+    const std::string name = std::filesystem::path(frames_folder).filename().string();
+    make_out(workspace, name);
+    for (int k = 0; k < options.frames; ++k) data::require_replaceable(dem::frame_path(frames_folder, k));
+    if (name != "frames")
+      notes.push_back(fmt::format("frames/ holds other frames and is kept; these are in {}/", name));
+  }
   if (options.stl) {
     for (const dem::NamedMesh& mesh : dem::rig_meshes(told.prepared.given()))
       dem::write_stl(mesh.mesh, (out / (data::file_name(mesh.name) + ".stl")).string());
@@ -184,7 +215,7 @@ data::ExitStatus simulate(const SimulateOptions& options) {
       fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point));
   say(common, at);
   for (const std::string& note : notes) say(common, "note: " + note);
-  const dem::RunResult result = run_with_progress(options, workspace, point, path, interrupt.token());
+  const dem::RunResult result = run_with_progress(options, workspace, point, path, frames_folder, interrupt.token());
   if (result.status == dem::RunStatus::interrupted) {
     say(common, "interrupted; the same command goes on from here (" + path + ")");
     return data::ExitStatus::interrupted;

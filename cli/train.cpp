@@ -71,7 +71,8 @@ data::ExitStatus tell_made(const Common& common, const Workspace& workspace, con
   answer(common,
          fmt::format("{}, {} in all: {}", data::counted(made.finished, "new run"), made.table.rows.size(), table));
   if (!made.failures.empty()) return data::ExitStatus::warning;
-  if (workspace.unsteady == Unsteady::use) return data::ExitStatus::done;  // short runs were asked for
+  if (workspace.unsteady == Unsteady::use)  // short runs were asked for
+    return made.warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
   if (made.unsteady > 0)
     say(common, fmt::format("warning: {} of the new runs are not of the steady flow and train nothing "
                             "(training.unsteady = \"use\" takes them)",
@@ -152,7 +153,7 @@ Action add_train(CLI::App& program) {
       ->add_option("--share", options->share,
                    "with --until: the part of the posterior variance that may stay the surrogate's (default 0.1)")
       ->needs(until)
-      ->check(CLI::Range(0.001, 1.0));
+      ->check(number_in(0.001, 1.0, "a part from 0.001 to 1"));
   add_slurm_options(*command, options->slurm);
   return [options, command] {
     if (!options->slurm.task_list.empty()) return make_task(options->common, options->slurm);

@@ -18,7 +18,8 @@
 namespace data {
 namespace {
 
-constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
+/// A terminal's and a system's; the last three are what batch systems send before they end a job.
+constexpr std::array signals{SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1, SIGUSR2};
 std::atomic<int> pipe_end{-1};
 std::atomic<int> signals_seen{0};
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -40,7 +41,7 @@ void on_signal_without_guard(int) {
 }
 
 /// SIGHUP stays ignored where it is, as under nohup. `old`: what was there before, or nullptr.
-void listen_with(void (*handler)(int), std::array<struct sigaction, 3>* old) {
+void listen_with(void (*handler)(int), std::array<struct sigaction, signals.size()>* old) {
   struct sigaction action {};
   action.sa_handler = handler;
   sigemptyset(&action.sa_mask);
@@ -59,7 +60,7 @@ void exit_on_interrupt() { listen_with(on_signal_without_guard, nullptr); }
 
 struct InterruptGuard::Listener {
   int ends[2] = {-1, -1};
-  std::array<struct sigaction, 3> old{};
+  std::array<struct sigaction, signals.size()> old{};
   std::thread thread;
 };
 

@@ -27,7 +27,13 @@ void say_gap(Forecast& f, const std::string& between, double width) {
 void say_immersion(Forecast& f, const std::string& tool, double lowest) {
   constexpr double enough = 1.8;  // of the largest sphere
   const double depth = *f.surface - lowest;
-  if (depth < 0.0 || depth >= enough * f.largest) return;
+  if (depth >= enough * f.largest) return;
+  if (depth < 0.0) {
+    f.warnings.push_back(fmt::format(
+        "{} ends {} mm above the bed: it may never touch the powder, and the torque be 0 (raise the fill until it dips {} mm)",
+        tool, mm(-depth), mm(enough * f.largest)));
+    return;
+  }
   f.warnings.push_back(fmt::format(
       "{} dips only {} mm into the bed, {:.2g} of the largest sphere: the bed settles below it, and the torque falls "
       "for long (raise the fill until it dips {} mm)",

@@ -226,11 +226,16 @@ double percent_lost(const Room& room, const BuiltRig& rig) {
   return 100.0 * static_cast<double>(lost) / static_cast<double>(asked);
 }
 
-/// A bed of this volume [m3], poured where the lowest sphere starts.
+/// A bed of this volume [m3], poured where the spheres start, first where the lowest one does.
 Poured pour_bed(const Room& room, const BuiltRig& rig, double volume) {
+  constexpr std::size_t looked_at = 200;
   const Vec3 lowest = *std::min_element(rig.position.begin(), rig.position.end(),
                                         [&](Vec3 a, Vec3 b) { return dot(rig.down, a) > dot(rig.down, b); });
-  return pour(room, room.at(lowest), volume);
+  std::vector<std::size_t> starts{room.at(lowest)};
+  const std::size_t every = rig.position.size() / looked_at + 1;
+  for (std::size_t k = 0; k < rig.position.size(); k += every)
+    if (const std::size_t cell = room.at(rig.position[k]); cell != room.total()) starts.push_back(cell);
+  return pour(room, starts, volume);
 }
 
 /// Problems of powder that does not stay in the vessel.

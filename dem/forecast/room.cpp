@@ -187,27 +187,68 @@ Room make_room(const BuiltRig& rig, double smallest) {
   return room;
 }
 
-Poured pour(const Room& room, std::size_t start, double volume) {
-  Poured bed;
-  bed.wet.assign(room.total(), 0);
-  // Down to where it first stands: to a wide cell, since the powder does not flow on from the narrow ones under it.
+namespace {
+
+/// Where powder from a cell first stands: the lowest wide cell that it runs down to, since it does not flow on from the
+/// narrow ones under it. `open`: the wide cell from which it leaves the box before.
+struct Bottom {
+  std::size_t cell;
+  std::optional<std::size_t> open;
+};
+
+Bottom bottom_under(const Room& room, std::size_t start) {
   std::optional<std::size_t> lowest;
   for (Flood flood(room, start); !flood.empty();) {
     const Waiting w = flood.next();
     if (room.narrow[w.cell]) continue;
     if (lowest && w.height > room.height(*lowest) + 1e-9 * room.cell.z) break;
     if (!lowest || w.height < room.height(*lowest)) lowest = w.cell;
-    if (flood.open()) {
-      bed.leaves = true;
-      bed.leaves_at = room.centre(w.cell);
-      return bed;
-    }
+    if (flood.open()) return {w.cell, w.cell};
   }
-  const std::size_t bottom = lowest.value_or(start);
+  return {lowest.value_or(start), {}};
+}
+
+/// The height of a layer of cells.
+double layer_of(const Room& room) {
+  return std::abs(room.down.x) * room.cell.x + std::abs(room.down.y) * room.cell.y +
+         std::abs(room.down.z) * room.cell.z;
+}
+
+bool overlap(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+  for (std::size_t k = 0; k < a.size(); ++k)
+    if (a[k] != 0 && b[k] != 0) return true;
+  return false;
+}
+
+/// The cells that fill up from a bottom before the powder runs over into a place lower than its surface.
+std::vector<std::uint8_t> chamber_of(const Room& room, std::size_t bottom) {
+  std::vector<std::uint8_t> chamber(room.total(), 0);
+  const double layer = layer_of(room);
+  double top = room.height(bottom);
+  for (Flood flood(room, bottom); !flood.empty();) {
+    const Waiting w = flood.next();
+    if (!room.narrow[w.cell] && w.height < top - 0.5 * layer) break;
+    top = std::max(top, w.height);
+    chamber[w.cell] = 1;
+    if (flood.open()) break;
+  }
+  return chamber;
+}
+
+}  // namespace
+
+Poured pour(const Room& room, std::size_t start, double volume) {
+  Poured bed;
+  bed.wet.assign(room.total(), 0);
+  const Bottom stands = bottom_under(room, start);
+  if (stands.open) {
+    bed.leaves = true;
+    bed.leaves_at = room.centre(*stands.open);
+    return bed;
+  }
+  const std::size_t bottom = stands.cell;
   // Up from there: `wet` as far as the powder goes, and on until the vessel runs over.
-  const double cell = room.volume();
-  const double layer =
-      std::abs(room.down.x) * room.cell.x + std::abs(room.down.y) * room.cell.y + std::abs(room.down.z) * room.cell.z;
+  const double cell = room.volume(), layer = layer_of(room);
   double filled = 0.0, top = room.height(bottom), level = top, in_layer = 0.0, of_layer = 0.0;
   for (Flood flood(room, bottom); !flood.empty();) {
     const Waiting w = flood.next();
@@ -221,8 +262,8 @@ Poured pour(const Room& room, std::size_t start, double volume) {
       bed.wet[w.cell] = 1;
       bed.leaves = flood.open();
       bed.leaves_at = room.centre(w.cell);
-    } else if (std::abs(w.height - level) < 0.5 * layer) {
-      of_layer += cell;
+    } else if (top < level + 0.5 * layer && std::abs(w.height - level) < 0.5 * layer) {
+      of_layer += cell;  // not of another chamber, which fills once this one has run over
     }
     filled += cell;
     // Powder that has run over a rim is below the top: it does not count as held, unless it fills up to the top again.
@@ -231,6 +272,45 @@ Poured pour(const Room& room, std::size_t start, double volume) {
   }
   bed.surface = level - 0.5 * layer + layer * (of_layer > 0.0 ? in_layer / of_layer : 0.0);
   return bed;
+}
+
+Poured pour(const Room& room, const std::vector<std::size_t>& starts, double volume) {
+  Poured whole = pour(room, starts.front(), volume);
+  if (whole.leaves) return whole;
+  struct Pool {
+    std::size_t bottom;
+    double volume;
+    std::vector<std::uint8_t> chamber;
+  };
+  std::vector<Pool> pools;
+  for (const std::size_t start : starts) {
+    const std::size_t bottom = bottom_under(room, start).cell;
+    auto pool = std::find_if(pools.begin(), pools.end(), [&](const Pool& one) { return one.chamber[bottom] != 0; });
+    if (pool == pools.end()) pool = pools.insert(pool, Pool{bottom, 0.0, chamber_of(room, bottom)});
+    pool->volume += volume / static_cast<double>(starts.size());
+  }
+  if (pools.size() == 1) return whole;
+  // Pools that run over into another one's chamber are one with it.
+  std::vector<Poured> beds;
+  for (std::size_t k = 0; k < pools.size(); ++k) {
+    beds.resize(k);
+    beds.push_back(pour(room, pools[k].bottom, pools[k].volume));
+    const auto met = std::find_if(pools.begin(), pools.end(), [&](const Pool& other) {
+      return &other != &pools[k] && overlap(beds[k].wet, other.chamber);
+    });
+    if (met == pools.end()) continue;
+    const std::size_t other = static_cast<std::size_t>(met - pools.begin()), kept = std::min(k, other);
+    pools[kept].volume += pools[std::max(k, other)].volume;
+    pools.erase(pools.begin() + static_cast<std::ptrdiff_t>(std::max(k, other)));
+    k = kept - 1;  // and from there on again
+  }
+  whole.wet.assign(room.total(), 0);
+  whole.surface = 0.0;
+  for (std::size_t k = 0; k < pools.size(); ++k) {
+    for (std::size_t cell = 0; cell < room.total(); ++cell) whole.wet[cell] |= beds[k].wet[cell];
+    whole.surface += pools[k].volume / volume * beds[k].surface;
+  }
+  return whole;
 }
 
 bool falls_out(const Room& room, Vec3 point) {

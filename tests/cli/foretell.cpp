@@ -1,4 +1,6 @@
 // What check, simulate and train say of a rig before anything runs, on rigs that are nonsense in one way each.
+#include <fmt/core.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -84,6 +86,10 @@ TEST_CASE("a slice's nonsense is refused or warned of") {
   CHECK_THAT(refused({"rig.trough_radius=\"0.3 mm\"", "rig.blade_radius=\"0.2 mm\"", "rig.shaft_radius=\"0.1 mm\""}),
              Contains("rig.trough_radius"));
   CHECK_THAT(refused({"rig.fill=40"}), Contains("never touches the powder"));
+  const auto above = check(folder, quick, {"rig.fill=130"});  // whose torque is exactly 0
+  INFO(above.err);
+  CHECK(above.status == 2);
+  CHECK_THAT(above.err, Contains("mm above the bed: it may never touch the powder"));
   const auto narrow = check(folder, quick, {"rig.trough_radius=\"4 mm\"", "rig.fill=200"});
   INFO(narrow.err);
   CHECK(narrow.status == 2);
@@ -133,6 +139,30 @@ TEST_CASE("simulate says where the study has no runs, keeps another point's file
   folder.write("out/run.h5", "not a run");
   simulate("rpm=100");
   CHECK(folder.read("out/run.h5") == "not a run");
+}
+
+TEST_CASE("frames of one run are one series: another run's go to a folder of their own, and none costs the run") {
+  const Folder folder;
+  const auto simulate = [&](const char* friction, const char* count, const char* out) {
+    return folder.demcal(with_settings(
+        {"simulate", quick, "--out", out, "--frames", count, "--at", fmt::format("rpm=100,friction={}", friction)},
+        {"rig.fill=200", "run.start_up=\"0.004 s\"", "run.shortest=\"0.008 s\"", "run.shortest_turns=0",
+         "run.start_up_turns=0", "run.longest=\"0.012 s\"", "run.window=\"0.5 ms\"",
+         "run.sample_interval=\"0.1 ms\""}));
+  };
+  simulate("0.3", "3", "out");
+  const std::string first = folder.read("out/frames/0000.vtkhdf");
+  CHECK_THAT(simulate("0.4", "2", "out").err, Contains("frames/ holds other frames and is kept; these are in frames-"));
+  CHECK_THAT(simulate("0.3", "2", "out").err, Contains("frames/ holds other frames"));  // another number of them
+  CHECK(folder.read("out/frames/0000.vtkhdf") == first);
+  CHECK(std::distance(fs::directory_iterator(folder.path / "out/frames"), {}) == 3);
+  CHECK_THAT(simulate("0.3", "3", "out").err, !Contains("frames/ holds"));
+
+  fs::create_directories(folder.path / "other/frames/0001.vtkhdf");
+  const auto refused = simulate("0.3", "2", "other");
+  CHECK(refused.status == 73);  // before anything is computed
+  CHECK_THAT(refused.err, Contains("0001.vtkhdf"));
+  CHECK_FALSE(fs::exists(folder.path / "other/run.h5"));
 }
 
 TEST_CASE("a torque that is exactly 0 is said, with status 2") {
