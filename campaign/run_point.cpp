@@ -1,11 +1,14 @@
 #include "campaign/run_point.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
 
 #include "campaign/foretell.hpp"
 #include "data/atomic_file.hpp"
+#include "data/origin.hpp"
 #include "dem/contact/isa.hpp"
 #include "dem/reading/prepare.hpp"
 #include "dem/reading/target.hpp"
@@ -96,6 +99,7 @@ dem::RunResult make_run(const Workspace& workspace, const Point& point, const Po
   const dem::Case& c = prepared.given();
   const std::uint64_t seed = run_seed(workspace, point);
   data::require_replaceable(options.path);
+  const bool damaged = data::origin_of(options.path) == data::Origin::changed;
   std::optional<dem::SavedRun> before = earlier(options.path, c, seed);
   if (before && !has_all(*before, workspace.study)) before.reset();
   const std::vector<std::uint64_t> frames =
@@ -139,6 +143,8 @@ dem::RunResult make_run(const Workspace& workspace, const Point& point, const Po
   const bool steady = result.status == dem::RunStatus::done && result.summary.state == data::FlowState::steady;
   if (judged_anew || (steady && !options.keep_state)) result.checkpoint = {};
   dem::write_run(options.path, c, result);
+  if (damaged)
+    result.warnings.push_back(fmt::format("{} was damaged, and the run is made again", data::shown_path(options.path)));
   for (const std::string& what : lacking) result.warnings.push_back("a frame is lacking: " + what);
   return result;
 }

@@ -34,6 +34,13 @@ void SlurmCommands::require_programs() const {
          "start demcal where Slurm's programs are, on a login node of the cluster (Debian: apt-get install "
          "slurm-client), or train here, without --slurm"});
   }
+  // A controller that is down comes back; programs that know of no cluster never will.
+  const data::ProgramEnd config = run({"scontrol", "show", "config"});
+  const std::string said = last_line(config.err);
+  if (config.exit_status != 0 && said.find("onfiguration") != std::string::npos)
+    throw data::InputError(data::ExitStatus::missing_program,
+                           {"scontrol", fmt::format("knows of no cluster here: {}", said),
+                            "start demcal on a login node of the cluster, or name its slurm.conf in SLURM_CONF"});
 }
 
 std::optional<int> SlurmCommands::max_array_size() const {

@@ -15,7 +15,7 @@ class SlurmCommands {
   using Start = std::function<data::ProgramEnd(const data::ProgramCall&)>;
   explicit SlurmCommands(Start start) : start_(std::move(start)) {}
 
-  /// Throws InputError (69) where sbatch or squeue cannot be started.
+  /// Throws InputError (69) where sbatch, squeue or scontrol cannot be started, or know of no cluster.
   void require_programs() const;
 
   /// The cluster's MaxArraySize; none while the controller does not answer.

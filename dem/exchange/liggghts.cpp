@@ -264,11 +264,13 @@ std::string script(const Case& c, const Derived& d, const BuiltRig& rig, const T
   return text;
 }
 
-/// Columns of a file of `fix ave/time` after the step, without what some of them write at step 0.
+/// Columns of a file of `fix ave/time` after the step, without what some of them write at step 0. The steps follow each other
+/// evenly, or samples are lacking.
 std::vector<std::vector<double>> averages(const std::string& path, std::size_t columns) {
   const std::string text = data::read_file(path);
   std::vector<std::vector<double>> found(columns);
   std::size_t line_number = 0;
+  double last = 0.0, every = 0.0;  // steps
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     std::string line = text.substr(at, end - at);
@@ -278,7 +280,17 @@ std::vector<std::vector<double>> averages(const std::string& path, std::size_t c
     if (line.empty() || line[0] == '#' || !whole) continue;
     const char* place = line.c_str();
     char* next = nullptr;
-    if (std::strtod(place, &next) == 0.0) continue;
+    const double step = std::strtod(place, &next);
+    if (step == 0.0) continue;
+    if (last > 0.0 && step - last != every && every > 0.0)
+      throw data::InputError(
+          data::ExitStatus::bad_data,
+          {fmt::format("{}:{}", path, line_number),
+           fmt::format("step {:.0f} comes after {:.0f}, but a sample every {:.0f} steps before: samples are lacking",
+                       step, last, every),
+           "let LIGGGHTS run without a break, and collect the folder again"});
+    if (last > 0.0) every = step - last;
+    last = step;
     for (std::size_t k = 0; k < columns; ++k) {
       place = next;
       const double value = std::strtod(place, &next);

@@ -198,9 +198,10 @@ std::vector<data::Problem> problems_of(const Case& c) {
                                  m.partition_height, m.sill),
                      "make the partition higher"});
   if (!(m.sill > -rig.trough_radius))
-    found.push_back({"rig.sill",
-                     fmt::format("is {:g} m, below the trough's bottom, {:g} m", m.sill, -rig.trough_radius),
-                     "raise the sill"});
+    found.push_back(
+        {"rig.sill",
+         fmt::format("is {:g} m, but must lie above the trough's bottom, {:g} m", m.sill, -rig.trough_radius),
+         "raise the sill"});
   if (!(m.opening >= 3.0 * size))
     found.push_back({"rig.opening",
                      fmt::format("is {:g} m long, too short for three of the largest sphere, {:g} m", m.opening, size),

@@ -64,8 +64,9 @@ struct FakeSlurm {
   std::function<void(const std::string& name, int task, Job&)> step = [](const std::string&, int, Job&) {};
   /// What sbatch says instead of taking the job; empty: it takes it.
   std::function<std::string(int tasks)> refuse = [](int) { return ""; };
-  bool silent = false;          ///< squeue and scontrol do not answer
-  bool takes_silently = false;  ///< sbatch takes the job, and says that it has no answer
+  bool silent = false;           ///< squeue and scontrol do not answer
+  bool without_cluster = false;  ///< its programs have no configuration
+  bool takes_silently = false;   ///< sbatch takes the job, and says that it has no answer
   std::function<void()> on_look = [] {};
 
   /// The names of the runs of a task, from its list.
@@ -80,6 +81,8 @@ struct FakeSlurm {
   data::ProgramEnd start(const data::ProgramCall& call) {
     const std::string& program = call.words.front();
     if (call.words.back() == "--version") return {.out = "slurm 22.05.8\n"};
+    if (without_cluster)
+      return {.exit_status = 1, .err = program + ": fatal: Could not establish a configuration source\n"};
     if (program == "sbatch") return submit(call.words);
     if (silent) return {.exit_status = 1, .err = "slurm_load_jobs error: Unable to contact slurm controller\n"};
     if (program == "scontrol") return {.out = fmt::format("MaxArraySize            = {}\n", max_array_size)};

@@ -2,7 +2,9 @@
 #include "campaign/run_point.hpp"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 
+#include "data/atomic_file.hpp"
 #include "dem/run/run_file.hpp"
 #include "tests/campaign/fake_slurm.hpp"
 #include "tests/temporary.hpp"
@@ -76,4 +78,37 @@ TEST_CASE(
     const std::string path = run_path(workspace, runs[0].point);
     CHECK(is_done(workspace, runs[0].point, path));  // a campaign that is started again does not try it again
   }
+}
+
+TEST_CASE("a damaged run is made again and named, a frame that cannot be written costs no run") {
+  const TemporaryFolder folder;
+  const Workspace workspace = test::small_study(folder.path("out"), "60");
+  const PlannedRun run = test::planned(workspace, 1).front();
+  const std::string path = run_path(workspace, run.point);
+  std::filesystem::create_directories(folder.path("frames/0001.vtkhdf/full"));
+  const dem::RunResult whole =
+      run_point(workspace, run.point, {.path = path, .frames = 2, .frames_folder = folder.path("frames")});
+  REQUIRE(!whole.warnings.empty());
+  CHECK_THAT(whole.warnings.back(), Contains("a frame is lacking") && Contains("0001.vtkhdf"));
+  CHECK(is_done(workspace, run.point, path));
+
+  std::string bytes = data::read_file(path);
+  bytes[bytes.size() / 2] ^= 1;
+  std::filesystem::remove(path);
+  data::write_bytes(path, bytes);
+  const dem::RunResult again = run_point(workspace, run.point, {.path = path});
+  REQUIRE(!again.warnings.empty());
+  CHECK_THAT(again.warnings.back(), Contains("was damaged, and the run is made again"));
+  CHECK(again.series.torque == whole.series.torque);
+}
+
+TEST_CASE("a file of somebody else's in the place of a run is refused before any run is made") {
+  const TemporaryFolder folder;
+  const Workspace workspace = test::small_study(folder.path("out"), "60");
+  make_out(workspace, "runs");
+  const std::vector<PlannedRun> runs = test::planned(workspace, 2);
+  data::write_bytes(run_path(workspace, runs[1].point), "mine");
+  CHECK_THAT(failure_of(folder, [&] { run_batch(workspace, runs, data::empty_table(workspace.study), {.jobs = 1}); }),
+             Contains("73:") && Contains(".h5"));
+  CHECK_FALSE(std::filesystem::exists(run_path(workspace, runs[0].point)));
 }

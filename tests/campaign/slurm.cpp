@@ -293,6 +293,14 @@ TEST_CASE("a job that sbatch refuses is an error with sbatch's words, and a miss
       Contains("69: sbatch: cannot be started") && Contains("slurm-client"));
 }
 
+TEST_CASE("Slurm's programs without a cluster are no controller that will answer again") {
+  Site site(1);
+  site.slurm.without_cluster = true;
+  CHECK_THAT(failure_of(site.folder, [&] { site.follow(); }), Contains("69: scontrol: knows of no cluster here") &&
+                                                                  Contains("configuration source") &&
+                                                                  Contains("SLURM_CONF"));
+}
+
 // Processor time: the machine may be busy with other work.
 TEST_CASE("ten thousand finished runs are collected in under a minute", "[slow]") {
   Site site(10000);

@@ -129,7 +129,7 @@ TEST_CASE("the mean that comes back is that of the samples after the start-up, a
   const Folder folder;
   REQUIRE(folder.demcal({"export", quick, "case", "--to", "liggghts", "--quiet", "--at", "hamaker=0,rpm=300"}).status ==
           0);
-  const auto write = [&](int samples) {
+  const auto write = [&](int samples, int gap = 0) {  // samples lacking from the 2000th on
     std::ostringstream torque, state;
     torque << "# Time-averaged data for fix torque\n# TimeStep v_torque\n";
     state << "# Time-averaged data for fix state\n# TimeStep c_coordination v_energy\n0 0 0\n";
@@ -138,6 +138,7 @@ TEST_CASE("the mean that comes back is that of the samples after the start-up, a
     for (int k = 1; k <= samples; ++k) {
       random = random * 1664525u + 1013904223u;
       const double noise = static_cast<double>(random >> 8) / 16777216.0 - 0.5;
+      if (k >= 2000 && k < 2000 + gap) continue;
       torque << 71 * k << " " << (k < 1000 ? 4e-6 : 2e-6) * (1.0 + 0.2 * noise) << "\n";
       state << 71 * k << " " << 2.4 + 0.01 * noise << " " << 1e-7 * (1.0 + 0.1 * noise) << "\n";
     }
@@ -154,4 +155,9 @@ TEST_CASE("the mean that comes back is that of the samples after the start-up, a
   const auto json = nlohmann::json::parse(outcome.out);
   CHECK(json["state"] == "steady");
   CHECK(json["torque"]["mean"].get<double>() == Approx(2.0).epsilon(0.01));
+  const std::string row = folder.read("back/liggghts.csv");
+  write(12000, 1000);
+  CHECK_THAT(folder.says({"export", quick, "case", "--collect", "--out", "back"}, 65),
+             Contains("torque.dat:2002: step 213000 comes after 141929") && Contains("samples are lacking"));
+  CHECK(folder.read("back/liggghts.csv") == row);
 }

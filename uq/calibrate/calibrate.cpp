@@ -3,9 +3,12 @@
 #include <fmt/core.h>
 
 #include <chrono>
+#include <numeric>
+#include <thread>
 
 #include "data/error.hpp"
 #include "uq/calibrate/data_check.hpp"
+#include "uq/calibrate/effort.hpp"
 #include "uq/calibrate/without_runs.hpp"
 #include "uq/findings/study_units.hpp"
 #include "uq/findings/thresholds.hpp"
@@ -129,19 +132,25 @@ CalibrationReport report_of_runs(const data::Study& study, const LookedAt& looke
   return report;
 }
 
-/// Tells how far a calibration is.
+/// Tells how far a calibration is. Lengths are seconds, as far as they can be foretold.
 class Steps {
  public:
   Steps(const CalibrateOptions& options, double length) : progress_(options.progress), length_(length) {}
-  void begin(std::string step, double length = 1.0) {
+  void begin(std::string step, double length) {
     step_ = std::move(step);
     from_ = to_;
-    to_ += length / length_;
+    to_ += length;
     tell(0.0);
   }
   /// Reports how much of the current step is done.
   void tell(double share) const {
-    if (progress_) progress_(step_, from_ + share * (to_ - from_));
+    if (progress_) progress_(step_, (from_ + share * (to_ - from_)) / length_);
+  }
+  /// The current step is done and took so long, whatever was foretold.
+  void took(double seconds) {
+    length_ += seconds - (to_ - from_);
+    to_ = from_ + seconds;
+    tell(1.0);
   }
 
  private:
@@ -150,6 +159,17 @@ class Steps {
   double length_, from_ = 0.0, to_ = 0.0;
 };
 
+/// About how long each case takes, s: its sampling, and what a small one takes.
+std::vector<double> lengths_of_cases(const data::Study& study, const data::RunTable& table,
+                                     const CalibrateOptions& options) {
+  constexpr double at_least = 1.0;
+  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
+  std::vector<double> lengths;
+  for (const data::CalibrationCase& one : study.cases)
+    lengths.push_back(at_least + sampling_seconds(study, one, table, options.surrogates) / std::max(1, threads));
+  return lengths;
+}
+
 }  // namespace
 
 Calibration calibrate_all(const data::Study& study, const data::RunTable& table, const CalibrateOptions& options) {
@@ -157,11 +177,13 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
     throw data::InputError(data::ExitStatus::bad_study, {study.file, "the study has no [[calibrate]] case",
                                                          "add one: what to free, given which observations"});
   const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const double scan = static_cast<double>(options.error_scan.size());  // as long as a case for each error
-  Steps steps(options, 1.0 + static_cast<double>(study.cases.size()) * (1.0 + scan));
+  const std::vector<double> lengths = lengths_of_cases(study, table, options);
+  Steps steps(options, 1.0 + (1.0 + scan) * std::accumulate(lengths.begin(), lengths.end(), 0.0));
 
   // The surrogates, and what they and the data are worth.
-  steps.begin("surrogates");
+  steps.begin("surrogates", 1.0);
   const LookedAt looked_at = look_at(study, table, options);
   SurrogateOptions learning = options.surrogates;
   learning.fit.seed = seed_of(study, options);
@@ -172,11 +194,12 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   CalibrationReport& report = result.report;
   const std::vector<Emulator> emulators = emulators_of(result.surrogates);
   const std::vector<FittedSurrogate> others = without_outlying(study, looked_at.rows, learning, result.surrogates);
+  steps.took(seconds());
   const Basis basis{.study = study, .findings = looked_at.findings, .emulators = emulators};
 
   // Each case, and each again with other errors of its measurement.
   for (std::size_t index = 0; index < study.cases.size(); ++index) {
-    steps.begin("case " + study.cases[index].name);
+    steps.begin("case " + study.cases[index].name, lengths[index]);
     CalibrateOptions own = options;
     own.sampling_progress = [&](double share) { steps.tell(0.9 * share); };
     result.cases.push_back(sample_case(study, emulators, index, own));
@@ -186,7 +209,7 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
     own.identify.unsupported = unsupported_in(sampled, without);
     report.cases.push_back(whole_report(basis, sampled, index, std::move(without), own));
     if (options.error_scan.empty()) continue;
-    steps.begin("error scan of case " + study.cases[index].name, scan);
+    steps.begin("error scan of case " + study.cases[index].name, scan * lengths[index]);
     if (!report.cases.back().doubt.empty()) continue;  // what another error would give is as doubtful
     own.progress = [&](const std::string&, double share) { steps.tell(share); };
     for (auto& one : scan_errors(study, sampled, index, own)) report.error_scan.push_back(std::move(one));
@@ -198,8 +221,7 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   for (auto& threshold : describe(SupportThresholds{})) report.thresholds.push_back(std::move(threshold));
   report.provenance.emplace_back("seed", std::to_string(seed_of(study, options)));
   report.provenance.emplace_back("runs in the table", std::to_string(data::used_rows(looked_at.rows)));
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-  report.provenance.emplace_back("calibration time", fmt::format("{:.1f} s", elapsed.count()));
+  report.provenance.emplace_back("calibration time", fmt::format("{:.1f} s", seconds()));
   if (options.progress) options.progress("done", 1.0);
   return result;
 }

@@ -76,6 +76,11 @@ Load load_of(const data::Study& study, const data::CalibrationCase& one, const d
 
 }  // namespace
 
+double sampling_seconds(const data::Study& study, const data::CalibrationCase& one, const data::RunTable& table,
+                        const SurrogateOptions& options) {
+  return load_of(study, one, table, options).seconds(1.0, 1.0);
+}
+
 std::vector<std::string> effort_notes(const data::Study& study, const data::RunTable& table,
                                       const SurrogateOptions& options, const EffortLimits& limits) {
   const double machine = limits.memory > 0.0 ? limits.memory : data::machine_memory();

@@ -20,6 +20,10 @@ struct EffortLimits {
   double seconds = 600.0;  ///< time of a case's sampling above which it is reported
 };
 
+/// The processor time [s] that the sampling of a case takes, by the formula above.
+double sampling_seconds(const data::Study& study, const data::CalibrationCase& one, const data::RunTable& table,
+                        const SurrogateOptions& options);
+
 /// A sentence for each case whose sampling takes long: how long, why, and what to thin. Throws data::InputError (78)
 /// where a surrogate's fit needs more memory than this machine has.
 std::vector<std::string> effort_notes(const data::Study& study, const data::RunTable& table,
