@@ -72,7 +72,7 @@ TEST_CASE("of a straight line the lack of fit is that of the textbook", "[uq]") 
   }
 }
 
-TEST_CASE("repeats that share an error, and a model that is off, lack fit; clean readings do as seldom as p says",
+TEST_CASE("repeats that share an error, and a model that is off, lack fit, and clean readings do as seldom as p says",
           "[uq]") {
   int clean = 0, shared = 0, bent = 0;
   for (std::uint32_t set = 0; set < 100; ++set) {
