@@ -74,7 +74,7 @@ Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, 
   std::map<std::string, int> rows_of;
   std::vector<Point> lacking;  // points whose rows lack an output that the study has by now
   for (const data::RunRow& row : table.rows) {
-    if (!row.settings.empty() && row.seed == workspace.study.seed && data::lacks_output(table, row)) {
+    if (simulated && !row.settings.empty() && row.seed == workspace.study.seed && data::lacks_output(table, row)) {
       lacking.push_back({row.material, row.inputs});
       continue;
     }

@@ -16,9 +16,10 @@ constexpr int point_digits = 5;  ///< significant digits of a point's values in 
 std::vector<Point> training_design(const Workspace& workspace, const std::string& material, int first, int runs);
 
 /// The points to simulate now: points without a row in `table`, or with a row that is not of the steady flow and whose
-/// run would now go on for longer, or one that lacks an output which the study has by now. First come those that an unfinished campaign left in OUT/design.csv, then the
-/// study's own design. When nothing was left unfinished, further points are added up to `runs`, shared among the
-/// materials. `runs` above 0 is also the most.
+/// run would now go on for longer, or with one that lacks an output which the study has by now. First come those that
+/// OUT/design.csv lists, as an unfinished campaign left it or somebody wrote it, then the study's own design. When
+/// nothing was left unfinished, further points are added up to `runs`, shared among the materials. `runs` above 0 is
+/// also the most.
 struct Campaign {
   std::vector<Point> points;
   std::vector<Point> later;  ///< points of OUT/design.csv that are not made now, and stay in it
