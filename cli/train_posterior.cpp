@@ -137,8 +137,8 @@ double parse_duration(const std::string& text, const std::string& place) {
     static_cast<void>(std::stod(text, &used));
     std::string unit = text.substr(used);
     unit.erase(0, unit.find_first_not_of(' '));
-    const double seconds = data::parse_unit(unit.empty() ? "s" : unit).to_si(text.substr(0, used));
-    if (data::convertible(unit.empty() ? "s" : unit, "s") && seconds > 0.0) return seconds;
+    if (!unit.empty() && data::convertible(unit, "s"))
+      if (const double seconds = data::parse_unit(unit).to_si(text.substr(0, used)); seconds > 0.0) return seconds;
   } catch (const std::exception&) {
   }
   throw data::InputError(data::ExitStatus::usage,

@@ -52,7 +52,11 @@ void find_range(const Section& section, Parameter& parameter, const Usual& usual
   parameter.high = bound("high", own_range ? 1.0 : high);
   if (logarithmic || (prior.kind == PriorKind::log_uniform && parameter.low > 0.0)) parameter.scale = Scale::log;
   if (!(parameter.low < parameter.high))
-    section.problem("low", "leaves nothing below high", "choose low < high, and high above what is physical");
+    section.has("low") || section.has("high")
+        ? section.problem("low", "leaves nothing below high", "choose low < high, and high above what is physical")
+        : section.problem(
+              "mean", fmt::format("{:g} leaves nothing above {:g}, the least that is physical", prior.mean, usual.low),
+              "correct the mean, or state low and high");
 }
 
 /// A table of a prior; `usual.mean` stands in for a missing mean.
