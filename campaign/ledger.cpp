@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "dem/run/summary.hpp"
+
 namespace campaign {
 
 Ledger::Ledger(data::RunTable table, std::size_t runs) {
@@ -13,7 +15,10 @@ Ledger::Ledger(data::RunTable table, std::size_t runs) {
 void Ledger::take(std::size_t index, const Workspace& own, const Point& point, const dem::RunResult& run,
                   data::Progress* progress) {
   const std::string what = fmt::format("{} {}", point.material, describe(own.study, point));
-  for (const std::string& warning : run.warnings) result.warnings.push_back(what + ": " + warning);
+  // Where short runs were asked for, it is no news that they are short.
+  const std::string expected = own.unsteady == Unsteady::use ? dem::unsteady_warning(run.summary) : "";
+  for (const std::string& warning : run.warnings)
+    if (warning != expected) result.warnings.push_back(what + ": " + warning);
   if (run.status == dem::RunStatus::failed) {
     take_failure(index, what + ": " + run.reason, progress);
     return;

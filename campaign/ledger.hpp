@@ -26,9 +26,9 @@ struct BatchResult {
   std::size_t unsteady = 0;           ///< finished runs that are not of the steady flow
   std::vector<bool> ended;            ///< per run: finished or failed
   std::vector<std::string> failures;  ///< point and reason of each failed run
-  std::vector<std::string> warnings;
-  std::exception_ptr error;  ///< error of a worker; the others stopped
-  LeftWithSlurm left = {};   ///< runs left with Slurm; none where the runs are made here
+  std::vector<std::string> warnings;  ///< not that a run is unsteady where the study takes unsteady runs
+  std::exception_ptr error;           ///< error of a worker; the others stopped
+  LeftWithSlurm left = {};            ///< runs left with Slurm; none where the runs are made here
 };
 
 class Ledger {

@@ -71,8 +71,13 @@ data::ExitStatus tell_made(const Common& common, const Workspace& workspace, con
   answer(common,
          fmt::format("{}, {} in all: {}", data::counted(made.finished, "new run"), made.table.rows.size(), table));
   if (!made.failures.empty()) return data::ExitStatus::warning;
-  if (workspace.unsteady == Unsteady::use)  // short runs were asked for
+  if (workspace.unsteady == Unsteady::use) {  // short runs were asked for
+    if (made.unsteady > 0)
+      say(common, fmt::format("note: {} of the new runs are not of the steady flow, and train as they are "
+                              "(training.unsteady = \"use\")",
+                              made.unsteady));
     return made.warnings.empty() ? data::ExitStatus::done : data::ExitStatus::warning;
+  }
   if (made.unsteady > 0)
     say(common, fmt::format("warning: {} of the new runs are not of the steady flow and train nothing "
                             "(training.unsteady = \"use\" takes them)",
@@ -96,7 +101,7 @@ data::ExitStatus train_missing(const TrainOptions& options, const std::optional<
   write_design(workspace, campaign.listed(campaign.points));
   announce(common, campaign, rows.all.rows.size());
   const std::string foretold = too_short(workspace, campaign.points);
-  if (!foretold.empty()) say(common, "warning: " + foretold);
+  if (!foretold.empty()) say(common, (workspace.unsteady == Unsteady::use ? "note: " : "warning: ") + foretold);
 
   std::vector<PlannedRun> runs;
   for (const Point& point : campaign.points) runs.push_back({point, workspace.study.seed});

@@ -151,12 +151,17 @@ Summary summarise(const Case& c, double sample, double turn, const Series& s, co
   return summary;
 }
 
+std::string unsteady_warning(const Summary& summary) {
+  if (summary.state == data::FlowState::drifting)
+    return fmt::format("the flow is not steady: {}; raise run.longest", summary.why);
+  if (summary.state == data::FlowState::too_short)
+    return fmt::format("whether the flow is steady is not known: {}; raise run.longest", summary.why);
+  return {};
+}
+
 std::vector<std::string> warnings_of(const Case& c, const Summary& summary) {
   std::vector<std::string> warnings;
-  if (summary.state == data::FlowState::drifting)
-    warnings.push_back(fmt::format("the flow is not steady: {}; raise run.longest", summary.why));
-  if (summary.state == data::FlowState::too_short)
-    warnings.push_back(fmt::format("whether the flow is steady is not known: {}; raise run.longest", summary.why));
+  if (std::string unsteady = unsteady_warning(summary); !unsteady.empty()) warnings.push_back(std::move(unsteady));
   const data::SeriesMean& torque = summary.mean.front();
   const double error = torque.mean == 0.0 ? 0.0 : torque.standard_error / std::abs(torque.mean);
   if (summary.state == data::FlowState::steady && error > 1.5 * c.run.standard_error)

@@ -12,6 +12,9 @@ std::vector<data::SeriesMean> means_of(const Series& series, std::size_t first, 
 /// a turn of the tool, 0 when it has none [s].
 Summary summarise(const Case& c, double sample, double turn, const Series& series, const Looks& looks);
 
+/// Why the means are not known to be those of the steady flow, and what to do; empty where they are.
+std::string unsteady_warning(const Summary& summary);
+
 /// Warnings that the summary's reader must know, one sentence each.
 std::vector<std::string> warnings_of(const Case& c, const Summary& summary);
 
