@@ -32,6 +32,7 @@ except ImportError:
     skip("python3-h5py is not here")
 
 failures = []
+DONE = (0, 2)  # with a warning: in so short runs some spheres overlap deeply
 
 
 def check(true, what):
@@ -101,7 +102,7 @@ def same(out, reference, what):
 
 def a_campaign_completes():
     status, said = run(train("completes", 8, 2, "--slurm", "--runs-per-task", "2", "--mem", "100M", "--time", "10"))
-    check(status == 0, f"a campaign completes ({status})\n{'' if status == 0 else said}")
+    check(status in DONE, f"a campaign completes ({status})\n{'' if status in DONE else said}")
     check("submitted job" in said and "8 runs in 4 tasks" in said, "it says which job it submitted")
     same("completes", "local", "a campaign completes")
 
@@ -112,7 +113,7 @@ def a_node_dies():
     time.sleep(2)
     print(subprocess.run([here / "crash", cluster, "node2"], capture_output=True, text=True).stdout, end="")
     status, said = follow.end()
-    check(status == 0, f"a node dies in mid-run and the campaign completes ({status})\n{'' if status == 0 else said}")
+    check(status in DONE, f"a node dies in mid-run and the campaign completes ({status})\n{'' if status in DONE else said}")
     same("node", "local", "a node died")
     subprocess.run([here / "crash", cluster, "node2", "revive"])
     wait_for("node2 comes back", lambda: "idle" in subprocess.run(
@@ -130,7 +131,7 @@ def the_controller_stops():
     check(follow.child.poll() is None, "the program waits while the controller is stopped")
     subprocess.run(["slurmctld", "-f", os.environ["SLURM_CONF"]])
     status, said = follow.end()
-    check(status == 0, f"the controller stops and comes back, and the campaign completes ({status})\n{'' if status == 0 else said}")
+    check(status in DONE, f"the controller stops and comes back, and the campaign completes ({status})\n{'' if status in DONE else said}")
     submitted = said.count("submitted job")
     check(submitted == 1, f"nothing was submitted twice ({submitted})\n{'' if submitted == 1 else said}")
     check("answers again" in said, f"that it answers again is told\n{'' if 'answers again' in said else said}")
@@ -149,7 +150,7 @@ def detached_and_picked_up():
     check(status == 75 and "scancel" in said, f"interruption leaves the jobs, and says so ({status})")
     check(len(queue()) > 0, "they are still in the queue")
     status, said = run(words)
-    check(status == 0 and "submitted job" not in said, f"the next call follows the same job ({status})")
+    check(status in DONE and "submitted job" not in said, f"the next call follows the same job ({status})")
     same("detached", "local", "left and picked up")
 
 
@@ -162,7 +163,7 @@ def cancelled():
     check(status == 75 and "cancelled" in said and said.count("submitted job") == 1,
           f"what scancel ends is not submitted again by itself ({status})\n{'' if status == 75 else said}")
     status, said = run(words)
-    check(status == 0, f"the next call makes it ({status})")
+    check(status in DONE, f"the next call makes it ({status})")
     same("cancelled", "local", "cancelled and made again")
 
 
@@ -182,7 +183,7 @@ try:
     os.environ["SLURM_CONF"] = str(cluster / "slurm.conf")
     check(up.returncode == 0, "a Slurm of two nodes starts\n" + up.stderr)
     status, said = run(train("local", 8, 2))
-    check(status == 0, f"the same runs on this machine ({status})")
+    check(status in DONE, f"the same runs on this machine ({status})")
     for scenario in (refused, a_campaign_completes, detached_and_picked_up, cancelled, the_controller_stops, a_node_dies):
         if not failures:
             start = time.monotonic()
