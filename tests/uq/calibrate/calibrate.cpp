@@ -7,6 +7,7 @@
 
 #include "data/csv.hpp"
 #include "data/error.hpp"
+#include "uq/calibrate/effort.hpp"
 #include "uq/calibrate/posterior_nc.hpp"
 #include "uq/infer/diagnostics.hpp"
 #include "uq/posterior/prior.hpp"
@@ -355,6 +356,34 @@ TEST_CASE("a fit that data of the model's own would seldom give is called poor, 
   CHECK_THAT(clean.finding, !Catch::Contains("fit is poor"));
   CHECK_THAT(found.finding, Catch::Contains("The fit is poor: chi2"));
   CHECK_THAT(found.remedy, Catch::StartsWith("Look first at what the residuals have in common."));
+}
+
+TEST_CASE("the progress of a calibration goes from 0 to 1, and a case that takes longer has the longer part of it",
+          "[uq]") {
+  const Input input = other_code();
+  std::vector<std::pair<std::string, double>> told;
+  CalibrateOptions options{.error_scan = {}, .quadrature = false};
+  options.progress = [&](const std::string& step, double share) { told.emplace_back(step, share); };
+  calibrate_all(input.study, input.table, options);
+  REQUIRE(told.size() > 3);
+  CHECK(told.front().second == 0.0);
+  CHECK(told.back().second == 1.0);
+  double before = 0.0;
+  for (const auto& [step, share] : told) {
+    CHECK(share >= before - 1e-9);
+    CHECK(share <= 1.0 + 1e-9);
+    before = step == "surrogates" ? 0.0 : share;  // what they took is known once they are there
+  }
+  const data::CalibrationCase& many = input.study.cases[0];
+  CHECK(sampling_seconds(input.study, many, input.table, {}) > 0.0);
+  data::Study longer = input.study;
+  std::vector<data::Observation>& points = longer.observations[0].points;
+  const std::vector<data::Observation> once = points;
+  for (data::Observation point : once) {
+    point.controls[0] *= 0.99;
+    points.push_back(point);
+  }
+  CHECK(sampling_seconds(longer, many, input.table, {}) > 2.0 * sampling_seconds(input.study, many, input.table, {}));
 }
 
 TEST_CASE("errors stated far too large are told by readings that lie too close to the model", "[uq]") {
