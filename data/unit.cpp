@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <memory>
@@ -61,6 +62,9 @@ Parsed parse(std::string_view symbol) {
                              "install libudunits2-0, or check that the file can be read and that there is memory"});
 
   std::string text(symbol);
+  // UDUNITS' scanner prints what it does not know, a line's end say, to stdout.
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
   ut_trim(text.data(), UT_UTF8);
   const std::unique_ptr<ut_unit, decltype(&ut_free)> unit(ut_parse(system, text.c_str(), UT_UTF8), &ut_free);
   if (unit == nullptr && ut_get_status() == UT_OS) throw std::bad_alloc();

@@ -1,6 +1,9 @@
 #include "data/unit.hpp"
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <cstdio>
 #include <numbers>
 #include <stdexcept>
 
@@ -47,6 +50,22 @@ TEST_CASE("only units of one dimension are convertible") {
   CHECK_FALSE(data::convertible("s", "Hz"));
   CHECK_FALSE(data::convertible("m", "kg"));
   CHECK(data::convertible("", "1"));
+}
+
+TEST_CASE("a line's end in a unit is a blank, and nothing of it reaches stdout") {
+  std::fflush(stdout);
+  std::FILE* const into = std::tmpfile();
+  const int before = ::dup(STDOUT_FILENO);
+  ::dup2(::fileno(into), STDOUT_FILENO);
+  const data::Unit broken = data::parse_unit("N\n m");
+  CHECK_THROWS_AS(data::parse_unit("\x01\n\n?"), std::invalid_argument);
+  std::fflush(stdout);
+  ::dup2(before, STDOUT_FILENO);
+  ::close(before);
+  CHECK(std::ftell(into) == 0);
+  std::fclose(into);
+  CHECK(broken.si_symbol == data::parse_unit("N m").si_symbol);
+  CHECK(broken.factor == 1.0);
 }
 
 TEST_CASE("what UDUNITS-2 does not know is refused") {
