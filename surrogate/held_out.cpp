@@ -45,7 +45,8 @@ int hold_out(Validation& validation, const HeldOutData& data, const std::vector<
     validation.held_out_mean(left) = found.prediction.mean;
     validation.held_out_standardised(left) =
         (error.array() / found.prediction.covariance.diagonal().array().sqrt()).matrix();
-    reach = std::max({reach, error.cwiseAbs().maxCoeff(), std::sqrt(found.prediction.covariance.diagonal().maxCoeff())});
+    reach =
+        std::max({reach, error.cwiseAbs().maxCoeff(), std::sqrt(found.prediction.covariance.diagonal().maxCoeff())});
     HeldOutFold fold;
     fold.runs = left;
     fold.converged = found.converged;

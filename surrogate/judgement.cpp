@@ -136,7 +136,8 @@ SurrogateVerdict judge(const Validation& v, int predicted, const FitDiagnostics&
       std::any_of(v.levels.begin(), v.levels.end(), [&](const LevelCheck& check) { return doubtful(check, t); });
   if (between || !v.apart.empty()) return SurrogateVerdict::caution;
   if (negligible(v, t) && coverage95 >= 0.95) return SurrogateVerdict::good;
-  if (v.q2_function < t.q2_good || !diagnostics.converged || bad_bound || noise_doubtful(v) || coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability ||
+  if (v.q2_function < t.q2_good || !diagnostics.converged || bad_bound || noise_doubtful(v) ||
+      coverage_probability(coverage95 * v.runs, v.runs) < t.coverage_probability ||
       v.mahalanobis_probability < t.mahalanobis_probability)
     return SurrogateVerdict::caution;
   return SurrogateVerdict::good;
