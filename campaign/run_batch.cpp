@@ -49,7 +49,7 @@ void work(const Workspace& workspace, const std::vector<PlannedRun>& runs, const
 
 BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                       const BatchOptions& options) {
-  for (const PlannedRun& run : runs) data::require_replaceable(run_path(with_seed(workspace, run.seed), run.point));
+  require_places(workspace, runs);
   foretell_materials(workspace, runs, static_cast<int>(std::min<std::size_t>(runs.size(), options.jobs)));
   Shared shared{.ledger = Ledger(std::move(table), runs.size())};
   write_tables(workspace, shared.ledger.result.table, options.kept);
@@ -61,6 +61,10 @@ BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>&
     for (std::size_t j = 0; j < jobs; ++j) workers.emplace_back([&] { work(workspace, runs, options, shared, stop); });
   }
   return std::move(shared.ledger.result);
+}
+
+void require_places(const Workspace& workspace, const std::vector<PlannedRun>& runs) {
+  for (const PlannedRun& run : runs) data::require_replaceable(run_path(with_seed(workspace, run.seed), run.point));
 }
 
 void foretell_materials(const Workspace& workspace, const std::vector<PlannedRun>& runs, int here) {

@@ -26,6 +26,9 @@ BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>&
 /// memory than this machine has. `here` 0: the runs are made elsewhere.
 void foretell_materials(const Workspace& workspace, const std::vector<PlannedRun>& runs, int here);
 
+/// Throws data::InputError (73) where a file that is not demcal's stands in the place of one of these runs.
+void require_places(const Workspace& workspace, const std::vector<PlannedRun>& runs);
+
 /// The workspace with another seed of the study.
 Workspace with_seed(const Workspace& workspace, std::uint64_t seed);
 

@@ -390,6 +390,7 @@ class Follower {
 BatchResult run_on_slurm(const Workspace& workspace, const std::vector<PlannedRun>& runs, data::RunTable table,
                          const BatchOptions& batch, const SlurmOptions& options) {
   SlurmCommands(options.start).require_programs();
+  require_places(workspace, runs);
   foretell_materials(workspace, runs, 0);
   return Follower(workspace, runs, std::move(table), batch, options).follow();
 }

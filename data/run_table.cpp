@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <set>
+#include <stdexcept>
 
 #include "data/number_text.hpp"
 #include "data/run_table_files.hpp"
@@ -39,6 +40,14 @@ RunTable merge(const RunTable& first, const RunTable& second) {
   for (const RunRow& row : second.rows)
     if (!there.contains(row_key(row))) merged.rows.push_back(row);
   return merged;
+}
+
+std::optional<Unit> known_unit(const std::string& symbol) {
+  try {
+    return parse_unit(symbol.empty() ? "1" : symbol);
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
 }
 
 OutputMean kept_mean(const RunRow& row, const Column& column) {

@@ -248,7 +248,8 @@ class RowReader {
   void find_others() {
     for (const std::size_t column : at_.unread) {
       const std::optional<std::size_t> errors = csv_.find(csv_.columns[column] + "_se");
-      if (errors) others_.push_back({{csv_.columns[column], parse_unit(csv_.units[column])}, {column, *errors}});
+      const std::optional<Unit> unit = known_unit(csv_.units[column]);
+      if (errors && unit) others_.push_back({{csv_.columns[column], *unit}, {column, *errors}});
     }
     std::erase_if(at_.unread, [this](std::size_t column) {
       return std::any_of(others_.begin(), others_.end(),

@@ -1,5 +1,6 @@
 #pragma once
 // The two files of a run table; read_table chooses by the ending.
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,9 @@ namespace data {
 bool is_status_column(std::string_view name);
 bool is_user_column(std::string_view name);  ///< "use", "include", "keep": the user's own choice of rows
 bool says_failed(std::string_view column, std::string_view field);
+
+/// The unit of this symbol, 1 where there is none; nothing where it is unknown.
+std::optional<Unit> known_unit(const std::string& symbol);
 
 /// The row's mean of an output that the study has no longer; NaN where it has none.
 OutputMean kept_mean(const RunRow& row, const Column& column);

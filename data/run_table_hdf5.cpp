@@ -98,7 +98,9 @@ void read_others(const Hdf5Group& outputs, const Hdf5Group& errors, RunTable& ta
   for (const std::string& name : outputs.names()) {
     if (std::any_of(table.outputs.begin(), table.outputs.end(), [&](const Column& one) { return one.name == name; }))
       continue;
-    const Column column{name, parse_unit(outputs.text("study unit", name))};
+    const std::optional<Unit> unit = known_unit(outputs.text("study unit", name));
+    if (!unit) damaged(outputs.place(name), "has no unit that is known");
+    const Column column{name, *unit};
     const std::vector<double> values = read_column(outputs, column, table.rows.size()),
                               standard_errors = read_column(errors, column, table.rows.size());
     for (std::size_t r = 0; r < values.size(); ++r) table.rows[r].others[name] = {values[r], standard_errors[r]};

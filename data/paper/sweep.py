@@ -141,8 +141,9 @@ def some_of(found, rpm):
     if "circulation" in found:
         lap = found["circulation"]
         fill = lap["fill_along_first"] + lap["fill_along_second"]
-        row = {"lap_turns": f"{lap['lap_s'] * rpm / 60:.4g}", "lap_turns_se": f"{lap['lap_standard_error_s'] * rpm / 60:.2g}",
-               "fill_least": f"{min(fill):.3g}", "fill_most": f"{max(fill):.3g}"}
+        row = {"fill_least": f"{min(fill):.3g}", "fill_most": f"{max(fill):.3g}"}
+        if lap["lap_s"] is not None:  # a flow that is told from none
+            row |= {"lap_turns": f"{lap['lap_s'] * rpm / 60:.4g}", "lap_turns_se": f"{lap['lap_standard_error_s'] * rpm / 60:.2g}"}
     overlaps = re.findall(r"overlap by more than .*\(largest ([0-9.]+)\)", " ".join(found["warnings"]))
     if overlaps:
         row["largest_overlap"] = overlaps[0]

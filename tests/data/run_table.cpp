@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "data/atomic_file.hpp"
 #include "data/hdf5.hpp"
 #include "data/random.hpp"
 #include "tests/temporary.hpp"
@@ -212,6 +213,14 @@ TEST_CASE(
     REQUIRE(lacking.table.rows.size() == 6);
     for (const data::RunRow& row : lacking.table.rows) CHECK(data::lacks_output(lacking.table, row));
   }
+  // What somebody wrote beside our columns in a unit of their own is passed over as before.
+  data::write_table_csv(folder.path("own.csv"), table, both);
+  std::string text = data::read_file(folder.path("own.csv"));
+  const std::size_t unit = text.find("angle [") + 7;
+  text.replace(unit, text.find("]", unit) - unit, "qqq");
+  const data::TableRead own = data::read_table(folder.write("edited.csv", text), one);
+  CHECK(own.table.rows.size() == 5);
+  CHECK(own.table.others.empty());
   data::RunRow unknown = table.rows[0];
   unknown.outputs[1] = std::nan("");
   unknown.unreliable = "angle:short";

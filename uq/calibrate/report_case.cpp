@@ -189,6 +189,24 @@ bool too_close(const CaseModel& model, const FitCheck& check, const VerdictThres
   return !errors_unknown(model) && check.dof >= least && gsl_cdf_chisq_P(check.chi2, check.dof) < thresholds.best_fit_p;
 }
 
+/// What is to be said of errors and scatter where the model fits: one reading that widens unknown errors, repeats that
+/// say less than their number, readings farther from the best fit than usual, or closer to it. Returns warnings.
+std::vector<std::string> say_fit(Words& words, const CaseReport& report, const data::Study& study,
+                                 const CaseModel& model, const Identification& found,
+                                 const VerdictThresholds& thresholds) {
+  if (const auto outlying = outlying_reading(model, found.best_fit.x, thresholds)) {
+    say_outlying_reading(words, study, *outlying);
+    return {outlying_warning(report.name, study, *outlying)};
+  }
+  if (!report.doubt.empty()) return {};
+  if (found.check.best_fit_p < thresholds.poor_fit_p) say_poor_fit(words, found.check);
+  if (too_close(model, found.check, thresholds)) say_close_fit(words, found.check);
+  const std::optional<LackOfFit> lack = lack_of_fit(model, found.best_fit.x);
+  if (!lack || !(lack->p < thresholds.best_fit_p)) return {};
+  say_lack_of_fit(words, *lack);
+  return {lack_of_fit_warning(report.name, *lack)};
+}
+
 /// What the posterior predicts: at the readings, over the controls, and of a discrepancy.
 void add_bands(CaseReport& report, const data::Study& study, const CaseModel& model, const Eigen::MatrixXd& draws,
                std::uint64_t study_seed) {
@@ -252,23 +270,13 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   if (!found.fits && !lone) say_misfit(words, report, study, model, found, options.identify.thresholds);
   if (doubt.of != DoubtOf::nothing) say_doubt(report, doubt.of, words, study);
   if (lone) say_lone_reading(report, words, study, *lone);
-  const std::optional<OutlyingReading> outlying =
-      found.fits ? outlying_reading(model, found.best_fit.x, judged.thresholds) : std::nullopt;
-  if (outlying) say_outlying_reading(words, study, *outlying);
-  std::optional<LackOfFit> lack =
-      found.fits && report.doubt.empty() && !outlying ? lack_of_fit(model, found.best_fit.x) : std::nullopt;
-  if (lack && !(lack->p < judged.thresholds.best_fit_p)) lack.reset();
-  if (lack) say_lack_of_fit(words, *lack);
-  if (found.fits && report.doubt.empty() && found.check.best_fit_p < judged.thresholds.poor_fit_p)
-    say_poor_fit(words, found.check);
-  if (found.fits && report.doubt.empty() && too_close(model, found.check, judged.thresholds))
-    say_close_fit(words, found.check);
+  const std::vector<std::string> of_the_fit =
+      found.fits ? say_fit(words, report, study, model, found, judged.thresholds) : std::vector<std::string>{};
   report.finding = words.finding;
   report.consequence = words.consequence;
   report.remedy = shown_remedy(words);
   add_warnings(report, doubt.of, sampled);
-  if (outlying) report.warnings.push_back(outlying_warning(report.name, study, *outlying));
-  if (lack) report.warnings.push_back(lack_of_fit_warning(report.name, *lack));
+  report.warnings.insert(report.warnings.end(), of_the_fit.begin(), of_the_fit.end());
   add_prior_conflicts(report, sampled, draws, judged.thresholds);
   return report;
 }
