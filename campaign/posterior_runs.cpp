@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -258,13 +259,27 @@ void write_posterior_runs(const Workspace& workspace, const PosteriorRuns& next)
                next.left ? left_comment + std::to_string(*next.left) + "\n" : "");
 }
 
+namespace {
+
+/// The number of runs that a list says are left.
+int runs_left(const std::string& text, const std::string& path) {
+  int left = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), left);
+  if (error != std::errc{} || end != text.data() + text.size() || left < 0)
+    throw data::InputError(data::ExitStatus::bad_data,
+                           {path, fmt::format("'{}' is not a number of runs left", text), "remove the file"});
+  return left;
+}
+
+}  // namespace
+
 std::optional<PosteriorRuns> read_posterior_runs(const Workspace& workspace) {
   const std::string path = posterior_runs_path(workspace);
   if (!std::filesystem::exists(path)) return {};
   PosteriorRuns next{.runs = read_runs(workspace, path), .left = {}};
   for (const std::string& comment : data::read_csv(path).comments)
-    if (("# " + comment).starts_with(left_comment))
-      next.left = std::atoi(("# " + comment).substr(left_comment.size()).c_str());
+    if (const std::string line = "# " + comment; line.starts_with(left_comment))
+      next.left = runs_left(line.substr(left_comment.size()), path);
   return next;
 }
 

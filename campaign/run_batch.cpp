@@ -21,6 +21,13 @@ struct Shared {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   Ledger ledger;
+
+  /// Keeps the exception that is being handled, the first of all, and stops every worker.
+  void fail(std::stop_source& stop) {
+    const std::lock_guard lock(mutex);
+    if (!ledger.result.error) ledger.result.error = std::current_exception();
+    stop.request_stop();
+  }
 };
 
 /// One worker: takes runs until there are none, or the batch is to stop.
@@ -39,9 +46,7 @@ void work(const Workspace& workspace, const std::vector<PlannedRun>& runs, const
       if (result.status != dem::RunStatus::failed) write_tables(workspace, all.table, options.kept);
     }
   } catch (...) {
-    const std::lock_guard lock(shared.mutex);
-    if (!all.error) all.error = std::current_exception();
-    stop.request_stop();
+    shared.fail(stop);
   }
 }
 
@@ -58,7 +63,12 @@ BatchResult run_batch(const Workspace& workspace, const std::vector<PlannedRun>&
   {
     std::vector<std::jthread> workers;
     const std::size_t jobs = std::min<std::size_t>(static_cast<std::size_t>(options.jobs), runs.size());
-    for (std::size_t j = 0; j < jobs; ++j) workers.emplace_back([&] { work(workspace, runs, options, shared, stop); });
+    try {
+      for (std::size_t j = 0; j < jobs; ++j)
+        workers.emplace_back([&] { work(workspace, runs, options, shared, stop); });
+    } catch (...) {  // no thread left for a worker: those that are there end, too
+      shared.fail(stop);
+    }
   }
   return std::move(shared.ledger.result);
 }

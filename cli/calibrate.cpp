@@ -105,10 +105,10 @@ RoundMade make_round(const CalibrateCommand& options, const Workspace& workspace
   const Common& common = options.common;
   const BatchResult batch = make_runs(common, workspace, missing, std::move(rows.all), rows.kept,
                                       {.what = "verification runs", .jobs = options.jobs}, interrupt.token());
-  RoundMade made{.rows = rows_to_learn_from(common, workspace),
-                 .doubtful = !batch.warnings.empty() || !batch.failures.empty()};
   say_faults(common, batch.warnings, batch.failures);
   if (batch.error) std::rethrow_exception(batch.error);
+  RoundMade made{.rows = rows_to_learn_from(common, workspace),
+                 .doubtful = !batch.warnings.empty() || !batch.failures.empty()};
   made.interrupted = interrupt.interrupted();
   if (made.interrupted)
     say(common,

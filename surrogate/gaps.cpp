@@ -33,21 +33,12 @@ double likeness(const InputGap& gap, const RowVectorXd& a, const RowVectorXd& b)
   return correlation(std::sqrt(square), gap_reach);
 }
 
-/// Sorted values of one input, those closer than 1e-6 as one.
-std::vector<double> values_of(const VectorXd& column) {
-  std::vector<double> values(column.begin(), column.end());
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < 1e-6; }),
-               values.end());
-  return values;
-}
-
 }  // namespace
 
 std::vector<InputGap> find_gaps(const Standardised& data) {
   std::vector<InputGap> gaps;
   for (Index k = 0; k < data.points.cols(); ++k) {
-    const std::vector<double> values = values_of(data.points.col(k));
+    const std::vector<double> values = levels_of(data.points.col(k));
     const auto add = [&](double low, double high, double width) {
       if (const double weight = weight_of(width); weight > 0.0)
         gaps.push_back({.input = static_cast<int>(k), .low = low, .high = high, .sd = weight});
@@ -65,7 +56,7 @@ VectorXd input_effects(const GaussianProcess& process) {
   const Index count = std::min(rows_most, data.points.rows());
   VectorXd effects = VectorXd::Zero(data.points.cols());
   for (Index k = 0; k < data.points.cols(); ++k) {
-    const std::vector<double> all = values_of(data.points.col(k));
+    const std::vector<double> all = levels_of(data.points.col(k));
     const Index values = std::min<Index>(values_most, static_cast<Index>(all.size()));
     MatrixXd points = data.low.transpose().replicate(count * values, 1);
     for (Index i = 0; i < count; ++i)

@@ -71,10 +71,10 @@ std::string remedy_of_intervals(const Validation& v, const TrainingSet& training
 
 /// Mean squared held-out error when only about half of the runs train, for the learning curve; negative: not possible.
 double error_with_half(const TrainingSet& training, const HeldOutModel& model) {
-  std::vector<int> even, odd;
-  for (int i = 0; i < training.y.size(); ++i) (i % 2 ? odd : even).push_back(i);
+  // Dealt at random: of a design in its own order every second run lies in the same half of an input.
+  const std::vector<std::vector<int>> halves = deal(points_of_rows(training.x), 2, 0);
   double sum = 0.0;
-  for (const auto& [kept, left] : {std::pair{even, odd}, std::pair{odd, even}}) {
+  for (const auto& [kept, left] : {std::pair{halves[0], halves[1]}, std::pair{halves[1], halves[0]}}) {
     const HeldOutPrediction found = model(kept, left);
     if (found.prediction.mean.size() == 0) return -1.0;
     sum += (training.y(left) - found.prediction.mean).squaredNorm();

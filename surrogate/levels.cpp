@@ -12,16 +12,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double same = 1e-6;  // unit cube: values closer than this are one level
-
-std::vector<double> levels_of(const VectorXd& column) {
-  std::vector<double> values(column.begin(), column.end());
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < same; }),
-               values.end());
-  return values;
-}
-
 }  // namespace
 
 std::vector<LevelCheck> check_levels(const TrainingSet& training, const HeldOutModel& model) {
@@ -35,7 +25,8 @@ std::vector<LevelCheck> check_levels(const TrainingSet& training, const HeldOutM
     double squares = 0.0, about_mean = 0.0, inside = 0.0;
     for (std::size_t level = 1; level + 1 < levels.size(); ++level) {
       std::vector<int> kept, left;
-      for (int i = 0; i < runs; ++i) (std::abs(training.x(i, k) - levels[level]) < same ? left : kept).push_back(i);
+      for (int i = 0; i < runs; ++i)
+        (std::abs(training.x(i, k) - levels[level]) < same_level ? left : kept).push_back(i);
       const HeldOutPrediction found = model(kept, left);
       if (found.prediction.mean.size() == 0) continue;
       const VectorXd error = training.y(left) - found.prediction.mean;
@@ -59,7 +50,7 @@ std::vector<ApartPair> pairs_apart(const TrainingSet& training) {
   std::vector<std::optional<double>> usual;  // of each input that varies: the value of most runs
   for (Index k = 0; k < inputs; ++k) {
     const std::vector<double> levels = levels_of(training.x.col(k));
-    const auto runs_at = [&](double level) { return ((training.x.col(k).array() - level).abs() < same).count(); };
+    const auto runs_at = [&](double level) { return ((training.x.col(k).array() - level).abs() < same_level).count(); };
     usual.emplace_back();
     if (levels.size() < 2) continue;
     usual.back() =
@@ -69,7 +60,7 @@ std::vector<ApartPair> pairs_apart(const TrainingSet& training) {
   for (Index i = 0; i < inputs; ++i) {
     for (Index j = i + 1; j < inputs; ++j) {
       if (!usual[i] || !usual[j]) continue;
-      const auto moved = [&](Index k) { return (training.x.col(k).array() - *usual[k]).abs() >= same; };
+      const auto moved = [&](Index k) { return (training.x.col(k).array() - *usual[k]).abs() >= same_level; };
       if (!(moved(i) && moved(j)).any()) pairs.push_back({training.name_of(i), training.name_of(j)});
     }
   }

@@ -123,7 +123,9 @@ Draws sample(const HyperPosterior& posterior, const IntegrationOptions& options)
     for (Index i = 0; i < options.draws; ++i) {
       VectorXd point(m + 1);
       for (Index j = 0; j <= m; ++j) point[j] = cube(i, j % cube.cols());
-      const bool from_prior = stage == 0 && i % 2 == 1;
+      // Halves of the sequence are nets of their own. Every second point is none: in the second dimension those all lie
+      // in the same half of the cube.
+      const bool from_prior = stage == 0 && i >= options.draws / 2;
       const VectorXd u = from_prior ? prior.draw(point) : proposals.back().draw(point);
       share[from_prior ? options.stages : stage] += 1.0 / static_cast<double>(total);
       const bool inside = (u.array() >= posterior.low.array()).all() && (u.array() <= posterior.high.array()).all();

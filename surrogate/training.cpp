@@ -81,24 +81,37 @@ Standardised standardise(const TrainingSet& training, OutputScale scale, Centre 
     if (result.high[k] - result.low[k] > 1e-12 * std::max(1.0, std::abs(result.high[k])))
       result.active.push_back(static_cast<int>(k));
 
-  // Distinct points, in the order of their first run.
-  std::map<std::vector<double>, int> seen;
-  std::vector<std::vector<double>> distinct;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    std::vector<double> point;
-    for (const int k : result.active) point.push_back(training.x(i, k));
-    const auto [place, is_new] = seen.emplace(point, static_cast<int>(distinct.size()));
-    if (is_new) {
-      distinct.push_back(point);
+  const Eigen::MatrixXd varying = training.x(Eigen::all, result.active);
+  result.point_of_run = points_of_rows(varying);
+  std::vector<int> first_run;
+  for (std::size_t i = 0; i < result.point_of_run.size(); ++i) {
+    if (static_cast<std::size_t>(result.point_of_run[i]) == first_run.size()) {
+      first_run.push_back(static_cast<int>(i));
       result.runs_of_point.push_back(0);
     }
-    result.point_of_run.push_back(place->second);
-    ++result.runs_of_point[place->second];
+    ++result.runs_of_point[result.point_of_run[i]];
   }
-  result.points.resize(static_cast<Eigen::Index>(distinct.size()), static_cast<Eigen::Index>(result.active.size()));
-  for (std::size_t j = 0; j < distinct.size(); ++j)
-    for (std::size_t k = 0; k < distinct[j].size(); ++k) result.points(j, k) = distinct[j][k];
+  result.points = varying(first_run, Eigen::all);
   return result;
+}
+
+std::vector<int> points_of_rows(const Eigen::MatrixXd& x) {
+  std::map<std::vector<double>, int> seen;
+  std::vector<int> point_of_row;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const Eigen::VectorXd row = x.row(i);
+    const int next = static_cast<int>(seen.size());
+    point_of_row.push_back(seen.emplace(std::vector<double>(row.begin(), row.end()), next).first->second);
+  }
+  return point_of_row;
+}
+
+std::vector<double> levels_of(const Eigen::VectorXd& column) {
+  std::vector<double> values(column.begin(), column.end());
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < same_level; }),
+               values.end());
+  return values;
 }
 
 std::string TrainingSet::name_of(Eigen::Index input) const {

@@ -62,6 +62,15 @@ struct Standardised {
 /// a negative variance, y <= 0 on the log scale, fewer than two runs.
 Standardised standardise(const TrainingSet& training, OutputScale scale, Centre centre = Centre::data_mean);
 
+/// For each row the number of its point, equal rows sharing one, in the order of their first row.
+std::vector<int> points_of_rows(const Eigen::MatrixXd& x);
+
+/// Values of an input of the unit cube that are closer than this are one level.
+constexpr double same_level = 1e-6;
+
+/// Sorted levels of one input.
+std::vector<double> levels_of(const Eigen::VectorXd& column);
+
 /// Which of the runs to learn from where they are more than `most`: whole points (replicates stay together), chosen at
 /// random, in order. A fit costs the cube of their number and each prediction its square.
 std::vector<int> thin(const TrainingSet& training, int most, std::uint64_t seed);

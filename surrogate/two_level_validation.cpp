@@ -1,30 +1,11 @@
 // Validation of the high level: every run held out in turn (in twenty folds where there are more), the low level kept.
 #include <algorithm>
-#include <map>
 
 #include "surrogate/held_out.hpp"
 #include "surrogate/judgement.hpp"
 #include "surrogate/two_level.hpp"
 
 namespace surrogate {
-namespace {
-
-using Eigen::VectorXd;
-
-/// For each run the index of its point, in order of first appearance.
-std::vector<int> points_of_runs(const Eigen::MatrixXd& x) {
-  std::map<std::vector<double>, int> seen;
-  std::vector<int> point_of_run;
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    const VectorXd row = x.row(i);
-    point_of_run.push_back(
-        seen.emplace(std::vector<double>(row.begin(), row.end()), static_cast<int>(seen.size())).first->second);
-  }
-  return point_of_run;
-}
-
-}  // namespace
-
 Validation validate(const TwoLevelProcess& process, const TwoLevelOptions& options,
                     const ValidationOptions& validation_options) {
   constexpr int most_folds = 20;
@@ -39,7 +20,7 @@ Validation validate(const TwoLevelProcess& process, const TwoLevelOptions& optio
     found.prediction.covariance.diagonal().array() += part.parameters().nugget_sd * part.parameters().nugget_sd;
     return found;
   };
-  const std::vector<int> point_of_run = points_of_runs(training.x);
+  const std::vector<int> point_of_run = points_of_rows(training.x);
   const int points = *std::max_element(point_of_run.begin(), point_of_run.end()) + 1;
   const int replicates = static_cast<int>(point_of_run.size()) - points;
   const double nugget = replicates >= 5 ? process.parameters().nugget_sd : 0.0;  // else it may be unresolved structure

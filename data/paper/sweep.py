@@ -11,6 +11,7 @@ off. A point that sweeps.csv has is not run, but with --again; --gather only wri
   full mass    the machine of 330 mm with 300 g, the paper's developer: one point, three hours of one core and more (--threads 2)
   ridge        less friction and more cohesion: where the slice's torque is that of a friction of 0.4 with 2e-18 J, and the
                machine there
+  carrier's ridge   three of the points that the report of data/developer calls equivalent for the carrier, in the slice and in the machine
   grain size   the same bed of spheres of other diameters, slowest and fastest speed: without cohesion, and with a force of
                attraction that goes with the 2nd, 3rd or 4th power of the diameter from that of 9e-18 J at 0.8 mm
 The slice's points at the slowest and the fastest speed that the README's table of the mechanism shows have its outputs, too.
@@ -42,6 +43,9 @@ DIAMETERS = {"spread-1131": 1.1314, "spread-566": 0.5657, "spread-400": 0.4}  # 
 STIFFER = {"contact.stiffness": "600 N/m"}
 MACHINE = STIFFER | {"rig.kind": "machine", "rig.machine_length": "48 mm", "rig.opening": "12 mm", "rig.fill": "20080", "run.start_up_turns": "12",
                      "run.longest": "30 s"}
+# Points of the relation of friction and Hamaker constant that the report of data/developer gives for the carrier: its training.csv has the slice's torque at each.
+CARRIERS = ((0.3625, "8.651e-18"), (0.52, "1.0012e-17"), (0.66875, "1.2108e-17"))
+STIFFEST = {"contact.stiffness": "1200 N/m"}  # so much friction and cohesion press pinched spheres deeper still
 # The whole machine, with the paper's 300 g. Its powder goes round once in a hundred turns; what can be had in hours is six turns after the first six.
 WHOLE = MACHINE | {"rig.machine_length": "330 mm", "rig.fill": "300 g", "run.start_up_turns": "6", "run.longest": "2.3 s"}
 BASE_DIAMETER, BASE_HAMAKER = 0.8, 9e-18  # mm, J
@@ -77,6 +81,9 @@ def points():
     for hamaker in ("4e-18", "6e-18", "4.7e-18"):  # the last one by interpolation between the other two
         yield "ridge", "the slice", "spread", 0.2, hamaker, 300, STIFFER
     yield "ridge", "of two augers", "spread", 0.2, "4.7e-18", 300, MACHINE
+    for rig, settings in (("the slice", STIFFEST), ("of two augers", MACHINE | STIFFEST)):
+        for friction, hamaker in CARRIERS:
+            yield "carrier's ridge", rig, "carrier", friction, hamaker, 300, settings
     for material, diameter in DIAMETERS.items():
         for rpm in ENDS:
             yield "grain size", "no attraction", material, 0.4, "0", rpm, {}

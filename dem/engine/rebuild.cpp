@@ -24,7 +24,7 @@ double wrapped(double x, double low, double high, bool periodic) {
   const double period = high - low;
   while (x < low) x += period;
   while (x >= high) x -= period;
-  return x;
+  return std::max(x, low);  // a step below low, x + period may round to high, and lands below low again
 }
 
 enum class Place { inside, not_a_number, far_outside, outside };

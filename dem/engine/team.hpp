@@ -13,22 +13,16 @@ namespace dem {
 
 class Team {
  public:
+  /// Throws std::system_error where the system has no thread left for a member.
   explicit Team(int threads) : size_(threads < 1 ? 1 : threads) {
-    for (int member = 1; member < size_; ++member) {
-      members_.emplace_back([this] {
-        for (std::uint64_t pass = 1;; ++pass) {
-          wait_until(passes_, [pass](std::uint64_t begun) { return begun >= pass; });
-          if (done_) return;
-          take_items();
-          if (busy_.fetch_sub(1) == 1) busy_.notify_one();
-        }
-      });
+    try {
+      for (int member = 1; member < size_; ++member) members_.emplace_back([this] { serve(); });
+    } catch (...) {
+      dismiss();  // those that are there wait, and would for ever
+      throw;
     }
   }
-  ~Team() {
-    done_ = true;
-    begin_pass();
-  }
+  ~Team() { dismiss(); }
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
@@ -51,6 +45,19 @@ class Team {
  private:
   static constexpr int looks = 2000;  ///< looks at a number before sleeping until it changes: some tens of microseconds
 
+  /// What a member does: takes part in every pass until the team is dismissed.
+  void serve() {
+    for (std::uint64_t pass = 1;; ++pass) {
+      wait_until(passes_, [pass](std::uint64_t begun) { return begun >= pass; });
+      if (done_) return;
+      take_items();
+      if (busy_.fetch_sub(1) == 1) busy_.notify_one();
+    }
+  }
+  void dismiss() {
+    done_ = true;
+    begin_pass();
+  }
   void begin_pass() {
     passes_.fetch_add(1);
     passes_.notify_all();

@@ -183,11 +183,25 @@ SavedMeans read_means(const data::Hdf5Group& group, const std::string& path) {
   return saved;
 }
 
+/// A count that is kept as a real number.
+std::uint64_t read_count(const data::Hdf5Group& group, const std::string& name) {
+  const double value = group.number(name);
+  return value >= 0.0 && value < 0x1p63 ? static_cast<std::uint64_t>(value) : 0;
+}
+
+RunStatus read_status(const data::Hdf5Group& file, const std::string& path) {
+  const std::int64_t value = file.integer("status");
+  if (value < 0 || value > static_cast<std::int64_t>(RunStatus::failed))
+    throw data::InputError(data::ExitStatus::bad_data,
+                           {path + ": @status", fmt::format("{} is not how a run ends", value), remake});
+  return static_cast<RunStatus>(value);
+}
+
 Diagnostics read_diagnostics(const data::Hdf5Group& group) {
   Diagnostics g;
-  g.steps = static_cast<std::uint64_t>(group.number("steps"));
+  g.steps = read_count(group, "steps");
   g.rebuilds = static_cast<std::uint64_t>(group.integer("rebuilds"));
-  g.deep_contacts = static_cast<std::uint64_t>(group.number("deep_contacts"));
+  g.deep_contacts = read_count(group, "deep_contacts");
   g.max_overlap = group.number("max_overlap_of_radius");
   g.simulated = group.number("simulated_s");
   g.steps_per_second = group.number("particle_steps_per_second");
@@ -242,7 +256,7 @@ SavedRun read_run(const std::string& path) {
   saved.settings = file.text("settings");
   if (file.has_attribute("rule")) saved.rule = static_cast<int>(file.integer("rule"));
   r.seed = read_seed(file, path);
-  r.status = static_cast<RunStatus>(file.integer("status"));
+  r.status = read_status(file, path);
   r.reason = file.text("reason");
   r.warnings = file.read_texts("warnings");
   r.summary.cpu_seconds = file.number("cpu_seconds");

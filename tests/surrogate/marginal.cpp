@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "data/random.hpp"
@@ -42,6 +43,36 @@ VectorXd probabilities(const GaussianProcess& process, const MatrixXd& points, c
 }
 
 }  // namespace
+
+TEST_CASE("the nodes' weights are those of a law with known means, in every component") {
+  // Independent components with the law of log(-log U) each, shifted: its mean is minus Euler's constant, its variance
+  // pi^2 / 6, and it is skewed. As many nodes as draws, so that what is seen is the weights of these.
+  const int size = GENERATE(2, 3, 6);
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  HyperPosterior posterior;
+  posterior.log_density = [](const VectorXd& u) { return (u.array() - u.array().exp()).sum(); };
+  posterior.low = VectorXd::Constant(size, -12.0);
+  posterior.high = VectorXd::Constant(size, 4.0);
+  posterior.prior_mean = VectorXd::Zero(size);
+  posterior.prior_precision = VectorXd::Constant(size, 0.02);  // wide: the prior's draws see both tails
+  posterior.mode = VectorXd::Zero(size);
+  posterior.covariance = MatrixXd::Identity(size, size);
+  const auto nodes = integration_nodes(posterior, {.nodes = 4000, .seed = seed});
+  VectorXd mean = VectorXd::Zero(size), square = mean, above = mean;
+  for (const HyperNode& node : nodes) {
+    mean += node.weight * node.u;
+    square += node.weight * node.u.cwiseAbs2();
+    above += node.weight * (node.u.array() > 0.0).cast<double>().matrix();
+  }
+  const double sd = std::numbers::pi / std::sqrt(6.0);
+  const double error = size > 3 ? 0.1 : 0.04;  // the weighted draws are worth 1,000 of the law, in six dimensions 600
+  for (int j = 0; j < size; ++j) {
+    CAPTURE(size, seed, j, nodes.size());
+    CHECK(std::abs(mean[j] + std::numbers::egamma) < error * sd);
+    CHECK(std::sqrt(square[j] - mean[j] * mean[j]) == Approx(sd).epsilon(error));
+    CHECK(above[j] == Approx(std::exp(-1.0)).margin(0.5 * error));
+  }
+}
 
 TEST_CASE("integrated predictions are those of quadrature over the hyper-parameters") {
   // Without a nugget u has two components: length scale and signal variance, summed on a fine grid of the posterior.

@@ -1,6 +1,7 @@
 #include "surrogate/validation.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -52,6 +53,39 @@ TEST_CASE("a function that the runs cannot resolve makes an unusable surrogate, 
   CHECK(v.more_runs >= 8);
   CHECK(v.remedy.find("runs") != std::string::npos);
   CHECK(v.next_points.rows() == 3);
+}
+
+TEST_CASE("the halves whose errors say how many runs to add cover every input, replicates together") {
+  // In the order of a design every second run lies in the same half of the second input.
+  MatrixXd x(48, 2);
+  x << scrambled_sobol(32, 2, 3), scrambled_sobol(16, 2, 3);  // the first sixteen points twice
+  const TrainingSet training{x, VectorXd(x.col(1)), VectorXd::Zero(48)};
+  std::vector<std::vector<int>> halves;
+  const HeldOutModel model = [&](const std::vector<int>& kept, const std::vector<int>& left) {
+    halves.push_back(kept);
+    HeldOutPrediction found;
+    found.prediction.mean = VectorXd::Zero(static_cast<Eigen::Index>(left.size()));
+    return found;
+  };
+  Validation validation;
+  validation.runs = 48;
+  validation.verdict = SurrogateVerdict::caution;
+  validation.q2_function = 0.8;
+  validation.q2_attainable = 1.0;
+  validation.coverage_held_out.observed = {0.5, 0.9, 0.95};
+  validation.folds.resize(2);
+  explain(validation, training, model, {});
+  REQUIRE(halves.size() == 2);
+  for (const std::vector<int>& half : halves) {
+    const MatrixXd points = x(half, Eigen::all);
+    CHECK(half.size() >= 16);
+    for (int input = 0; input < 2; ++input) {
+      CHECK(points.col(input).minCoeff() < 0.2);
+      CHECK(points.col(input).maxCoeff() > 0.8);
+    }
+    for (int i = 0; i < 16; ++i)
+      CHECK(std::count(half.begin(), half.end(), i) == std::count(half.begin(), half.end(), i + 32));
+  }
 }
 
 TEST_CASE("standard errors that are far too small are seen where no nugget may explain them") {

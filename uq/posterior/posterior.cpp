@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "uq/infer/factor.hpp"
+#include "uq/posterior/differences.hpp"
 #include "uq/posterior/distinct.hpp"
 
 namespace uq {
@@ -295,13 +296,9 @@ Eigen::MatrixXd sensitivity(const CaseModel& model, const Eigen::VectorXd& u) {
   // Central differences, of first order and one-sided at the support's ends, so that any emulator and any binding of
   // rows will do.
   Eigen::MatrixXd slopes(model.row_count(), u.size());
-  const Eigen::VectorXd lower = model.lower(), upper = model.upper();
   for (Eigen::Index s = 0; s < u.size(); ++s) {
-    const double step = 1e-4 * (upper[s] - lower[s]);
-    Eigen::VectorXd high = u, low = u;
-    high[s] = std::min(u[s] + step, upper[s]);
-    low[s] = std::max(u[s] - step, lower[s]);
-    slopes.col(s) = (row_moments(model, high).mean - row_moments(model, low).mean) / (high[s] - low[s]);
+    const BothSides at = both_sides(model, u, s, 1e-4);
+    slopes.col(s) = (row_moments(model, at.high).mean - row_moments(model, at.low).mean) / at.apart;
   }
   return slopes;
 }

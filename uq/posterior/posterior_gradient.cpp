@@ -3,11 +3,14 @@
 #include <iterator>
 #include <numbers>
 
+#include "uq/posterior/differences.hpp"
 #include "uq/posterior/distinct.hpp"
 #include "uq/posterior/posterior.hpp"
 
 namespace uq {
 namespace {
+
+constexpr double step = 1e-5;  // of central differences, a share of the support's width
 
 /// The law of a group's numbers and its slopes along the unknowns that move it.
 struct GroupSlopes {
@@ -17,7 +20,6 @@ struct GroupSlopes {
 
 /// Slopes by central differences, for an emulator without a derivative along a common shift.
 GroupSlopes differenced(const CaseModel& model, const RowGroup& group, const Eigen::VectorXd& u) {
-  constexpr double step = 1e-5;
   const auto total_at = [&](const Eigen::VectorXd& at) {
     GroupLaw law = group_law(model, group, at);
     law.covariance.diagonal() += law.noise;
@@ -27,13 +29,11 @@ GroupSlopes differenced(const CaseModel& model, const RowGroup& group, const Eig
   for (Eigen::Index s = 0; s < u.size(); ++s) {
     const bool nuisance = model.unknowns[s].nuisance.has_value();
     if (!nuisance && !(group.unknown.array() == static_cast<int>(s)).any()) continue;
-    Eigen::VectorXd up = u, down = u;
-    up[s] += step;
-    down[s] -= step;
-    const GroupLaw above = total_at(up), below = total_at(down);
+    const BothSides at = both_sides(model, u, s, step);
+    const GroupLaw above = total_at(at.high), below = total_at(at.low);
     found.slopes.along.push_back(static_cast<int>(s));
-    found.slopes.mean.emplace_back((above.mean - below.mean) / (2.0 * step));
-    found.slopes.covariance.emplace_back((above.covariance - below.covariance) / (2.0 * step));
+    found.slopes.mean.emplace_back((above.mean - below.mean) / at.apart);
+    found.slopes.covariance.emplace_back((above.covariance - below.covariance) / at.apart);
   }
   return found;
 }
@@ -130,13 +130,10 @@ void add_linked(const CaseModel& model, const Eigen::VectorXd& u, Evaluation& su
 /// The likelihood with central differences along all unknowns: what a setting's error does to two outputs changes with
 /// the predictions' second derivatives, which no emulator gives.
 Evaluation differenced_likelihood(const CaseModel& model, const Eigen::VectorXd& u) {
-  constexpr double step = 1e-5;
   Evaluation found{.value = log_likelihood(model, u), .gradient = Eigen::VectorXd(u.size())};
   for (Eigen::Index s = 0; s < u.size(); ++s) {
-    Eigen::VectorXd up = u, down = u;
-    up[s] += step;
-    down[s] -= step;
-    found.gradient[s] = (log_likelihood(model, up) - log_likelihood(model, down)) / (2.0 * step);
+    const BothSides at = both_sides(model, u, s, step);
+    found.gradient[s] = (log_likelihood(model, at.high) - log_likelihood(model, at.low)) / at.apart;
   }
   return found;
 }

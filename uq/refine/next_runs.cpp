@@ -87,21 +87,24 @@ void add_candidates(const CaseState& state, const NextRunsOptions& options, std:
     std::vector<const RowGroup*> groups;
     for (const RowGroup& group : model.groups)
       if (group.emulator.material == material) groups.push_back(&group);
-    const auto add = [&](int index, const Eigen::VectorXd& u, bool anywhere) {
+    // The rows of the cube are used up one after the other: every fourth of them would see half of a range only.
+    int index = 0, row = 0;  // of the candidate, of the cube
+    const auto add = [&](const Eigen::VectorXd& u, bool anywhere) {
       const RowGroup& group = *groups[static_cast<std::size_t>(index) % groups.size()];
       const Index turn = index / static_cast<int>(groups.size());
       RunPoint point = run_at(group, turn % group.base.rows(), u);
       if (anywhere && controls > 0 && unknowns + controls <= dimension)
-        set_controls(point, group.emulator, cube.row(index).tail(controls).transpose());
+        set_controls(point, group.emulator, cube.row(row).tail(controls).transpose());
       all.push_back(std::move(point));
+      row += anywhere ? 1 : 0;
+      ++index;
     };
-    int index = 0;
     const int from_draws = std::min(options.candidates.posterior, static_cast<int>(state.draws.rows()));
-    for (int i = 0; i < from_draws; ++i, ++index)
-      add(index, state.draws.row(i * state.draws.rows() / from_draws).transpose(), index % 4 == 3);
-    for (Index i = 0; i < tempered.rows(); ++i, ++index) add(index, tempered.row(i).transpose(), index % 4 == 3);
-    for (int i = 0; i < options.candidates.filling; ++i, ++index)
-      if (unknowns <= dimension) add(index, prior_point(model, cube.row(index).head(unknowns).transpose()), true);
+    for (int i = 0; i < from_draws; ++i)
+      add(state.draws.row(i * state.draws.rows() / from_draws).transpose(), index % 4 == 3);
+    for (Index i = 0; i < tempered.rows(); ++i) add(tempered.row(i).transpose(), index % 4 == 3);
+    for (int i = 0; i < options.candidates.filling; ++i)
+      if (unknowns <= dimension) add(prior_point(model, cube.row(row).head(unknowns).transpose()), true);
   }
 }
 

@@ -10,6 +10,8 @@
 namespace uq {
 namespace {
 
+constexpr double widths_beyond = 2.0;  // how far beyond its end a mere range is thought of, in its widths
+
 enum class End { inside, low_end, high_end };
 
 End end_of(const Eigen::VectorXd& best, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper, Eigen::Index s) {
@@ -38,7 +40,12 @@ std::vector<RangeEnd> range_ends(const CaseModel& model, const Eigen::VectorXd& 
   if (pulled.empty() || inside.empty()) return found;
   const std::optional<Eigen::MatrixXd> curved = curvature(model, best, KnownBeside::all);
   if (!curved) return found;
-  const Eigen::MatrixXd& all = *curved;
+  Eigen::MatrixXd all = *curved;
+  for (const Eigen::Index s : pulled) {
+    const ScaledPrior& prior = model.unknowns[s].prior;
+    if (prior.is_informative()) continue;
+    all(s, s) += std::pow(widths_beyond * (upper[s] - lower[s]), -2) - std::pow(prior.sd(), -2);
+  }
   const Eigen::VectorXd held_variance = Eigen::MatrixXd(all(inside, inside))
                                             .llt()
                                             .solve(Eigen::MatrixXd::Identity(std::ssize(inside), std::ssize(inside)))

@@ -6,6 +6,9 @@
 // values and errors hold for that choice only.
 // To second order the most likely point beyond the end is u* + F^-1 g. g is the gradient at u*, of that unknown alone.
 // F = J' S^-1 J is the information in the data, with 1/sd^2 of each prior. Unknowns that sit at other ends stay there.
+// Where the prior of the unknown at the end is no more than its range, that range is what is in question: its own width
+// says nothing of what lies beyond. 1/sd^2 is then that of two widths, which keeps an unknown that the data hardly feel
+// from being moved by hundreds of them.
 #include <Eigen/Dense>
 #include <vector>
 

@@ -2,6 +2,7 @@
 // and the variance of the density is taken from its law, with none of the formulas of uq/refine/acquire.hpp.
 #include "uq/refine/acquire.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -189,6 +190,28 @@ TEST_CASE("reference points integrate a posterior density to its evidence", "[ac
     const VectorXd values = uq::log_likelihoods(model, found.u).array().exp();
     const double integral = (found.log_weight.array().exp() * values.array()).mean();
     CHECK(integral == Approx(evidence).epsilon(0.02));
+  }
+}
+
+TEST_CASE("candidates whose control is free are spread over all of its range", "[acquire]") {
+  const auto model = std::make_shared<const uq::CaseModel>(make_model(make_process()));
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    std::vector<double> free;
+    uq::Acquisition acquisition;
+    acquisition.cases = {{.model = model, .draws = VectorXd::LinSpaced(96, 0.2, 0.6), .log_evidence = std::nan("")}};
+    acquisition.noise = [](const uq::Emulator&) { return noise.front(); };
+    acquisition.rounded = [&free](const uq::RunPoint& point) {
+      const double x = point.controls[0];
+      if (x != 0.25 && x != 0.75) free.push_back(x);  // not at a measured setting
+      return point;
+    };
+    uq::next_batch(acquisition, {.runs = 1, .seed = seed, .candidates = {.filling = 0, .replicates = 0}});
+    std::sort(free.begin(), free.end());
+    CAPTURE(seed, free.size());
+    REQUIRE(free.size() >= 30);
+    double widest = std::max(free.front(), 1.0 - free.back());
+    for (std::size_t i = 1; i < free.size(); ++i) widest = std::max(widest, free[i] - free[i - 1]);
+    CHECK(widest < 0.15);
   }
 }
 
