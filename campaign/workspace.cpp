@@ -148,6 +148,19 @@ std::vector<std::string> changed_lists(const Workspace& workspace) {
   return notes;
 }
 
+/// What parameters and controls make of the rig in the middle of their ranges, or where the material fixes them.
+std::vector<dem::SetValue> rig_amid(const data::Study& study, const data::Material& material) {
+  std::vector<dem::SetValue> values;
+  for (const data::Input& input : data::inputs_of(study)) {
+    const std::optional<dem::Target> target = dem::find_target(input.target);
+    if (!target || !target->name.starts_with("rig.") || target->name == "rig.rpm") continue;
+    const auto fixed = material.fixed.find(input.name);
+    const double value = fixed != material.fixed.end() ? fixed->second : 0.5 * (input.axis.low + input.axis.high);
+    if (value >= target->low && value <= target->high) values.push_back({input.target, value});  // else said elsewhere
+  }
+  return values;
+}
+
 std::string default_out(const data::Study& study) {
   return fs::absolute(study.name + "-results").lexically_normal().string();
 }
@@ -167,7 +180,7 @@ Workspace open_workspace(const StudyOptions& options) {
   }
   if (file.root().child("rig").exists()) {
     for (const data::Material& material : study.materials)
-      workspace.cases[material.name] = dem::read_case(file, material.name);
+      workspace.cases[material.name] = dem::read_case(file, material.name, rig_amid(study, material));
     check_simulated(file, workspace);
   }
   workspace.unsteady = file.root().child("training").choice("unsteady", Unsteady::leave_out);

@@ -57,6 +57,7 @@ data::ExitStatus report_on(const Common& common, const Workspace& workspace, con
   for (const uq::CaseReport& one : result.report.cases) supports.push_back(one.support);
   write_next_runs(workspace, supports);
   add_provenance(result.report, workspace, rows);
+  keep_plans(common, workspace, rows, result.report);
   write_report(workspace, result.report);
   say_surrogates(common, result.surrogates);  // after everything is saved: saying may fail
   return say_report(common, workspace, result.report);

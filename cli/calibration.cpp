@@ -170,6 +170,31 @@ void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, c
   for (const std::string& note : rows.notes) report.notes.push_back(note);
 }
 
+void keep_plans(const Common& common, const Workspace& workspace, const StudyRows& rows,
+                uq::CalibrationReport& report) {
+  if (!std::filesystem::exists(plan_path(workspace))) return;
+  const std::string again = "run: demcal plan " + common.study;
+  if (!std::filesystem::exists(results_path(workspace)))
+    return say(common, fmt::format("note: {} was made before there was a report, and is not in it ({})",
+                                   data::shown_path(plan_path(workspace)), again));
+  try {
+    const uq::CalibrationReport earlier = uq::load_report(results_path(workspace));
+    const std::vector<std::string> changed = changed_since(earlier, workspace, rows);
+    for (const uq::CaseReport& before : earlier.cases) {
+      const auto now = std::find_if(report.cases.begin(), report.cases.end(),
+                                    [&](const uq::CaseReport& one) { return one.name == before.name; });
+      if (!before.plan || now == report.cases.end()) continue;
+      if (changed.empty())
+        now->plan = before.plan;
+      else
+        say(common,
+            fmt::format("note: the plan of case {} is left out of the report, since these have changed: {} ({})",
+                        before.name, fmt::join(changed, ", "), again));
+    }
+  } catch (const data::InputError&) {  // of an older version or damaged: it is replaced
+  }
+}
+
 void write_report(const Workspace& workspace, const uq::CalibrationReport& report) {
   uq::save_report(report, results_path(workspace));
   uq::write_report_html(report, workspace.out);

@@ -91,6 +91,12 @@ std::size_t Csv::column(std::string_view name) const {
     remedy += fmt::format("; is '{}' meant?", *near);
   }
   if (of_error) remedy += other_error_column(columns, name);
+  if (std::any_of(comments.begin(), comments.end(),
+                  [](const std::string& line) { return line.starts_with("written by demcal"); }))
+    remedy += fmt::format(
+        "; demcal wrote the file before the study had '{}': choose another --out for the study as it is "
+        "now",
+        name);
   if (const std::string heading = with_unknown_unit(headings, name); !heading.empty())
     refuse_data(fmt::format("{}:{}", file, header_line), fmt::format("the unit in '{}' is unknown", heading),
                 "write one that UDUNITS-2 knows, like \"mN m\", or none");

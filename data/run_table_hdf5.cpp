@@ -72,6 +72,16 @@ void refuse_more(const Hdf5Group& group, const std::vector<Column>& columns, con
   }
 }
 
+/// Throws InputError (65) where an input came to the study after the table was written: at which value its runs were
+/// made is not known.
+void require_all(const Hdf5Group& group, const std::vector<Column>& columns, const std::string& kind) {
+  for (const Column& column : columns)
+    if (!group.has(column.name))
+      refuse_data(group.place(),
+                  fmt::format("has no '{}', a {} that came to the study after these runs", column.name, kind),
+                  fmt::format("choose another --out for the study as it is now, or take the {} out of it again", kind));
+}
+
 /// Throws InputError (65) where this is no table that was finished, and of this version.
 void check_finished(const Hdf5Group& root) {
   if (!root.has_attribute("format") || root.text("format") != format_name) {
@@ -114,6 +124,8 @@ void read_numbers(const Hdf5Group& root, RunTable& table) {
                   outputs = root.group("outputs"), errors = root.group("standard_errors");
   refuse_more(parameters, table.parameters, "parameter");
   refuse_more(controls, table.controls, "control");
+  require_all(parameters, table.parameters, "parameter");
+  require_all(controls, table.controls, "control");
   const auto append = [&](const Hdf5Group& group, const Column& column, std::vector<double> RunRow::*target) {
     const std::vector<double> values = read_column(group, column, table.rows.size());
     for (std::size_t r = 0; r < values.size(); ++r) (table.rows[r].*target).push_back(values[r]);

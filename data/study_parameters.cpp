@@ -65,6 +65,11 @@ void read_limits(const Section& section, Prior& prior, const Parameter& paramete
 void read_mean_and_sd(const Section& section, Prior& prior, const Parameter& parameter) {
   prior.mean = read_value(section, "mean", parameter.unit);
   const Unit difference = parameter.unit.differences();
+  const auto in_per_cent = [](const std::string& text) { return text.find('%') != std::string::npos; };
+  if (section.kind("sd") == ValueKind::text && in_per_cent(section.text("sd")) && !in_per_cent(parameter.unit.symbol))
+    section.problem(
+        "sd", "is given in per cent, and a prior's sd is no share of its mean",
+        fmt::format("give it {}", is_bare(parameter.unit.symbol) ? "as a number" : "in " + difference.symbol));
   prior.sd = section.difference("sd", parameter.unit.si_symbol, positive, {}, bare_unit(difference));
   const bool given = section.has("mean") && section.has("sd") && prior.sd > 0.0;
   if (given && (prior.mean < prior.low - 3.0 * prior.sd || prior.mean > prior.high + 3.0 * prior.sd)) {

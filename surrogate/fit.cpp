@@ -183,23 +183,37 @@ GaussianProcess fit(const TrainingSet& training, const FitOptions& options) {
       std::count_if(diagnostics.starts.begin(), diagnostics.starts.end(), [](const auto& s) { return s.agrees; }));
   diagnostics.bound_hits = find_bound_hits(objective, best.end, data, training);
 
-  std::vector<HyperNode> nodes{{best.end, 1.0}};
-  const bool few = data.points.rows() < enough_points * data.points.cols();
-  if (options.hyper_uncertainty == HyperUncertainty::integrated ||
-      (options.hyper_uncertainty == HyperUncertainty::integrated_if_few && few))
-    nodes =
-        integration_nodes(hyper_posterior(objective, best.end), integration_options(data.points.rows(), options.seed));
-  std::vector<Conditioned> parts;
-  for (const HyperNode& node : nodes) {
+  const auto conditioned = [&](const Eigen::VectorXd& u) {
     Conditioned part;
-    part.weight = node.weight;
-    part.parameters = from_logs(node.u, options.nugget);
+    part.parameters = from_logs(u, options.nugget);
     part.factorised = likelihood.factorise(part.parameters);
     if (!part.factorised.ok)
       throw data::InputError(data::ExitStatus::bad_data,
                              {"surrogate", "the covariance of the training runs cannot be factorised even with jitter",
                               "give the runs their standard errors, or use a process with a nugget"});
     part.scaled_points = data.points * part.parameters.length_scales.cwiseInverse().asDiagonal();
+    return part;
+  };
+  std::vector<HyperNode> nodes{{best.end, 1.0}};
+  const bool few = data.points.rows() < enough_points * data.points.cols();
+  if (options.hyper_uncertainty == HyperUncertainty::integrated ||
+      (options.hyper_uncertainty == HyperUncertainty::integrated_if_few && few)) {
+    constexpr int looked_at = 8;  // points at which the nodes' predictions are compared
+    HyperPosterior posterior = hyper_posterior(objective, best.end);
+    Standardised unscaled = data;
+    unscaled.scale = OutputScale::linear;  // a logarithm's own predictions, whose moments are finite
+    if (training.x.cols() <= sobol_max_dimension)
+      posterior.predict = [&, seen = scrambled_sobol(looked_at, static_cast<int>(training.x.cols()), options.seed)](
+                              const Eigen::VectorXd& u) {
+        return GaussianProcess(options.kernel, options.mean, options.nugget, unscaled, {conditioned(u)}, {})
+            .predict_marginal(seen);
+      };
+    nodes = integration_nodes(posterior, integration_options(data.points.rows(), options.seed));
+  }
+  std::vector<Conditioned> parts;
+  for (const HyperNode& node : nodes) {
+    Conditioned part = conditioned(node.u);
+    part.weight = node.weight;
     diagnostics.jitter = std::max(diagnostics.jitter, part.factorised.jitter);
     parts.push_back(std::move(part));
   }

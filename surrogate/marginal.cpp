@@ -145,6 +145,35 @@ Draws sample(const HyperPosterior& posterior, const IntegrationOptions& options)
   return draws;
 }
 
+/// Coordinates by which draws are split into cells, one column per draw: u, then what predictions make of it.
+struct Coordinates {
+  MatrixXd all;
+  Index hyper = 0;  ///< the rows that are u
+};
+
+/// `members`: the draws that count, the only ones whose predictions are made.
+Coordinates coordinates_of(const HyperPosterior& posterior, const MatrixXd& u, const VectorXd& weight,
+                           const std::vector<Index>& members) {
+  if (!posterior.predict) return {u, u.rows()};
+  std::vector<MarginalPrediction> found;
+  for (const Index i : members) found.push_back(posterior.predict(u.col(i)));
+  const Index points = found.front().mean.size();
+  VectorXd first = VectorXd::Zero(points), second = first;
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    first += weight[members[k]] * found[k].mean;
+    second += weight[members[k]] * (found[k].variance + found[k].mean.cwiseAbs2());
+  }
+  const VectorXd variance = (second - first.cwiseAbs2()).cwiseMax(1e-300);
+  Coordinates result{MatrixXd::Zero(u.rows() + 2 * points, u.cols()), u.rows()};
+  result.all.topRows(u.rows()) = u;
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const VectorXd off = found[k].mean - first;
+    result.all.col(members[k]).segment(u.rows(), points) = off.cwiseQuotient(variance.cwiseSqrt());
+    result.all.col(members[k]).tail(points) = (found[k].variance + off.cwiseAbs2()).cwiseQuotient(variance);
+  }
+  return result;
+}
+
 /// Draws that one node will stand for.
 struct Cell {
   std::vector<Index> members;
@@ -152,16 +181,19 @@ struct Cell {
   Index direction = 0;
 };
 
-Cell make_cell(std::vector<Index> members, const MatrixXd& u, const VectorXd& weight) {
+Cell make_cell(std::vector<Index> members, const Coordinates& coordinates, const VectorXd& weight) {
+  const MatrixXd& x = coordinates.all;
   Cell cell;
-  VectorXd first = VectorXd::Zero(u.rows()), second = first;
+  VectorXd first = VectorXd::Zero(x.rows()), second = first;
   for (const Index i : members) {
     cell.weight += weight[i];
-    first += weight[i] * u.col(i);
-    second += weight[i] * u.col(i).cwiseAbs2();
+    first += weight[i] * x.col(i);
+    second += weight[i] * x.col(i).cwiseAbs2();
   }
-  const VectorXd mean = first / cell.weight, variance = second / cell.weight - mean.cwiseAbs2();
-  cell.score = members.size() > 1 ? cell.weight * variance.maxCoeff(&cell.direction) : 0.0;
+  const VectorXd mean = first / cell.weight;
+  VectorXd score = cell.weight * (second / cell.weight - mean.cwiseAbs2());
+  score.tail(x.rows() - coordinates.hyper) *= cell.weight;
+  cell.score = members.size() > 1 ? score.maxCoeff(&cell.direction) : 0.0;
   cell.centre = mean[cell.direction];
   cell.members = std::move(members);
   return cell;
@@ -177,16 +209,18 @@ std::vector<HyperNode> integration_nodes(const HyperPosterior& posterior, const 
   std::vector<Index> all;
   for (Index i = 0; i < weight.size(); ++i)
     if (weight[i] > 1e-12) all.push_back(i);
-  std::vector<Cell> cells{make_cell(std::move(all), draws.u, weight)};
+  const Coordinates coordinates = coordinates_of(posterior, draws.u, weight, all);
+  std::vector<Cell> cells{make_cell(std::move(all), coordinates, weight)};
   while (static_cast<int>(cells.size()) < options.nodes) {
     const auto widest =
         std::max_element(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.score < b.score; });
     if (!(widest->score > 1e-10)) break;
     std::vector<Index> below, above;
-    for (const Index i : widest->members) (draws.u(widest->direction, i) < widest->centre ? below : above).push_back(i);
+    for (const Index i : widest->members)
+      (coordinates.all(widest->direction, i) < widest->centre ? below : above).push_back(i);
     if (below.empty() || above.empty()) break;  // equal to rounding
-    *widest = make_cell(std::move(below), draws.u, weight);
-    cells.push_back(make_cell(std::move(above), draws.u, weight));
+    *widest = make_cell(std::move(below), coordinates, weight);
+    cells.push_back(make_cell(std::move(above), coordinates, weight));
   }
   data::RandomStream random(options.seed, data::Purpose::optimiser_starts, 2);
   std::vector<HyperNode> nodes{{posterior.mode, 0.0}};

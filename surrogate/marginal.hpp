@@ -9,9 +9,14 @@
 //   stage 1+  t about the weighted mean, with the weighted covariance of all draws so far;
 //   weights   p(u) / sum_k (n_k / n) q_k(u) over all stages (A. Owen & Y. Zhou, J. Am. Stat. Assoc. 95:135 (2000)),
 // the draws of each stage being scrambled Sobol points. For prediction the weighted draws are cut down to a few nodes:
-// the box is split again and again, each time the cell with the largest weight times variance, at its weighted mean
-// along its widest direction; one draw of each cell, taken with probability proportional to its weight, stands for the
-// cell and has its whole weight. Means over the nodes are unbiased for means over the draws.
+// the draws are split into cells again and again; one draw of each cell, taken with probability proportional to its
+// weight, stands for the cell and has its whole weight. Means over the nodes are unbiased for means over the draws. The
+// cell that is split is the one with the largest score, at its weighted mean along the coordinate that the score is of:
+//   weight x variance     of a hyper-parameter;
+//   weight^2 x variance   of what predictions make of it: the mean and the second moment at a few points, in units of
+//                         the predictive sd and variance there. It is the cell's share of the nodes' squared error. A
+//                         rare short length scale widens predictions by tens: it gets cells of its own, where it
+//                         would else stand for many times its weight in one set of nodes and be missed in another.
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
@@ -29,6 +34,8 @@ struct HyperPosterior {
   Eigen::VectorXd prior_mean, prior_precision;  ///< of u; precision 0: flat
   Eigen::VectorXd mode;
   Eigen::MatrixXd covariance;  ///< covariance of the normal approximation at the mode
+  /// Predictions with the hyper-parameters u at a few points: means and variances. Empty: cells are split by u alone.
+  std::function<MarginalPrediction(const Eigen::VectorXd& u)> predict = {};
 };
 
 struct IntegrationOptions {

@@ -319,7 +319,7 @@ void record_problems(const data::StudyFile& study, const Case& c) {
 
 }  // namespace
 
-Case read_case(const data::StudyFile& study, std::string_view material) {
+Case read_case(const data::StudyFile& study, std::string_view material, const std::vector<SetValue>& set) {
   const Section root = study.root();
   Case c;
   read_rig(root.child("rig"), study.folder(), c);
@@ -338,7 +338,14 @@ Case read_case(const data::StudyFile& study, std::string_view material) {
     if (name == material) c = other;
   }
   sort_out_pairs(root, c);
-  record_problems(study, c);
+  Case judged = c;
+  for (const SetValue& value : set) {
+    try {
+      set_target(judged, value.target, value.si);
+    } catch (const data::InputError&) {  // the case does not use it: said where the target is checked
+    }
+  }
+  record_problems(study, judged);
   return c;
 }
 

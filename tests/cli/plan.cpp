@@ -38,6 +38,13 @@ TEST_CASE("a plan ranks readings, says what they are expected to give, and stand
   CHECK_THAT(folder.read("o/report.html"), Contains("What to measure next"));
   CHECK(nlohmann::json::parse(folder.read("o/report.json"))["plan"].size() == 1);
   CHECK_THAT(outcome.err, Contains("nats about cohesion"));
+  // A calibration of the same inputs keeps it; one of others says that it does not.
+  REQUIRE(folder.demcal({"calibrate", study, "--out", "o", "--no-scan"}).status != 70);
+  CHECK(nlohmann::json::parse(folder.read("o/report.json"))["plan"][0]["about"] == "cohesion");
+  const auto other =
+      folder.demcal({"calibrate", study, "--out", "o", "--no-scan", "--set", "parameters.friction.low=0.2"});
+  CHECK_THAT(other.err, Contains("the plan of case powder is left out of the report, since these have changed"));
+  CHECK(nlohmann::json::parse(folder.read("o/report.json"))["plan"].empty());
 }
 
 TEST_CASE("a plan takes candidates, errors and costs from the study") {

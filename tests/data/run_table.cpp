@@ -297,6 +297,13 @@ TEST_CASE("an HDF5 table that is unfinished, short of values or of another study
   data::open_hdf5_to_write(path).group("parameters").set("SI unit", "1", "friction");
   data::open_hdf5_to_write(path).group("parameters").write("stiffness", std::vector<double>(5));
   CHECK(failure().find("65: t.h5: /parameters/stiffness: is a parameter that the study does not have") == 0);
+  data::write_table_hdf5(path, random_table(study, 5), study);
+  data::Study more = study;
+  more.parameters.push_back(study.parameters.front());
+  more.parameters.back().name = "stiffness";
+  CHECK(failure_of(folder, [&] {
+          data::read_table(path, more);
+        }).find("65: t.h5: /parameters: has no 'stiffness', a parameter that came to the study after these runs") == 0);
   data::create_hdf5(path).set("format", "something else");
   CHECK(failure().find("65: t.h5: is not a run table of demcal") == 0);
 }

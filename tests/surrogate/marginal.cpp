@@ -77,9 +77,8 @@ TEST_CASE("the nodes' weights are those of a law with known means, in every comp
 TEST_CASE("integrated predictions are those of quadrature over the hyper-parameters") {
   // Without a nugget u has two components: length scale and signal variance, summed on a fine grid of the posterior.
   const TrainingSet training = few_runs(7, 1);
-  const FitOptions options{.nugget = false, .hyper_uncertainty = HyperUncertainty::integrated};
+  FitOptions options{.nugget = false, .hyper_uncertainty = HyperUncertainty::integrated};
   const MatrixXd points = Eigen::Vector4d(0.05, 0.35, 0.6, 0.99);
-  const MarginalPrediction found = fit(training, options).predict_marginal(points);
   const MarginalPrediction plugged = fit(training, {.nugget = false}).predict_marginal(points);
 
   const Standardised data = standardise(training, options.scale);
@@ -108,10 +107,15 @@ TEST_CASE("integrated predictions are those of quadrature over the hyper-paramet
     second += weight * (prediction.variance + prediction.mean.cwiseAbs2());
   }
   const VectorXd mean = first / total, sd = (second / total - mean.cwiseAbs2()).cwiseSqrt();
-  for (int i = 0; i < 4; ++i) {
-    CAPTURE(i, plugged.mean[i], std::sqrt(plugged.variance[i]), mean[i], sd[i]);
-    CHECK(std::abs(found.mean[i] - mean[i]) < 0.1 * sd[i]);
-    CHECK(std::sqrt(found.variance[i]) == Approx(sd[i]).epsilon(0.2));
+  // Whatever the seed: a short length scale has 0.6 % of the weight and a third of the variance.
+  for (const std::uint64_t seed : {0, 1, 2, 3, 4, 5}) {
+    options.seed = seed;
+    const MarginalPrediction found = fit(training, options).predict_marginal(points);
+    for (int i = 0; i < 4; ++i) {
+      CAPTURE(seed, i, plugged.mean[i], std::sqrt(plugged.variance[i]), mean[i], sd[i]);
+      CHECK(std::abs(found.mean[i] - mean[i]) < 0.06 * sd[i]);
+      CHECK(std::sqrt(found.variance[i]) == Approx(sd[i]).epsilon(0.1));
+    }
   }
 }
 

@@ -37,8 +37,11 @@ std::string reading_in_words(const data::Study& study, const RowOrigin& origin) 
 
 void say_doubt(CaseReport& report, DoubtOf of, Words& words, const data::Study& study) {
   const bool own_engine = study.training.engine == data::Engine::demcal;
-  words.finding = fmt::format("No verdict: {}.{}", report.doubt,
-                              report.fits ? "" : " As it stands, the surrogate does not reproduce the data either.");
+  words.finding =
+      fmt::format("No verdict: {}.{}", report.doubt,
+                  report.fits            ? ""
+                  : of == DoubtOf::prior ? " At no value does the model reproduce the data either."
+                                         : " As it stands, the surrogate does not reproduce the data either.");
   if (const std::string off = farthest_off(report.predictive); !report.fits && !off.empty()) words.finding += " " + off;
   report.traded.clear();
   if (of == DoubtOf::surrogate) {
@@ -53,6 +56,11 @@ void say_doubt(CaseReport& report, DoubtOf of, Words& words, const data::Study& 
     words.consequence = "The values are those of draws that do not agree yet, and no results.";
     words.remedies = {
         "Fix what the data say nothing of, or try the other sampler (--sampler nuts, --sampler mixture)."};
+  } else if (of == DoubtOf::prior) {
+    words.consequence = "The values are a compromise of the two, which neither supports.";
+    words.remedies = {
+        "Check that prior, and what it was measured on; then the data's units and errors. Without the prior the data "
+        "speak alone."};
   } else if (of == DoubtOf::source) {
     words.consequence = "What rests on that case is no result either.";
     words.remedies = {"Follow the remedy of that case first; then calibrate again."};

@@ -3,7 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "uq/findings/thresholds.hpp"
+#include "uq/posterior/prior_conflict.hpp"
 #include "uq/posterior/support.hpp"
 
 namespace uq {
@@ -14,6 +17,12 @@ std::string predicate_of(const Identification& found, const Doubt& doubt) {
   if (!doubt.unsupported.empty()) return "has no verdict itself: " + doubt.unsupported.front();
   if (!found.fits) return fmt::format("does not fit its data (p {:.2g})", found.check.best_fit_p);
   return "";
+}
+
+/// "the data contradict the prior of r by 4.2 standard deviations".
+std::string contradicted(const CaseModel& model, const PriorConflict& conflict) {
+  return fmt::format("the data contradict the prior of {} by {:.2g} standard deviations",
+                     model.unknowns[static_cast<std::size_t>(conflict.unknown)].label, std::abs(conflict.z));
 }
 
 /// "mu comes from case glass, which does not fit its data"; empty where all sources can be rested on.
@@ -59,6 +68,9 @@ Doubt doubt_about(const SampledCase& sampled, const std::vector<JudgedSource>& s
   if (!sampled.draws.converged) return of_all(DoubtOf::draws, "the sampler has not converged");
   if (const std::string source = doubtful_source(model, sources); !source.empty())
     return of_all(DoubtOf::source, source);
+  const std::vector<PriorConflict> conflicts =
+      prior_conflicts(model, sampled.draws.pooled(), VerdictThresholds{}.prior_conflict_sd);
+  if (!conflicts.empty()) return of_all(DoubtOf::prior, contradicted(model, conflicts.front()));
   return found;
 }
 

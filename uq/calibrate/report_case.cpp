@@ -255,6 +255,8 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   Identification found = identify(model, draws, judged);
   take_cut_verdicts(found, sampled, sources);
   add_identification(report, study, model, found);
+  // Where a prior holds the posterior away from values that fit, the model does fit.
+  if (doubt.of == DoubtOf::prior) report.fits = found.check.best_fit_p >= judged.thresholds.best_fit_p;
   add_modes(report, model, found);
   add_diagnostics(report, sampled);
   add_nuisances(report, sampled);
@@ -266,8 +268,8 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
 
   Words words = summarise(found, report.modes_parted_by, study.training.engine == data::Engine::demcal);
   const std::optional<LoneReading> lone =
-      found.fits ? std::nullopt : lone_reading(study, model, found.best_fit.x, options.identify.thresholds);
-  if (!found.fits && !lone) say_misfit(words, report, study, model, found, options.identify.thresholds);
+      report.fits ? std::nullopt : lone_reading(study, model, found.best_fit.x, options.identify.thresholds);
+  if (!report.fits && !lone) say_misfit(words, report, study, model, found, options.identify.thresholds);
   if (doubt.of != DoubtOf::nothing) say_doubt(report, doubt.of, words, study);
   if (lone) say_lone_reading(report, words, study, *lone);
   const std::vector<std::string> of_the_fit =

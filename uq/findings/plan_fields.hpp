@@ -78,6 +78,7 @@ void visit_fields(Visit&& visit, T& p) {
   visit("prior", p.prior);
   visit("sentence", p.sentence);
   visit("cost_unit", p.cost_unit);
+  visit("control_units", p.control_units);
   visit("budget", p.budget);
   visit("candidates", p.candidates);
   visit("batches", p.batches);

@@ -73,10 +73,11 @@ struct PlanArrow {
 };
 
 struct PlanReport {
-  std::string about;      ///< parameter that the plan ranks by
-  bool prior = false;     ///< made before any measurement counts
-  std::string sentence;   ///< the answer
-  std::string cost_unit;  ///< "" where costs are plain numbers
+  std::string about;                                               ///< parameter that the plan ranks by
+  bool prior = false;                                              ///< made before any measurement counts
+  std::string sentence;                                            ///< the answer
+  std::string cost_unit;                                           ///< "" where costs are plain numbers
+  std::vector<std::pair<std::string, std::string>> control_units;  ///< name and unit of each control
   std::optional<double> budget;
   std::vector<PlanCandidate> candidates;  ///< best first: information about `about` per cost
   std::vector<PlanBatch> batches;         ///< of two, three, ... candidates

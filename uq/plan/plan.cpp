@@ -175,7 +175,10 @@ PlanReport make_plan(const Study& study, const std::vector<Emulator>& emulators,
   PlanReport report{.about = basis.name_of(basis.about),
                     .prior = options.prior,
                     .cost_unit = section.cost_unit,
+                    .control_units = {},
                     .budget = options.budget};
+  for (const data::Control& control : study.controls)
+    report.control_units.emplace_back(control.name, control.unit.symbol);
   if (basis.candidates.empty()) {
     report.sentence = options.budget ? "No candidate costs as little as the budget." : "There are no candidates.";
     return report;

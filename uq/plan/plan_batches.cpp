@@ -44,6 +44,11 @@ double quick_worth(const PlanBasis& basis, const std::vector<std::size_t>& membe
   return basis.worth(about.information.value, sd_now, about.sd_after.value);
 }
 
+/// What one set is preferred to another by: the worth of its readings where a budget bounds them, else the worth per cost.
+double merit(const PlanBasis& basis, const std::vector<std::size_t>& members, double worth) {
+  return basis.options.budget ? worth : worth / cost_of(basis, members);
+}
+
 /// The member at `position` that is best beside the others; none where no other is affordable.
 std::optional<std::size_t> best_at(const PlanBasis& basis, std::vector<std::size_t> members, std::size_t position,
                                    double left = 0.0) {
@@ -52,7 +57,7 @@ std::optional<std::size_t> best_at(const PlanBasis& basis, std::vector<std::size
     std::vector<std::size_t> tried = members;
     tried[position] = static_cast<std::size_t>(i);
     if (!basis.candidates[tried[position]].model_only && affordable(basis, tried, left))
-      value[i] = quick_worth(basis, tried);
+      value[i] = merit(basis, tried, quick_worth(basis, tried));
   });
   const auto best = std::max_element(value.begin(), value.end());
   if (*best < 0.0) return {};
@@ -100,7 +105,9 @@ std::vector<PlanBatch> batches_of(const PlanBasis& basis) {
     const auto about = static_cast<std::size_t>(basis.about);
     const Information picked = basis.information_of(rows_of(basis, greedy)),
                       exchanged = basis.information_of(rows_of(basis, members));
-    if (exchanged.about[about].information.value < picked.about[about].information.value) members = greedy;
+    if (merit(basis, members, exchanged.about[about].information.value) <
+        merit(basis, greedy, picked.about[about].information.value))
+      members = greedy;
     const Information& kept = members == greedy ? picked : exchanged;
     PlanBatch batch{.candidates = {},
                     .information = kept.about[about].information.value,

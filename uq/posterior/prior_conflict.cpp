@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "uq/posterior/curvature.hpp"
 
 namespace uq {
 namespace {
 
-constexpr double told_least = 0.05;  // contraction: below, 1 - v is mostly the draws' own scatter
+constexpr double told_by_draws = 0.2;  // contraction: below, 1 - v of the draws is too much their own scatter
+constexpr double told_least = 1e-3;    // below, the mean of the scores is, too
 
 double normal_score(const ScaledPrior& prior, double u) {
   constexpr double tail = 1e-300;
@@ -16,17 +20,37 @@ double normal_score(const ScaledPrior& prior, double u) {
   return gsl_cdf_ugaussian_Pinv(std::clamp(below, tail, 1.0 - 1e-16));
 }
 
+/// 1 - v by the curvature at u: J / (J + 1), J what the data tell of the prior's normal score beside all other unknowns.
+double told_by_curvature(const CaseModel& model, const Eigen::VectorXd& u, Eigen::Index k) {
+  const std::optional<Eigen::MatrixXd> all = curvature(model, u, KnownBeside::all);
+  if (!all) return 0.0;
+  const ScaledPrior& prior = model.unknowns[static_cast<std::size_t>(k)].prior;
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    if (i != k) others.push_back(i);
+  const Eigen::VectorXd column = (*all)(others, k);
+  double information = (*all)(k, k) - std::pow(prior.sd(), -2);
+  if (!others.empty()) information -= column.dot(Eigen::MatrixXd((*all)(others, others)).llt().solve(column));
+  const double step = 1e-2 * prior.sd();
+  const double slope = (normal_score(prior, u[k] + step) - normal_score(prior, u[k] - step)) / (2.0 * step);
+  if (!(slope > 0.0) || !(information > 0.0)) return 0.0;
+  const double of_score = information / (slope * slope);
+  return of_score / (1.0 + of_score);
+}
+
 }  // namespace
 
 std::vector<PriorConflict> prior_conflicts(const CaseModel& model, const Eigen::MatrixXd& draws, double most) {
   std::vector<PriorConflict> found;
+  const Eigen::VectorXd centre = draws.colwise().mean();
   for (int k = 0; k < model.dimension(); ++k) {
     const Unknown& unknown = model.unknowns[k];
     if (!unknown.cut_from.empty() || !unknown.prior.is_informative()) continue;
     const Eigen::ArrayXd score =
         draws.col(k).unaryExpr([&](double u) { return normal_score(unknown.prior, u); }).array();
-    const double told = 1.0 - (score - score.mean()).square().mean();
-    const double z = score.mean() / (told > told_least ? std::sqrt(told) : 1.0);
+    double told = 1.0 - (score - score.mean()).square().mean();
+    if (told < told_by_draws) told = told_by_curvature(model, centre, k);
+    const double z = score.mean() / std::sqrt(std::max(told, told_least));
     if (std::abs(z) > most) found.push_back({k, z});
   }
   return found;

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "uq/findings/study_units.hpp"
 #include "uq/report/figures.hpp"
 #include "uq/report/plot.hpp"
 
@@ -18,6 +19,39 @@ std::vector<const PlanCandidate*> simple(const PlanReport& plan) {
   for (const PlanCandidate& one : plan.candidates)
     if (one.settings.size() == 1 && one.outputs.size() == 1) found.push_back(&one);
   return found;
+}
+
+using Setting = std::map<std::string, double>;
+
+/// The setting without one of its controls.
+Setting without(Setting setting, const std::string& control) {
+  setting.erase(control);
+  return setting;
+}
+
+/// Those at the setting of the other controls that most have: a curve over one control holds the others.
+std::vector<const PlanCandidate*> along(const std::string& control, const std::vector<const PlanCandidate*>& all) {
+  std::map<Setting, std::size_t> count;
+  for (const PlanCandidate* one : all) ++count[without(one->settings.front(), control)];
+  const auto most =
+      std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::vector<const PlanCandidate*> found;
+  for (const PlanCandidate* one : all)
+    if (without(one->settings.front(), control) == most->first) found.push_back(one);
+  return found;
+}
+
+/// "rpm (rpm)", and at which values the other controls stand.
+std::string axis_of(const PlanReport& plan, const std::string& control, const Setting& others) {
+  const auto unit_of = [&](const std::string& name) {
+    for (const auto& [known, unit] : plan.control_units)
+      if (known == name) return unit;
+    return std::string();
+  };
+  std::string text = control + (unit_of(control).empty() ? "" : fmt::format(" ({})", unit_of(control)));
+  for (const auto& [name, value] : others)
+    text += fmt::format(", at {} {:.4g}{}", name, value, behind_number(unit_of(name)));
+  return text;
 }
 
 /// The control with the most values among them; empty where none varies.
@@ -38,11 +72,13 @@ std::string control_of(const std::vector<const PlanCandidate*>& candidates) {
 }  // namespace
 
 std::optional<Figure> information_figure(const PlanReport& plan, const std::string& stem) {
-  const std::vector<const PlanCandidate*> candidates = simple(plan);
-  const std::string control = control_of(candidates);
+  const std::vector<const PlanCandidate*> of_one = simple(plan);
+  const std::string control = control_of(of_one);
   if (control.empty()) return {};
+  const std::vector<const PlanCandidate*> candidates = along(control, of_one);
   struct Series {
     std::string title;
+    bool asked = false;  ///< of the parameter that the plan is about
     std::vector<std::array<double, 3>> points;
   };
   std::vector<Series> all;
@@ -54,7 +90,7 @@ std::optional<Figure> information_figure(const PlanReport& plan, const std::stri
     for (std::size_t k = 0; k < candidates.front()->parameters.size(); ++k) {
       const std::string& parameter = candidates.front()->parameters[k].name;
       // Every parameter for what is measured, the one asked for everywhere.
-      Series series{.title = output + " about " + parameter, .points = {}};
+      Series series{.title = output + " about " + parameter, .asked = parameter == plan.about, .points = {}};
       bool measured = false;
       for (const PlanCandidate* one : candidates)
         if (one->outputs.front() == output) {
@@ -66,6 +102,8 @@ std::optional<Figure> information_figure(const PlanReport& plan, const std::stri
       std::sort(series.points.begin(), series.points.end());
       all.push_back(std::move(series));
     }
+  // Colours are few: what is asked for comes first, of every output.
+  std::stable_partition(all.begin(), all.end(), [](const Series& one) { return one.asked; });
   if (all.size() > plot::colours.size()) all.resize(plot::colours.size());
   plot::Extent across;
   double top = 0.0;
@@ -87,11 +125,13 @@ std::optional<Figure> information_figure(const PlanReport& plan, const std::stri
         i == 0 ? "plot " : ", \\\n  ", stem, i, plot::colours[i], 4 + i, gnuplot_text(all[i].title));
   }
   const plot::Extent range = across.padded(0.05);
-  figure.script = plot::common_style() + plot::label('x', {1.0, control}) +
-                  plot::label('y', {1.0, "information (nats)"}) +
-                  fmt::format("set xrange [{:.10g}:{:.10g}]\nset yrange [0:{:.10g}]\n", range.low, range.high,
-                              std::max(1.08 * top, 0.05)) +
-                  curves;
+  figure.script =
+      plot::common_style() +
+      plot::label('x', {1.0, axis_of(plan, control, without(candidates.front()->settings.front(), control))}) +
+      plot::label('y', {1.0, "information (nats)"}) +
+      fmt::format("set xrange [{:.10g}:{:.10g}]\nset yrange [0:{:.10g}]\n", range.low, range.high,
+                  std::max(1.08 * top, 0.05)) +
+      curves;
   figure.alt = fmt::format("information that a reading is expected to give, against {}", control);
   return figure;
 }

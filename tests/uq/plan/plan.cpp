@@ -414,3 +414,16 @@ TEST_CASE("of Dakota's heated rod the reading in the middle teaches most, by as 
     CHECK(std::abs(one.information - truth) <= one.information_error + 0.01);
   }
 }
+
+TEST_CASE("without a budget a batch is the best per cost, as single candidates are ranked", "[plan]") {
+  // The dear reading teaches more than two cheap ones, and costs twenty of them.
+  const data::Study study = one_unknown();
+  data::PlanEntry dear = reading_of(1, 0.05), cheap = reading_of(1, 0.12);
+  dear.name = "dear";
+  dear.cost = 20.0;
+  const PlanReport plan =
+      plan_of(study, formula::emulators(), {.candidates = {dear, cheap}}, {.about = "a", .batch = 2});
+  REQUIRE(plan.batches.size() == 1);
+  CHECK(plan.batches[0].candidates == std::vector<std::string>{"next", "next"});
+  CHECK(plan.batches[0].information < named(plan, "dear").parameters[0].information);
+}

@@ -12,10 +12,10 @@ namespace {
 
 using namespace closed_form;
 
-uq::CaseModel one_reading(const data::Prior& prior) {
+uq::CaseModel one_reading(const data::Prior& prior, double error = 0.1) {
   return make_case(
       {{"a", 0.0, 10.0, prior}}, [](const Eigen::VectorXd& p, double) { return p[0]; },
-      Eigen::VectorXd::Constant(1, 0.5), Eigen::VectorXd::Constant(1, 5.0), Eigen::VectorXd::Constant(1, 0.1));
+      Eigen::VectorXd::Constant(1, 0.5), Eigen::VectorXd::Constant(1, 5.0), Eigen::VectorXd::Constant(1, error));
 }
 
 /// Draws of a posterior that is normal in `score`, with a its value there.
@@ -27,8 +27,8 @@ Eigen::MatrixXd draws_of(double mean, double sd, const Value& value) {
   return draws;
 }
 
-double z_of(const data::Prior& prior, const Eigen::MatrixXd& draws) {
-  const auto found = uq::prior_conflicts(one_reading(prior), draws, 0.0);
+double z_of(const data::Prior& prior, const Eigen::MatrixXd& draws, double error = 0.1) {
+  const auto found = uq::prior_conflicts(one_reading(prior, error), draws, 0.0);
   REQUIRE(found.size() == 1);
   return found[0].z;
 }
@@ -44,6 +44,18 @@ TEST_CASE("prior and data differ by as many standard deviations as the reading l
       const Eigen::MatrixXd draws = draws_of(mean, std::sqrt(variance), [](double a) { return a; });
       CHECK(z_of(prior, draws) == Approx((y - 5.0) / std::hypot(0.5, t)).margin(0.1));
     }
+}
+
+TEST_CASE("a prior that is far narrower than the data's error is judged as any other", "[uq]") {
+  // The data move the posterior by a few of its errors only: 1.3 of the prior's sd where the two differ by nine.
+  for (const double sd : {0.2, 0.1, 0.05, 0.03}) {
+    const data::Prior prior{.kind = data::PriorKind::normal, .low = 0.0, .high = 10.0, .mean = 7.0, .sd = sd};
+    const double t = 0.37, y = 3.6, told = sd * sd / (sd * sd + t * t);
+    const Eigen::MatrixXd draws =
+        draws_of(7.0 + (y - 7.0) * told, sd * std::sqrt(1.0 - told), [](double a) { return a; });
+    CAPTURE(sd, told);
+    CHECK(z_of(prior, draws, t) == Approx((y - 7.0) / std::hypot(sd, t)).epsilon(0.05));
+  }
 }
 
 TEST_CASE("a skew prior is judged by its own tails", "[uq]") {
