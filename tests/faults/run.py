@@ -71,7 +71,7 @@ def commands(data):
     def tiny(name, *words):
         return one(name, *words, study=quick)
     train, calibrate = tiny("train", "--jobs", "1"), one("calibrate", "--no-scan")
-    simulate = tiny("simulate", "--frames", "2", "--stl", "--at", "rpm=200")
+    simulate = tiny("simulate", "--frames", "2", "--stl", "--threads", "3", "--at", "rpm=200")
     export = ["export", quick, "case", "--to", "liggghts", "--at", "hamaker=0", *TINY]
     return {
         "help": Command("help", "training.runs"),
@@ -82,7 +82,7 @@ def commands(data):
         "observe again": Command("observe", "log.csv", "--dead-time", "1", before=[["observe", "log.csv"]]),
         "design": Command(*tiny("design", "--runs", "5")),
         "train": Command(*train),
-        "train on": Command(*tiny("train", "--jobs", "2", "--runs", "2"), before=[train],
+        "train on": Command(*tiny("train", "--jobs", "3", "--runs", "3"), before=[train],
                             again=tiny("train", "--jobs", "1")),
         "train at the posterior": Command(*tiny("train", "--jobs", "1", "--at-posterior", "2"),
                                           before=[train, tiny("design", "--runs", "3")], moved=NEXT_RUNS, again=tiny("check")),

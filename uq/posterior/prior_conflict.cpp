@@ -7,12 +7,12 @@
 #include <optional>
 
 #include "uq/posterior/curvature.hpp"
+#include "uq/posterior/posterior.hpp"
 
 namespace uq {
 namespace {
 
 constexpr double told_by_draws = 0.2;  // contraction: below, 1 - v of the draws is too much their own scatter
-constexpr double told_least = 1e-3;    // below, the mean of the scores is, too
 
 double normal_score(const ScaledPrior& prior, double u) {
   constexpr double tail = 1e-300;
@@ -20,8 +20,9 @@ double normal_score(const ScaledPrior& prior, double u) {
   return gsl_cdf_ugaussian_Pinv(std::clamp(below, tail, 1.0 - 1e-16));
 }
 
-/// 1 - v by the curvature at u: J / (J + 1), J what the data tell of the prior's normal score beside all other unknowns.
-double told_by_curvature(const CaseModel& model, const Eigen::VectorXd& u, Eigen::Index k) {
+/// z by the slope and the curvature of the likelihood at u: with J what the data tell of the prior's normal score beside
+/// all other unknowns, they want s* = s + slope / J there, and z = s* sqrt(J / (J + 1)). Nothing where they tell nothing.
+double conflict_at(const CaseModel& model, const Eigen::VectorXd& u, Eigen::Index k) {
   const std::optional<Eigen::MatrixXd> all = curvature(model, u, KnownBeside::all);
   if (!all) return 0.0;
   const ScaledPrior& prior = model.unknowns[static_cast<std::size_t>(k)].prior;
@@ -32,10 +33,11 @@ double told_by_curvature(const CaseModel& model, const Eigen::VectorXd& u, Eigen
   double information = (*all)(k, k) - std::pow(prior.sd(), -2);
   if (!others.empty()) information -= column.dot(Eigen::MatrixXd((*all)(others, others)).llt().solve(column));
   const double step = 1e-2 * prior.sd();
-  const double slope = (normal_score(prior, u[k] + step) - normal_score(prior, u[k] - step)) / (2.0 * step);
-  if (!(slope > 0.0) || !(information > 0.0)) return 0.0;
-  const double of_score = information / (slope * slope);
-  return of_score / (1.0 + of_score);
+  const double rise = (normal_score(prior, u[k] + step) - normal_score(prior, u[k] - step)) / (2.0 * step);
+  const double of_score = information / (rise * rise);
+  if (!(rise > 0.0) || !(of_score > 1e-12)) return 0.0;
+  const double slope = log_likelihood_gradient(model, u).gradient[k] / rise;
+  return (normal_score(prior, u[k]) + slope / of_score) * std::sqrt(of_score / (of_score + 1.0));
 }
 
 }  // namespace
@@ -48,9 +50,8 @@ std::vector<PriorConflict> prior_conflicts(const CaseModel& model, const Eigen::
     if (!unknown.cut_from.empty() || !unknown.prior.is_informative()) continue;
     const Eigen::ArrayXd score =
         draws.col(k).unaryExpr([&](double u) { return normal_score(unknown.prior, u); }).array();
-    double told = 1.0 - (score - score.mean()).square().mean();
-    if (told < told_by_draws) told = told_by_curvature(model, centre, k);
-    const double z = score.mean() / std::sqrt(std::max(told, told_least));
+    const double told = 1.0 - (score - score.mean()).square().mean();
+    const double z = told > told_by_draws ? score.mean() / std::sqrt(told) : conflict_at(model, centre, k);
     if (std::abs(z) > most) found.push_back({k, z});
   }
   return found;

@@ -8,7 +8,7 @@
 // is standard normal where prior and data agree: the check of M. Evans, H. Moshonov, Bayesian Anal. 1:893 (2006), on
 // the posterior mean as the sufficient statistic. Exact for normal laws; the score makes it hold for skew and cut
 // priors, too. Where a prior is so narrow that the data hardly move it, 1 - v is small beside the draws' own scatter of v.
-// It is then worked out from the curvature at the posterior's mean: a narrow law is the more nearly normal.
+// z is then worked out from the likelihood's slope and curvature at the posterior's mean: over a narrow law they hardly change.
 #include <Eigen/Dense>
 #include <vector>
 

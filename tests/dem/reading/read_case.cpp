@@ -241,3 +241,24 @@ TEST_CASE("a key that the chosen laws do not read, and a pair of no such materia
   CHECK_THAT(reading(one_material("[[contact.pair]]\nbetween = [\"mix\", \"wall\"]\nfriction = \"2 mm\"\n")).said,
              Catch::Contains("friction"));
 }
+
+TEST_CASE("a rig is judged at the values that the runs give it, and not at a default that no run has") {
+  // The small slice of data/quick has room for some 1,000 spheres; without a fill 2,400 are the default.
+  const TemporaryFolder folder;
+  const std::string text =
+      "[rig]\nkind = \"slice\"\nshaft_radius = \"1.5 mm\"\nblade_radius = \"3.6 mm\"\nblade_thickness = \"0.8 mm\"\n"
+      "trough_radius = \"6.0 mm\"\npitch = \"4.8 mm\"\n[materials.mix]\ndensity = \"6090 kg/m3\"\ndiameter = \"0.8 mm\"\n";
+  const auto said = [&](const std::vector<dem::SetValue>& set) {
+    const data::StudyFile file = study(folder, text);
+    dem::read_case(file, "mix", set);
+    try {
+      file.finish();
+    } catch (const data::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK_THAT(said({}), Catch::Contains("makes 2400 spheres"));
+  CHECK(said({{"rig.fill", 450.0}}).empty());
+  CHECK_THAT(said({{"rig.fill", 3000.0}}), Catch::Contains("makes 3000 spheres"));
+}

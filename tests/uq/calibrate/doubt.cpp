@@ -92,3 +92,20 @@ TEST_CASE("a friction cut with three values gives the cohesion three, and none b
     CHECK(cohesion.intervals[i].high - cohesion.intervals[i].low < 0.06);
   }
 }
+
+TEST_CASE("a prior that the data contradict leaves no verdict, however narrow it is, and the model is said to fit",
+          "[uq]") {
+  // At speed 0 the torque 1.8 +- 0.05 is a friction of 0.93 +- 0.02. The prior says less, to 0.02 or to 0.001.
+  const TemporaryFolder folder;
+  data::Study study = chain(folder, "0,1.8,0.05\n");
+  for (const auto& [mean, sd] : {std::pair{0.83, 0.02}, {0.86, 0.001}}) {
+    study.cases[0].priors["friction"] = {
+        .kind = data::PriorKind::normal, .low = 0.0, .high = 1.0, .mean = mean, .sd = sd};
+    const CaseReport report = judged(study, 0);
+    CAPTURE(sd, report.finding);
+    CHECK_THAT(report.finding, Catch::Contains("No verdict: the data contradict the prior of friction by"));
+    CHECK_THAT(report.remedy, Catch::Contains("Check that prior"));
+    CHECK(report.fits);
+    CHECK(report.parameters[0].verdict == Verdict::not_identified);
+  }
+}

@@ -12,10 +12,10 @@ namespace {
 
 using namespace closed_form;
 
-uq::CaseModel one_reading(const data::Prior& prior, double error = 0.1) {
+uq::CaseModel one_reading(const data::Prior& prior, double error = 0.1, double reading = 5.0) {
   return make_case(
       {{"a", 0.0, 10.0, prior}}, [](const Eigen::VectorXd& p, double) { return p[0]; },
-      Eigen::VectorXd::Constant(1, 0.5), Eigen::VectorXd::Constant(1, 5.0), Eigen::VectorXd::Constant(1, error));
+      Eigen::VectorXd::Constant(1, 0.5), Eigen::VectorXd::Constant(1, reading), Eigen::VectorXd::Constant(1, error));
 }
 
 /// Draws of a posterior that is normal in `score`, with a its value there.
@@ -27,8 +27,8 @@ Eigen::MatrixXd draws_of(double mean, double sd, const Value& value) {
   return draws;
 }
 
-double z_of(const data::Prior& prior, const Eigen::MatrixXd& draws, double error = 0.1) {
-  const auto found = uq::prior_conflicts(one_reading(prior, error), draws, 0.0);
+double z_of(const data::Prior& prior, const Eigen::MatrixXd& draws, double error = 0.1, double reading = 5.0) {
+  const auto found = uq::prior_conflicts(one_reading(prior, error, reading), draws, 0.0);
   REQUIRE(found.size() == 1);
   return found[0].z;
 }
@@ -54,7 +54,7 @@ TEST_CASE("a prior that is far narrower than the data's error is judged as any o
     const Eigen::MatrixXd draws =
         draws_of(7.0 + (y - 7.0) * told, sd * std::sqrt(1.0 - told), [](double a) { return a; });
     CAPTURE(sd, told);
-    CHECK(z_of(prior, draws, t) == Approx((y - 7.0) / std::hypot(sd, t)).epsilon(0.05));
+    CHECK(z_of(prior, draws, t, y) == Approx((y - 7.0) / std::hypot(sd, t)).epsilon(0.05));
   }
 }
 
