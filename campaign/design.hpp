@@ -15,11 +15,7 @@ constexpr int point_digits = 5;  ///< significant digits of a point's values in 
 /// is typed in is the same point.
 std::vector<Point> training_design(const Workspace& workspace, const std::string& material, int first, int runs);
 
-/// The points to simulate now: points without a row in `table`, or with a row that is not of the steady flow and whose
-/// run would now go on for longer, or with one that lacks an output which the study has by now. First come those that
-/// OUT/design.csv lists, as an unfinished campaign left it or somebody wrote it, then the study's own design. When
-/// nothing was left unfinished, further points are added up to `runs`, shared among the materials. `runs` above 0 is
-/// also the most.
+/// What a campaign simulates now, and what it leaves for later.
 struct Campaign {
   std::vector<Point> points;
   std::vector<Point> later;  ///< points of OUT/design.csv that are not made now, and stay in it
@@ -28,9 +24,15 @@ struct Campaign {
   /// All that OUT/design.csv lists while `now` of the points are still to be made.
   std::vector<Point> listed(std::vector<Point> now) const;
 };
+
+/// The points to simulate now: points without a row in `table`, or with a row that is not of the steady flow and whose
+/// run would now go on for longer, or with one that lacks an output which the study has by now. First come those that
+/// OUT/design.csv lists, as an unfinished campaign left it or somebody wrote it, then the study's own design. When
+/// nothing was left unfinished, further points are added up to `runs`, shared among the materials. `runs` above 0 is
+/// also the most.
 Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, int runs);
 
-/// Reads and writes OUT/design.csv: material, parameters and controls in the study's units.
+/// Reads OUT/design.csv: material, parameters and controls in the study's units.
 std::vector<Point> read_design(const Workspace& workspace);
 std::vector<Point> read_points(const Workspace& workspace, const std::string& path);
 /// A further column of a file of points, behind the others.
@@ -56,6 +58,7 @@ std::vector<PlannedRun> read_runs(const Workspace& workspace, const std::string&
 /// The first `runs` points of OUT/next-runs.csv that have no row yet. Throws InputError (66) when there is no such
 /// file.
 Campaign plan_at_posterior(const Workspace& workspace, const data::RunTable& table, int runs);
+/// Writes OUT/design.csv, as read_design reads it.
 void write_design(const Workspace& workspace, const std::vector<Point>& points);
 
 /// The name of the run's file: "zirconia-100-1f3a..". It is equal for equal point, seed and settings.

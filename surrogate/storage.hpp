@@ -3,12 +3,14 @@
 //   /                          format, kind, study_hash, table_hash, and the names of process0, process1, ...
 //   /processN                  kernel, mean, scale, nugget, shift, unit, log_jacobian, converged, jitter,
 //                              agreeing_starts
-//   /processN/points, z, noise, point_of_run, active, low, high
+//   /processN/points, z, noise, point_of_run, active, low, high, gaps
 //                              the standardised training set (training.hpp)
 //   /processN/length_scales, signal_variance, nugget_variance, weight
 //                              one row for each setting of the hyper-parameters
-//   /processN/starts           one row for each start: objective, gradient norm, evaluations, converged
-//   /processN/bound_*          hyper-parameters that are on a bound
+//   /processN/starts           one row for each start: objective, gradient norm, evaluations, converged, points,
+//                              agrees; start_from and start_to: its logarithms before and after
+//   /processN/bound_names, bound_hits
+//                              hyper-parameters that are on a bound: upper, value, harmless, input, effect
 //   /processN/second_level     where there is a second level (two_level.hpp): x, y, noise_variance, discrepancy_mean,
 //                              settings (weight, rho, length factor, discrepancy sd, nugget sd), and the fit's outcome
 //   /processN/remarks          a text of the caller's, kept as it is

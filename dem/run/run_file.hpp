@@ -1,10 +1,11 @@
 #pragma once
 // run.h5: one run with its series, summary, diagnostics, settings and checkpoint.
 //
-// /            attributes: format, demcal, isa, created, seed, status, reason, settings (text of settings_text), ...
+// /            attributes: format, demcal, isa, seed, status, reason, settings (text of settings_text), material,
+//              rule (look_rule_version), cpu_seconds, ...; warnings
 // /series      time and one dataset per sampled output, each with a `unit`
-// /summary     per output: mean, standard_error, integrated_time, effective_samples, dropped, reliable (columns),
-//              `names`; attributes state ("steady", "drifting" or "short"), why, ordering, measured_from_s, turns;
+// /summary     per output: mean, standard_error, sd, integrated_time, effective_samples, dropped, reliable, drifts
+//              (columns), `names`, `units`; attributes state ("steady", "drifting" or "short"), why, ordering, measured_from_s, turns;
 //              drift_p of torque, coordination and kinetic energy
 // /diagnostics attributes, SI
 // /checkpoint  the state, to go on from; bytes as they are in memory, so only for the same build

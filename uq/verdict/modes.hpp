@@ -4,9 +4,8 @@
 // representative: the most likely point of the profiles' paths inside it.
 //
 // The measurement that would part the modes is found so: at each observed output, one control after the other is moved
-// through its range, the others as
-// observed, and the largest difference of the modes' predictions is taken, in the measurement's standard errors, beyond
-// what the surrogate's own error may bring about.
+// through its range, the others as observed. The largest difference of the modes' predictions is taken, in the
+// measurement's standard errors, beyond what the surrogate's own error may bring about.
 #include <Eigen/Dense>
 #include <string>
 #include <vector>
