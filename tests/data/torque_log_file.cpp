@@ -355,7 +355,8 @@ TEST_CASE("clocks go on past midnight, and stamps are spread as their order allo
   CHECK(std::abs(stamps[250] - truth[250]) < 0.3);
 }
 
-TEST_CASE("a standstill of 200,000 samples takes no longer than its reading") {
+TEST_CASE("a standstill of 200,000 samples is no plateau") {
+  // Were the search quadratic, the test would run into its time limit.
   data::TorqueLog log{.file = "log.csv"};
   log.interval = 0.001;
   for (int i = 0; i < 200000; ++i) {
@@ -363,9 +364,7 @@ TEST_CASE("a standstill of 200,000 samples takes no longer than its reading") {
     log.torque.push_back(0.0);
     log.speed.push_back(i < 190000 ? 0.0 : 10.0);
   }
-  const auto start = std::chrono::steady_clock::now();
   CHECK(data::find_plateaus(log).size() == 1);
-  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
 }
 
 TEST_CASE("a dead sensor makes no observation, and what it read before is no start-up") {
