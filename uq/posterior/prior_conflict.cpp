@@ -12,7 +12,8 @@
 namespace uq {
 namespace {
 
-constexpr double told_by_draws = 0.2;  // contraction: below, 1 - v of the draws is too much their own scatter
+constexpr double told_by_draws = 0.2;  // contraction: below, 1 - v of the draws is much of it their own scatter
+constexpr double told_least = 0.05;    // below, nearly all of it
 
 double normal_score(const ScaledPrior& prior, double u) {
   constexpr double tail = 1e-300;
@@ -20,11 +21,16 @@ double normal_score(const ScaledPrior& prior, double u) {
   return gsl_cdf_ugaussian_Pinv(std::clamp(below, tail, 1.0 - 1e-16));
 }
 
+/// A conflict, and the contraction 1 - v that the data make of the prior's score.
+struct Conflict {
+  double z = 0.0, told = 0.0;
+};
+
 /// z by the slope and the curvature of the likelihood at u: with J what the data tell of the prior's normal score beside
 /// all other unknowns, they want s* = s + slope / J there, and z = s* sqrt(J / (J + 1)). Nothing where they tell nothing.
-double conflict_at(const CaseModel& model, const Eigen::VectorXd& u, Eigen::Index k) {
+Conflict conflict_at(const CaseModel& model, const Eigen::VectorXd& u, Eigen::Index k) {
   const std::optional<Eigen::MatrixXd> all = curvature(model, u, KnownBeside::all);
-  if (!all) return 0.0;
+  if (!all) return {};
   const ScaledPrior& prior = model.unknowns[static_cast<std::size_t>(k)].prior;
   std::vector<Eigen::Index> others;
   for (Eigen::Index i = 0; i < u.size(); ++i)
@@ -35,9 +41,17 @@ double conflict_at(const CaseModel& model, const Eigen::VectorXd& u, Eigen::Inde
   const double step = 1e-2 * prior.sd();
   const double rise = (normal_score(prior, u[k] + step) - normal_score(prior, u[k] - step)) / (2.0 * step);
   const double of_score = information / (rise * rise);
-  if (!(rise > 0.0) || !(of_score > 1e-12)) return 0.0;
+  if (!(rise > 0.0) || !(of_score > 1e-12)) return {};
   const double slope = log_likelihood_gradient(model, u).gradient[k] / rise;
-  return (normal_score(prior, u[k]) + slope / of_score) * std::sqrt(of_score / (of_score + 1.0));
+  const double told = of_score / (of_score + 1.0);
+  return {(normal_score(prior, u[k]) + slope / of_score) * std::sqrt(told), told};
+}
+
+/// Whether the draws' mean score is the one that a conflict leads to. On a curved ridge it is not: there slope and
+/// curvature at the posterior's mean, which lies beside the ridge, say nothing of the posterior.
+bool explains(const Conflict& conflict, double mean_score) {
+  constexpr double scatter = 0.1, share = 0.3;
+  return std::abs(conflict.z * std::sqrt(conflict.told) - mean_score) < scatter + share * std::abs(mean_score);
 }
 
 }  // namespace
@@ -51,7 +65,9 @@ std::vector<PriorConflict> prior_conflicts(const CaseModel& model, const Eigen::
     const Eigen::ArrayXd score =
         draws.col(k).unaryExpr([&](double u) { return normal_score(unknown.prior, u); }).array();
     const double told = 1.0 - (score - score.mean()).square().mean();
-    const double z = told > told_by_draws ? score.mean() / std::sqrt(told) : conflict_at(model, centre, k);
+    double z = score.mean() / (told > told_least ? std::sqrt(told) : 1.0);
+    if (told < told_by_draws)
+      if (const Conflict at_centre = conflict_at(model, centre, k); explains(at_centre, score.mean())) z = at_centre.z;
     if (std::abs(z) > most) found.push_back({k, z});
   }
   return found;

@@ -2,6 +2,7 @@
 // N(m, sqrt(s^2 + t^2)), so that z = (y - m) / sqrt(s^2 + t^2), whatever the posterior is worked out by.
 #include "uq/posterior/prior_conflict.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -56,6 +57,22 @@ TEST_CASE("a prior that is far narrower than the data's error is judged as any o
     CAPTURE(sd, told);
     CHECK(z_of(prior, draws, t, y) == Approx((y - 7.0) / std::hypot(sd, t)).epsilon(0.05));
   }
+}
+
+TEST_CASE("on a thin curved ridge, beside which the posterior's mean lies, nothing contradicts a prior that agrees",
+          "[uq]") {
+  // b = a^2 to 0.001 and no more is known: a keeps its prior.
+  const data::Prior prior{.kind = data::PriorKind::normal, .low = -4.0, .high = 4.0, .mean = 0.0, .sd = 1.0};
+  const uq::CaseModel model = make_case(
+      {{"a", -4.0, 4.0, prior}, {"b", -1.0, 16.0}}, [](const Eigen::VectorXd& p, double) { return p[1] - p[0] * p[0]; },
+      Eigen::VectorXd::Constant(1, 0.5), Eigen::VectorXd::Constant(1, 0.0), Eigen::VectorXd::Constant(1, 0.001));
+  data::RandomStream random(2, data::Purpose::posterior_predictive);
+  Eigen::MatrixXd draws(4000, 2);
+  for (Eigen::Index i = 0; i < draws.rows(); ++i) {
+    const double a = std::clamp(random.normal(), -3.9, 3.9);
+    draws.row(i) << (a + 4.0) / 8.0, (a * a + 1.0) / 17.0;
+  }
+  CHECK(uq::prior_conflicts(model, draws, 1.0).empty());
 }
 
 TEST_CASE("a skew prior is judged by its own tails", "[uq]") {
