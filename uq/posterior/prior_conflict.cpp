@@ -14,6 +14,7 @@ namespace {
 
 constexpr double told_by_draws = 0.2;  // contraction: below, 1 - v of the draws is much of it their own scatter
 constexpr double told_least = 0.05;    // below, nearly all of it
+constexpr double told_at_all = 1e-3;   // below, the data say nothing that slope and curvature could show safely
 
 double normal_score(const ScaledPrior& prior, double u) {
   constexpr double tail = 1e-300;
@@ -50,8 +51,9 @@ Conflict conflict_at(const CaseModel& model, const Eigen::VectorXd& u, Eigen::In
 /// Whether the draws' mean score is the one that a conflict leads to. On a curved ridge it is not: there slope and
 /// curvature at the posterior's mean, which lies beside the ridge, say nothing of the posterior.
 bool explains(const Conflict& conflict, double mean_score) {
-  constexpr double scatter = 0.1, share = 0.3;
-  return std::abs(conflict.z * std::sqrt(conflict.told) - mean_score) < scatter + share * std::abs(mean_score);
+  constexpr double scatter = 0.08, share = 0.3;
+  return conflict.told > told_at_all &&
+         std::abs(conflict.z * std::sqrt(conflict.told) - mean_score) < scatter + share * std::abs(mean_score);
 }
 
 }  // namespace
