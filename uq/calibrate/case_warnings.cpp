@@ -30,10 +30,9 @@ void add_sampler_warnings(CaseReport& report) {
 
 }  // namespace
 
-void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
-                         const VerdictThresholds& thresholds) {
-  if (!report.converged) return;
-  for (const PriorConflict& conflict : prior_conflicts(*sampled.model, draws, thresholds.prior_conflict_sd)) {
+void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const std::vector<PriorConflict>& conflicts) {
+  if (!report.converged) return;  // a mode that no draw visits is seen after the draws
+  for (const PriorConflict& conflict : conflicts) {
     const NuisanceReport found = summary_of(sampled, conflict.unknown);
     const std::string unit = behind_number(found.unit);
     report.warnings.push_back(

@@ -11,7 +11,6 @@ void add_warnings(CaseReport& report, DoubtOf of, const SampledCase& sampled);
 
 /// Warns of a posterior between a prior and data that contradict each other: a compromise that neither of them
 /// supports.
-void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const Eigen::MatrixXd& draws,
-                         const VerdictThresholds& thresholds);
+void add_prior_conflicts(CaseReport& report, const SampledCase& sampled, const std::vector<PriorConflict>& conflicts);
 
 }  // namespace uq

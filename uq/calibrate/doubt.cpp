@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "uq/findings/thresholds.hpp"
-#include "uq/posterior/prior_conflict.hpp"
 #include "uq/posterior/support.hpp"
 
 namespace uq {
@@ -40,7 +38,7 @@ std::vector<JudgedSource> judge_sources(const SampledCase& sampled, const Identi
   std::vector<JudgedSource> judged;
   for (const auto& source : sampled.cut_sources) {
     const std::vector<JudgedSource> beyond = judge_sources(*source, options);
-    const Doubt doubt = doubt_about(*source, beyond, options.unsupported);
+    const Doubt doubt = doubt_about(*source, beyond, options);
     IdentifyOptions own = options;
     own.unsupported = doubt.unsupported;
     JudgedSource one{
@@ -53,24 +51,28 @@ std::vector<JudgedSource> judge_sources(const SampledCase& sampled, const Identi
 }
 
 Doubt doubt_about(const SampledCase& sampled, const std::vector<JudgedSource>& sources,
-                  const std::vector<std::string>& already) {
+                  const IdentifyOptions& options) {
   const CaseModel& model = *sampled.model;
-  const auto of_all = [&](DoubtOf of, const std::string& reason) {
-    return Doubt{.of = of, .unsupported = std::vector(static_cast<std::size_t>(model.own_count()), reason)};
-  };
-  const bool unusable = !doubt_of(model).empty(), supported = sampled.support.supported;
-  Doubt found{.of = DoubtOf::nothing, .unsupported = already};
+  Doubt found{.of = DoubtOf::nothing, .unsupported = options.unsupported, .conflicts = {}};
+  if (sampled.draws.converged)
+    found.conflicts = prior_conflicts(model, sampled.draws.pooled(), options.thresholds.prior_conflict_sd);
   if (found.unsupported.empty()) found.unsupported = unsupported_parameters(model, sampled.support);
   if (!found.unsupported.empty()) {
-    found.of = unusable ? DoubtOf::surrogate : supported ? DoubtOf::runs : DoubtOf::support;
+    const bool unusable = !doubt_of(model).empty();
+    found.of = unusable ? DoubtOf::surrogate : sampled.support.supported ? DoubtOf::runs : DoubtOf::support;
     return found;
   }
-  if (!sampled.draws.converged) return of_all(DoubtOf::draws, "the sampler has not converged");
-  if (const std::string source = doubtful_source(model, sources); !source.empty())
-    return of_all(DoubtOf::source, source);
-  const std::vector<PriorConflict> conflicts =
-      prior_conflicts(model, sampled.draws.pooled(), VerdictThresholds{}.prior_conflict_sd);
-  if (!conflicts.empty()) return of_all(DoubtOf::prior, contradicted(model, conflicts.front()));
+  std::string reason;
+  if (!sampled.draws.converged) {
+    found.of = DoubtOf::draws;
+    reason = "the sampler has not converged";
+  } else if (reason = doubtful_source(model, sources); !reason.empty()) {
+    found.of = DoubtOf::source;
+  } else if (!found.conflicts.empty()) {
+    found.of = DoubtOf::prior;
+    reason = contradicted(model, found.conflicts.front());
+  }
+  if (found.of != DoubtOf::nothing) found.unsupported.assign(static_cast<std::size_t>(model.own_count()), reason);
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "uq/calibrate/calibrate.hpp"
+#include "uq/posterior/prior_conflict.hpp"
 #include "uq/verdict/identifiability.hpp"
 
 namespace uq {
@@ -16,6 +17,8 @@ enum class DoubtOf { nothing, surrogate, support, draws, runs, source, prior };
 struct Doubt {
   DoubtOf of = DoubtOf::nothing;
   std::vector<std::string> unsupported;  ///< the reason for each parameter in words, as IdentifyOptions has it
+  std::vector<PriorConflict>
+      conflicts;  ///< of priors and data, whatever the doubt is of; none of draws that have not converged
 };
 
 /// A case from which others are cut.
@@ -28,9 +31,8 @@ struct JudgedSource {
 /// The cases from which a case takes posteriors, each judged with its own sources.
 std::vector<JudgedSource> judge_sources(const SampledCase& sampled, const IdentifyOptions& options);
 
-/// The doubt about a case. `already`: reasons known before the case was sampled.
-Doubt doubt_about(const SampledCase& sampled, const std::vector<JudgedSource>& sources,
-                  const std::vector<std::string>& already);
+/// The doubt about a case. `options.unsupported`: reasons known before the case was sampled.
+Doubt doubt_about(const SampledCase& sampled, const std::vector<JudgedSource>& sources, const IdentifyOptions& options);
 
 /// Takes the verdicts on cut parameters from their own cases.
 void take_cut_verdicts(Identification& found, const SampledCase& sampled, const std::vector<JudgedSource>& sources);

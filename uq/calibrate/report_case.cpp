@@ -248,7 +248,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
 
   const Eigen::MatrixXd draws = sampled.draws.pooled();
   const std::vector<JudgedSource> sources = judge_sources(sampled, options.identify);
-  const Doubt doubt = doubt_about(sampled, sources, options.identify.unsupported);
+  const Doubt doubt = doubt_about(sampled, sources, options.identify);
   IdentifyOptions judged = options.identify;
   judged.unsupported = doubt.unsupported;
   if (!judged.unsupported.empty()) report.doubt = judged.unsupported.front();
@@ -279,7 +279,7 @@ CaseReport report_case(const data::Study& study, const SampledCase& sampled, con
   report.remedy = shown_remedy(words);
   add_warnings(report, doubt.of, sampled);
   report.warnings.insert(report.warnings.end(), of_the_fit.begin(), of_the_fit.end());
-  add_prior_conflicts(report, sampled, draws, judged.thresholds);
+  add_prior_conflicts(report, sampled, doubt.conflicts);
   return report;
 }
 
