@@ -80,6 +80,24 @@ bool is_done(const Workspace& workspace, const Point& point, const std::string& 
   return ended_run(workspace, point, path).has_value();
 }
 
+std::string longest_run(const Workspace& workspace, const Point& point, const std::string& folder) {
+  namespace fs = std::filesystem;
+  const dem::Case c = case_at(workspace, point);
+  const std::uint64_t seed = run_seed(workspace, point);
+  std::string longest;
+  std::size_t most = 0;
+  std::error_code failure;
+  for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure)) {
+    const fs::path& path = entry->path();
+    if (!path.filename().string().starts_with("run") || path.extension() != ".h5") continue;
+    const std::optional<dem::SavedRun> saved = earlier(path.string(), c, seed);
+    if (!saved || saved->result.status == dem::RunStatus::failed || saved->result.series.time.size() <= most) continue;
+    most = saved->result.series.time.size();
+    longest = path.string();
+  }
+  return longest;
+}
+
 std::uint64_t steps_made(const Workspace& workspace, const Point& point, const std::string& path) {
   const std::optional<dem::SavedRun> before = earlier(path, case_at(workspace, point), run_seed(workspace, point));
   return before ? before->result.checkpoint.state.step : 0;
@@ -101,6 +119,7 @@ dem::RunResult make_run(const Workspace& workspace, const Point& point, const Po
   data::require_replaceable(options.path);
   const bool damaged = data::origin_of(options.path) == data::Origin::changed;
   std::optional<dem::SavedRun> before = earlier(options.path, c, seed);
+  if (!before && !options.from.empty()) before = earlier(options.from, c, seed);
   if (before && !has_all(*before, workspace.study)) before.reset();
   const std::vector<std::uint64_t> frames =
       options.frames > 0 ? dem::frame_steps(prepared, options.frames) : std::vector<std::uint64_t>{};

@@ -13,6 +13,8 @@ namespace campaign {
 
 struct PointRun {
   std::string path;  ///< path of the run's file
+  std::string from =
+      {};  ///< where `path` holds no run of this course: a file whose run, of another length, this one goes on from
   int threads = 1;
   bool keep_state = true;  ///< a steady run's file holds its last state, to look at; other runs' files always do
   int frames = 0;          ///< moments kept as files for ParaView (dem/run/frame_file.hpp)
@@ -27,6 +29,10 @@ std::optional<dem::RunResult> ended_run(const Workspace& workspace, const Point&
 std::optional<dem::RunResult> finished_run(const Workspace& workspace, const Point& point, const std::string& path);
 /// Whether the file holds this run, ended as it would end now.
 bool is_done(const Workspace& workspace, const Point& point, const std::string& path);
+
+/// The file of the folder's run*.h5 that holds the most of a run of this point's course, whenever it was to end; empty
+/// where none does.
+std::string longest_run(const Workspace& workspace, const Point& point, const std::string& folder);
 
 /// How many steps of this run the file holds, ended or interrupted; 0 where it holds another run or none.
 std::uint64_t steps_made(const Workspace& workspace, const Point& point, const std::string& path);

@@ -133,20 +133,26 @@ std::string summary(const Workspace& workspace, const Point& point, const dem::P
   return text + circulation_text(prepared.derived(), result);
 }
 
-/// run.h5, or, where that holds another run or is no run of ours, run-HASH.h5: what is there is never replaced.
-std::string file_of(const Workspace& workspace, const Point& point) {
+/// Where a run is kept, and what it goes on from.
+struct RunFiles {
+  std::string path;       ///< run.h5, or, where that holds another run or is no run of ours, run-HASH.h5
+  std::string from = {};  ///< a file of the same run with another length: the course that it holds is not made again
+};
+
+/// What is there is never replaced, and nothing that is there is computed again.
+RunFiles files_of(const Workspace& workspace, const Point& point) {
   namespace fs = std::filesystem;
   const fs::path usual = fs::path(workspace.out) / "run.h5";
-  if (!fs::exists(usual)) return usual.string();
+  if (!fs::exists(usual)) return {usual.string()};
   const std::string settings = dem::settings_text(case_at(workspace, point));
   const std::uint64_t seed = run_seed(workspace, point);
   try {
     const dem::SavedRun saved = dem::read_run(usual.string());
-    if (saved.settings == settings && saved.result.seed == seed) return usual.string();
+    if (saved.settings == settings && saved.result.seed == seed) return {usual.string()};
   } catch (const data::InputError&) {  // not to be read: it stays as it is
   }
   const std::string name = data::hash_text(fmt::format("{} {}", settings, seed)).substr(0, 12);
-  return (fs::path(workspace.out) / ("run-" + name + ".h5")).string();
+  return {(fs::path(workspace.out) / ("run-" + name + ".h5")).string(), longest_run(workspace, point, workspace.out)};
 }
 
 /// frames, or, where that holds frames of another run or another number of them, frames-HASH: ParaView takes all files of
@@ -166,12 +172,13 @@ std::string frames_folder_of(const Workspace& workspace, const Point& point, int
 
 /// The run, its progress shown.
 dem::RunResult run_with_progress(const SimulateOptions& options, const Workspace& workspace, const Point& point,
-                                 const std::string& path, const std::string& frames_folder, std::stop_token stop) {
+                                 const RunFiles& files, const std::string& frames_folder, std::stop_token stop) {
   data::Progress progress(
       "simulating (at most)", 1000,
       {.style = options.common.quiet ? data::ProgressStyle::quiet : data::ProgressStyle::automatic, .counted = false});
   return run_point(workspace, point,
-                   {.path = path,
+                   {.path = files.path,
+                    .from = files.from,
                     .threads = options.threads,
                     .frames = options.frames,
                     .frames_folder = frames_folder,
@@ -194,10 +201,14 @@ data::ExitStatus simulate(const SimulateOptions& options) {
   for (const std::string& warning : dem::rig_warnings(told.prepared.given())) notes.push_back(warning);
   const auto held = hold_out(workspace, Writes::run, "simulate");
   const std::filesystem::path out = workspace.out;
-  const std::string path = file_of(workspace, point);
+  const RunFiles files = files_of(workspace, point);
+  const std::string& path = files.path;
+  const auto name_of = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   if (path != out / "run.h5")
-    notes.push_back(fmt::format("run.h5 holds another run and is kept; this one is in {}",
-                                std::filesystem::path(path).filename().string()));
+    notes.push_back(fmt::format("run.h5 holds another run and is kept; this one is in {}", name_of(path)));
+  if (!files.from.empty() && files.from != path)
+    notes.push_back(fmt::format("{} holds this run with another length: it is not made anew, but gone on from",
+                                name_of(files.from)));
   std::string frames_folder;
   if (options.frames > 0) {
     frames_folder = frames_folder_of(workspace, point, options.frames);
@@ -215,7 +226,7 @@ data::ExitStatus simulate(const SimulateOptions& options) {
       fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point));
   say(common, at);
   for (const std::string& note : notes) say(common, "note: " + note);
-  const dem::RunResult result = run_with_progress(options, workspace, point, path, frames_folder, interrupt.token());
+  const dem::RunResult result = run_with_progress(options, workspace, point, files, frames_folder, interrupt.token());
   if (result.status == dem::RunStatus::interrupted) {
     say(common, "interrupted; the same command goes on from here (" + path + ")");
     return data::ExitStatus::interrupted;

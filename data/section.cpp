@@ -242,6 +242,10 @@ std::vector<Section> Section::array(std::string_view key) const {
   return sections;
 }
 
+void Section::pass_over(const std::vector<std::string>& keys) const {
+  if (node_->table != nullptr) node_->state->used[node_->table].insert(keys.begin(), keys.end());
+}
+
 void Section::problem(std::string_view key, std::string what, std::string remedy) const {
   node_->problem(key, std::move(what), std::move(remedy));
 }

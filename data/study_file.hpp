@@ -87,6 +87,8 @@ class Section {
   std::vector<std::pair<std::string, Section>> children() const;  ///< named sub-tables in file order
   std::vector<Section> array(std::string_view key) const;         ///< [[key]] tables in file order
 
+  /// Takes these keys as used: what they mean hangs on one that is faulty, which is the problem.
+  void pass_over(const std::vector<std::string>& keys) const;
   /// Records a problem at `key` of this table.
   void problem(std::string_view key, std::string what, std::string remedy) const;
 

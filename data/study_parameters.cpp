@@ -81,6 +81,27 @@ void read_mean_and_sd(const Section& section, Prior& prior, const Parameter& par
   }
 }
 
+/// The law that a prior states. Where it states none, the numbers that are there say which one to propose, and are no
+/// problems of their own.
+PriorKind read_kind(const Section& section) {
+  // The last, another case's posterior, is chosen by a key of its own.
+  const std::vector<std::string> kinds(texts_of<PriorKind>.begin(), texts_of<PriorKind>.end() - 1);
+  const std::vector<std::string> numbers{"mean", "sd", "median", "alpha", "beta"};
+  if (!section.has("kind")) {
+    const PriorKind proposed = section.has("alpha")    ? PriorKind::beta
+                               : section.has("median") ? PriorKind::log_normal
+                               : section.has("sd")     ? PriorKind::normal
+                                                       : PriorKind::uniform;
+    section.problem("kind", "is missing",
+                    fmt::format("add a line kind = \"{}\", or one of {}", to_text(proposed), fmt::join(kinds, ", ")));
+    section.pass_over(numbers);
+    return PriorKind::uniform;
+  }
+  const std::optional<PriorKind> kind = from_text<PriorKind>(section.choice("kind", kinds));
+  if (!kind) section.pass_over(numbers);
+  return kind.value_or(PriorKind::uniform);
+}
+
 }  // namespace
 
 const Unit* bare_unit(const Unit& unit) { return is_bare(unit.symbol) ? nullptr : &unit; }
@@ -108,9 +129,7 @@ Prior read_prior(const Section& section, const Parameter& parameter, PriorOf own
     prior.cut = section.flag("cut", false);
     return prior;
   }
-  // The last, another case's posterior, is chosen by a key of its own.
-  const std::vector<std::string> kinds(texts_of<PriorKind>.begin(), texts_of<PriorKind>.end() - 1);
-  prior.kind = from_text<PriorKind>(section.choice("kind", kinds)).value_or(PriorKind::uniform);
+  prior.kind = read_kind(section);
   switch (prior.kind) {
     case PriorKind::uniform:
       read_limits(section, prior, parameter);

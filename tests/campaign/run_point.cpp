@@ -57,6 +57,33 @@ TEST_CASE("a run kept without its last state is measured anew where it is as lon
   CHECK(longer.series.torque.size() > whole.series.torque.size());
 }
 
+TEST_CASE("a longer run goes on from a shorter one in another file, which stays, to the bits of a fresh run") {
+  const TemporaryFolder folder;
+  const Workspace workspace = test::small_study(folder.path("out"), "60");
+  const PlannedRun run = test::planned(workspace, 1).front();
+  Workspace further = workspace;
+  for (auto& [material, c] : further.cases) c.run.longest *= 1.5;
+  const auto run_in = [&](const Workspace& of, const char* name, const std::string& from) {
+    return run_point(of, run.point, {.path = folder.path(name), .from = from});
+  };
+  CHECK(longest_run(further, run.point, folder.path()).empty());
+  const dem::RunResult first = run_in(workspace, "run.h5", "");
+  CHECK(longest_run(further, run.point, folder.path()) == folder.path("run.h5"));
+  std::filesystem::create_directory(folder.path("fresh"));
+  const dem::RunResult fresh = run_in(further, "fresh/run.h5", "");
+  const std::string kept = data::read_file(folder.path("run.h5"));
+  const dem::RunResult longer = run_in(further, "run-longer.h5", folder.path("run.h5"));
+  REQUIRE(fresh.series.torque.size() > first.series.torque.size());
+  CHECK(longer.series.torque == fresh.series.torque);
+  CHECK(longer.summary.mean.front().mean == fresh.summary.mean.front().mean);
+  CHECK(longer.summary.cpu_seconds > first.summary.cpu_seconds);
+  CHECK(data::read_file(folder.path("run.h5")) == kept);
+  CHECK(longest_run(workspace, run.point, folder.path()) == folder.path("run-longer.h5"));
+  Workspace other = further;
+  ++other.study.seed;
+  CHECK(longest_run(other, run.point, folder.path()).empty());
+}
+
 TEST_CASE(
     "a point whose rig cannot be simulated is a failed run with the reason, and the others of its batch are made") {
   const TemporaryFolder folder;

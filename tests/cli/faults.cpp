@@ -322,15 +322,18 @@ TEST_CASE("rows of other settings stay in the table, and runs of other points st
   CHECK_THAT(again.err, Contains("training.h5 is damaged; its rows are read from training.csv"));
   CHECK(rows().size() == 5);
 
-  const auto simulate = [&](const char* rpm) {
+  const auto simulate = [&](const char* rpm, const char* longest = "0.4 s") {
     return folder.demcal({"simulate", DEMCAL_SOURCE_DIR "/data/quick", "--set", "rig.fill=200", "--set",
-                          "run.longest=\"0.4 s\"", "--set", "run.start_up_turns=0.25", "--at",
+                          fmt::format("run.longest=\"{}\"", longest), "--set", "run.start_up_turns=0.25", "--at",
                           std::string("rpm=") + rpm, "--out", "s"});
   };
   simulate("100");
   const auto other = simulate("200");
   CHECK_THAT(other.err, Contains("run.h5 holds another run and is kept"));
   CHECK(names_in(folder.path / "s").size() == 2);
+  const auto longer = simulate("100", "0.5 s");
+  CHECK_THAT(longer.err, Contains("run.h5 holds this run with another length: it is not made anew, but gone on from"));
+  CHECK(names_in(folder.path / "s").size() == 3);
 }
 
 #ifndef __SANITIZE_ADDRESS__

@@ -117,6 +117,10 @@ TEST_CASE("priors are read in the parameter's unit") {
         std::string::npos);
   CHECK(failure_of(folder, [&] { prior("{ kind = \"beta\", alpha = 1 }"); }) ==
         "78: study.toml:7: parameters.a.prior.beta: is missing (add a line like beta = 0.5)");
+  CHECK(failure_of(folder, [&] { prior("{ mean = 4, sd = 1 }"); }) ==
+        "78: study.toml:7: parameters.a.prior.kind: is missing (add a line kind = \"normal\", or one of uniform, "
+        "log_uniform, normal, truncated_normal, log_normal, beta)");
+  CHECK(failure_of(folder, [&] { prior("{ kind = \"gauss\", mean = 4, sd = 1 }"); }).find("sd") == std::string::npos);
   CHECK(failure_of(folder, [&] { prior("{ kind = \"gauss\" }"); }).find("is not one of the choices") !=
         std::string::npos);
 }

@@ -34,6 +34,8 @@ const char* to_text(Floor floor) {
              "readings";
     case Floor::structural:
       return "repeats of it alone do not part what is traded, however many there are";
+    case Floor::no_influence:
+      return "neither it nor the data change with the parameter";
   }
   return "";
 }
@@ -161,6 +163,9 @@ ReadingsNeeded Forecast::readings_needed(const std::vector<Index>& rows, int par
       floor = Floor::meter;
     else if (enough_with(Uncertain::nothing, OthersEnds::closed))
       floor = Floor::range;
+    else if (const auto drawn = facts_of_draws(rows, readings_most, Uncertain::nothing, OthersEnds::open)[parameter];
+             std::none_of(drawn.begin(), drawn.end(), [](const WordFacts& one) { return one.influences; }))
+      floor = Floor::no_influence;
     return {.count = {}, .at_most = at_most, .floor = floor};
   }
   std::map<int, double> chance{{readings_most, at_most}};

@@ -17,7 +17,7 @@
 namespace uq::plan {
 
 /// The reason why no number of readings is enough.
-enum class Floor { none, surrogate, meter, range, structural };
+enum class Floor { none, surrogate, meter, range, structural, no_influence };
 /// A clause for the user; empty for none.
 const char* to_text(Floor floor);
 

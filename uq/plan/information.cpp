@@ -78,26 +78,28 @@ double mean_log(const Sums& sums, const Part& part) {
   return total / static_cast<double>(used);
 }
 
-/// The densities of the readings by all draws, and by each half of its own readings.
+/// The densities of the readings by all draws, by each half of its own readings, and by each quarter.
 struct Densities {
-  Sums all, halves;
+  std::array<Sums, 3> by;
 };
+
+/// Mean over parts of the draws, 1 << level of them, of the logarithm of the part's mean density at its own readings.
+double mean_of_parts(const Densities& densities, int level, Index left_out = -1) {
+  const Index parts = Index{1} << level;
+  double sum = 0.0;
+  for (Index k = 0; k < parts; ++k)
+    sum += mean_log(densities.by[level], {k * blocks / parts, (k + 1) * blocks / parts, left_out});
+  return sum / static_cast<double>(parts);
+}
 
 /// Twice the mean over all draws less the mean over the halves.
 double extrapolated(const Densities& densities, Index left_out) {
-  return 2.0 * mean_log(densities.all, {.left_out = left_out}) -
-         0.5 * mean_log(densities.halves, {0, blocks / 2, left_out}) -
-         0.5 * mean_log(densities.halves, {blocks / 2, blocks, left_out});
+  return 2.0 * mean_of_parts(densities, 0, left_out) - mean_of_parts(densities, 1, left_out);
 }
 
 /// The excess of the extrapolation through all, halves and quarters over that through all and halves.
-double next_order(const Sums& sums) {
-  const auto parts = [&](Index count) {
-    double sum = 0.0;
-    for (Index k = 0; k < count; ++k) sum += mean_log(sums, {k * blocks / count, (k + 1) * blocks / count, -1});
-    return sum / static_cast<double>(count);
-  };
-  return (2.0 * parts(1) - 3.0 * parts(2) + parts(4)) / 3.0;
+double next_order(const Densities& densities) {
+  return (2.0 * mean_of_parts(densities, 0) - 3.0 * mean_of_parts(densities, 1) + mean_of_parts(densities, 2)) / 3.0;
 }
 
 /// `value(b)`: an estimate without block b, all for b = -1.
@@ -112,7 +114,7 @@ Estimate jackknife(const Value& value) {
 
 /// A large correction is no small term of an expansion: then it is the error.
 Estimate widened(Estimate estimate, const Densities& densities) {
-  const double correction = std::abs(extrapolated(densities, -1) - mean_log(densities.all, {}));
+  const double correction = std::abs(extrapolated(densities, -1) - mean_of_parts(densities, 0));
   if (correction > correction_most) estimate.error = std::max(estimate.error, correction);
   return estimate;
 }
@@ -267,17 +269,17 @@ void add_conditional(const Ensemble& ensemble, const Laws& laws, const MatrixXd&
 std::vector<Densities> conditional_on(const Ensemble& ensemble, const Laws& laws, const MatrixXd& readings,
                                       const ArrayXd& own, Index k) {
   const Index n = ensemble.draws();
-  std::vector<Densities> found(windows.size(), Densities{Sums(n), Sums(n)});
-  std::vector<Sums*> all, halves;
-  for (Densities& one : found) {
-    all.push_back(&one.all);
-    halves.push_back(&one.halves);
+  std::vector<Densities> found(windows.size(), Densities{{Sums(n), Sums(n), Sums(n)}});
+  const auto first_of = [n](Index block) { return (block * n + blocks - 1) / blocks; };
+  for (std::size_t level = 0; level < 3; ++level) {
+    std::vector<Sums*> sums;
+    for (Densities& one : found) sums.push_back(&one.by[level]);
+    const Index parts = Index{1} << level;
+    for (Index part = 0; part < parts; ++part) {
+      const Index from = first_of(part * blocks / parts), to = first_of((part + 1) * blocks / parts);
+      add_conditional(ensemble, laws, readings, own, k, {from, to - from}, sums);
+    }
   }
-  Index half = 0;
-  while (block_of(half, n) < blocks / 2) ++half;
-  add_conditional(ensemble, laws, readings, own, k, {0, n}, all);
-  add_conditional(ensemble, laws, readings, own, k, {0, half}, halves);
-  add_conditional(ensemble, laws, readings, own, k, {half, n - half}, halves);
   return found;
 }
 
@@ -305,9 +307,9 @@ Information information(const Ensemble& ensemble, const InformationOptions& opti
   }
   const Marginal marginal = marginal_of(ensemble, laws, readings, own);
   Information found;
-  const Densities density{marginal.density, marginal.density};
+  const Densities density{{marginal.density, marginal.density, marginal.density}};
   found.total = widened(jackknife([&](Index b) { return -extrapolated(density, b); }), density);
-  found.total.remainder = -next_order(marginal.density);
+  found.total.remainder = -next_order(density);
   for (Index k = 0; k < p; ++k) {
     const std::vector<Densities> conditional = conditional_on(ensemble, laws, readings, own, k);
     // A narrower window has to earn its place: the largest of several noisy scores is too large.
@@ -320,6 +322,7 @@ Information information(const Ensemble& ensemble, const InformationOptions& opti
     about.information = jackknife([&](Index b) { return extrapolated(*best, b) - extrapolated(density, b); });
     about.information = widened(widened(about.information, density), *best);
     about.information.value = std::max(about.information.value, 0.0);
+    about.information.remainder = next_order(*best) - next_order(density);
     about.sd_after = jackknife([&](Index b) {
       double sum = 0.0;
       Index used = 0;
@@ -341,13 +344,16 @@ Information combined(const std::vector<Information>& repeats) {
   // Student's 96 % of a few means that are not quite normal hold at least 95 % of the truths (PLANS.md).
   const double factor = gsl_cdf_tdist_Pinv(0.98, n - 1.0);
   const auto pooled = [&](const auto& member) {
-    double sum = 0.0, squares = 0.0, remainder = 0.0;
+    double sum = 0.0, squares = 0.0, remainder = 0.0, single = 0.0;
     for (const Information& one : repeats) {
       sum += member(one).value + member(one).remainder;
       remainder += member(one).remainder / n;
+      single += member(one).error / n;
     }
     for (const Information& one : repeats) squares += std::pow(member(one).value + member(one).remainder - sum / n, 2);
-    return Estimate{sum / n, std::hypot(factor * std::sqrt(squares / (n - 1.0) / n), remainder)};
+    const double error = std::hypot(factor * std::sqrt(squares / (n - 1.0) / n), remainder);
+    // Where the next order is no small term either, repeats share more than it tells: then a single estimate's error holds.
+    return Estimate{sum / n, std::abs(remainder) > correction_most ? std::max(error, single) : error};
   };
   Information found;
   found.total = pooled([](const Information& one) { return one.total; });

@@ -42,7 +42,7 @@ struct Ensemble {
 /// A number with the half-width of its 95 % interval.
 struct Estimate {
   double value = 0.0, error = 0.0;
-  double remainder = 0.0;  ///< difference of the next order of the extrapolation; only set for the total
+  double remainder = 0.0;  ///< what the next order of the extrapolation would add; of information alone
 };
 
 struct InformationAbout {

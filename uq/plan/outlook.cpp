@@ -58,7 +58,7 @@ Ensemble Outlook::ensemble(const std::vector<Index>& rows, double readings) cons
 
 PriorDraws prior_draws(const CaseModel& model, int count, int readings, std::uint64_t seed) {
   const int unknowns = model.dimension();
-  if (unknowns + readings > surrogate::sobol_max_dimension) readings = 0;
+  readings = std::clamp(surrogate::sobol_max_dimension - unknowns, 0, readings);
   const MatrixXd cube = surrogate::scrambled_sobol(count, unknowns + readings, seed);
   PriorDraws draws{MatrixXd(count, unknowns), MatrixXd(count, readings)};
   for (Index i = 0; i < count; ++i) {

@@ -66,9 +66,30 @@ PlanCandidate describe(const PlanBasis& basis, std::size_t i) {
     if (k < words.size()) parameter.words = words[k];
     one.parameters.push_back(std::move(parameter));
   }
-  const Estimate& asked = information.about[basis.about].information;
-  one.teaches = asked.value > least_information && asked.value > asked.error;
   return one;
+}
+
+/// Where nobody stated a parameter and nothing teaches of the one that is known least, the question is the least known of
+/// those that a candidate teaches of. Says whom it left out.
+std::string choose_question(PlanBasis& basis, const std::vector<PlanCandidate>& all) {
+  const auto taught = [&](int k) {
+    return std::any_of(all.begin(), all.end(), [k](const PlanCandidate& one) {
+      return !one.model_only && teaches(one, static_cast<std::size_t>(k));
+    });
+  };
+  if (basis.stated || taught(basis.about)) return {};
+  std::vector<int> order(all.front().parameters.size());
+  std::iota(order.begin(), order.end(), 0);
+  if (basis.found)
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+      return basis.found->parameters[a].contraction < basis.found->parameters[b].contraction;
+    });
+  const auto next = std::find_if(order.begin(), order.end(), taught);
+  if (next == order.end()) return {};
+  const std::string least = basis.name_of(basis.about);
+  basis.about = *next;
+  return fmt::format("No candidate teaches anything of {}, which is known least, so the plan asks about {}.", least,
+                     basis.name_of(*next));
 }
 
 /// Whether the parameter asked for has separate values and one of the candidates is expected to part them.
@@ -172,7 +193,7 @@ void add_arrows(const PlanBasis& basis, PlanReport& report, const std::vector<st
 PlanReport make_plan(const Study& study, const std::vector<Emulator>& emulators, std::size_t case_index,
                      const SampledCase& sampled, const data::PlanSection& section, const PlanOptions& options) {
   PlanBasis basis(study, emulators, case_index, sampled, section, options);
-  PlanReport report{.about = basis.name_of(basis.about),
+  PlanReport report{.about = {},
                     .prior = options.prior,
                     .cost_unit = section.cost_unit,
                     .control_units = {},
@@ -180,6 +201,7 @@ PlanReport make_plan(const Study& study, const std::vector<Emulator>& emulators,
   for (const data::Control& control : study.controls)
     report.control_units.emplace_back(control.name, control.unit.symbol);
   if (basis.candidates.empty()) {
+    report.about = basis.name_of(basis.about);
     report.sentence = options.budget ? "No candidate costs as little as the budget." : "There are no candidates.";
     return report;
   }
@@ -189,6 +211,9 @@ PlanReport make_plan(const Study& study, const std::vector<Emulator>& emulators,
     report.candidates[i] = describe(basis, static_cast<std::size_t>(i));
     basis.tell(0.3 + 0.5 * ++done / static_cast<double>(basis.candidates.size()));
   });
+  const std::string left_out = choose_question(basis, report.candidates);
+  report.about = basis.name_of(basis.about);
+  for (PlanCandidate& one : report.candidates) one.teaches = teaches(one, static_cast<std::size_t>(basis.about));
   basis.by_width = is_parted(basis, report.candidates);
   const std::vector<std::size_t> order = ranked(basis, report.candidates);
   const bool open = basis.found && basis.found->parameters[basis.about].verdict != Verdict::identified;
@@ -200,6 +225,7 @@ PlanReport make_plan(const Study& study, const std::vector<Emulator>& emulators,
   add_runs(basis, report);
   add_arrows(basis, report, order);
   report.notes = notes_of(basis, report);
+  if (!left_out.empty()) report.notes.insert(report.notes.begin(), left_out);
   report.sentence = sentence_of(basis, report);
   basis.tell(1.0);
   return report;

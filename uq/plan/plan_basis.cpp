@@ -83,6 +83,11 @@ VectorXd prior_means(const CaseModel& model) {
 
 }  // namespace
 
+bool teaches(const PlanCandidate& candidate, std::size_t k) {
+  const PlannedParameter& gain = candidate.parameters[k];
+  return gain.information > std::max(least_information, gain.information_error);
+}
+
 PlanBasis::PlanBasis(const Study& of_study, const std::vector<Emulator>& emulators, std::size_t case_index,
                      const SampledCase& sampled_case, const data::PlanSection& section, const PlanOptions& how)
     : study(of_study), sampled(sampled_case), options(how) {
@@ -98,8 +103,9 @@ PlanBasis::PlanBasis(const Study& of_study, const std::vector<Emulator>& emulato
     if (!found->fits) throw misfit(study, case_index, *found);
   }
   refuse_cut(study, case_index, model);
-  about = parameter_index(study, case_index, model, options.about.empty() ? section.about : options.about,
-                          found ? &*found : nullptr);
+  const std::string& name = options.about.empty() ? section.about : options.about;
+  stated = !name.empty();
+  about = parameter_index(study, case_index, model, name, found ? &*found : nullptr);
   candidates = candidates_of(study, emulators, case_index, section, options.candidates);
   if (options.prior)  // nothing is measured yet, so nothing is measured again
     for (Candidate& one : candidates)
@@ -135,8 +141,10 @@ void PlanBasis::look_out() {
   const int count = std::min(options.draws, room);
   if (options.prior) {
     for (int r = 0; r < prior_repeats; ++r) {
+      // The noise of a batch, too, has to differ from one scrambling to the next: that tells the error.
+      const int readings = static_cast<int>(most) * std::max(options.batch, 1);
       const PriorDraws prior =
-          prior_draws(*sampled.model, std::max(count / 2, 400), static_cast<int>(most),
+          prior_draws(*sampled.model, std::max(count / 2, 400), readings,
                       data::child_seed(options.seed, data::Purpose::planned_prior, static_cast<std::uint32_t>(r)));
       outlooks.emplace_back(extended, prior.u, Outlook::Given::nothing, options.threads);
       noise.push_back(prior.noise);
@@ -152,7 +160,9 @@ void PlanBasis::look_out() {
 Information PlanBasis::information_of(const std::vector<Index>& rows) const {
   std::vector<Information> repeats;
   for (std::size_t r = 0; r < outlooks.size(); ++r) {
-    InformationOptions how{.seed = options.seed, .noise = {}};
+    InformationOptions how{
+        .seed = data::child_seed(options.seed, data::Purpose::planned_noise, static_cast<std::uint32_t>(r)),
+        .noise = {}};
     if (noise[r].cols() >= static_cast<Index>(rows.size()))
       how.noise = noise[r].leftCols(static_cast<Index>(rows.size()));
     repeats.push_back(information(outlooks[r].ensemble(rows), how));

@@ -19,6 +19,9 @@ namespace uq::plan {
 
 constexpr double least_information = 0.02;  // nats: a width narrower by two per cent
 
+/// Whether a reading is expected to teach about parameter k, by more than the expectation's error.
+bool teaches(const PlanCandidate& candidate, std::size_t k);
+
 struct PlanBasis {
   PlanBasis(const data::Study& of_study, const std::vector<Emulator>& emulators, std::size_t case_index,
             const SampledCase& sampled_case, const data::PlanSection& section, const PlanOptions& how);
@@ -43,7 +46,8 @@ struct PlanBasis {
   Eigen::MatrixXd draws;                ///< draws of the posterior, in u
   Eigen::VectorXd centre;               ///< in u: the best fit, or the prior's means
   std::optional<Identification> found;  ///< none before a measurement
-  int about = 0;                        ///< the parameter asked for
+  bool stated = false;                  ///< somebody stated the parameter to learn of
+  int about = 0;                        ///< the parameter asked for; where none is stated the one that is known least
   /// The parameter has separate values, and something parts them. A reading may narrow each value and leave both open, which is
   /// information; only what parts them takes down the width over all.
   bool by_width = false;

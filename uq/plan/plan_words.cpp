@@ -28,6 +28,23 @@ std::string chance_of_identified(const std::string& name, const PlannedParameter
   return fmt::format(" {} is then identified with a probability of {:.0f} %.", name, 100.0 * chance);
 }
 
+/// The other parameter that a candidate teaches most of, and how to ask for it; empty where there is none.
+std::string what_else(const PlanReport& report, std::size_t asked) {
+  const PlanCandidate* best = nullptr;
+  std::size_t most = asked;
+  for (const PlanCandidate& one : report.candidates)
+    for (std::size_t k = 0; k < one.parameters.size(); ++k) {
+      if (k == asked || one.model_only || !teaches(one, k)) continue;
+      if (best && one.parameters[k].information <= best->parameters[most].information) continue;
+      best = &one;
+      most = k;
+    }
+  if (!best) return {};
+  const PlannedParameter& gain = best->parameters[most];
+  return fmt::format(" {} can be learnt, {:.2f} nats by {}: --about {} plans for it.", gain.name, gain.information,
+                     best->name, gain.name);
+}
+
 }  // namespace
 
 std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
@@ -48,8 +65,8 @@ std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
                         best.kind == CandidateKind::repeat ? " again" : "", report.about, width(gain, gain.sd_now),
                         width(gain, gain.sd_after), gain.information);
   else
-    text += fmt::format("No candidate teaches {} anything: the best, {}, gives {:.2f} nats.", report.about, best.name,
-                        gain.information);
+    text += fmt::format("No candidate teaches anything of {}: the best, {}, gives {:.2f} nats.{}", report.about,
+                        best.name, gain.information, what_else(report, k));
   if (best.teaches && !identified) text += chance_of_identified(report.about, gain);
   const auto set = std::find_if(report.candidates.begin(), report.candidates.end(), [&](const PlanCandidate& one) {
     return one.settings.size() > 1 && one.parameters[k].repeats_needed;

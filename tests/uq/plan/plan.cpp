@@ -214,6 +214,25 @@ TEST_CASE("candidates cost what the study says, and none is above the budget", "
   CHECK(poor.candidates.size() == 1);
 }
 
+TEST_CASE("nobody is sent to measure for a parameter that no candidate teaches of", "[plan]") {
+  // Nothing changes with b, so that b is known least; the data leave a to +- 0.03, and a repeat narrows that.
+  const formula::Pair of_a{[](double a, double, double) { return 10.0 + 5.0 * a; },
+                           [](double a, double, double) { return 10.0 + 3.0 * a; }};
+  const data::Study study = formula::study({0.5}, {12.5}, 0.2);
+  const data::PlanSection section{.candidates = {reading_of(0, 0.2), reading_of(1, 0.2)}};
+  const PlanReport open = plan_of(study, formula::emulators(0.0, of_a), section, {});
+  CHECK(open.about == "a");
+  CHECK(open.candidates.front().teaches);
+  CHECK_THAT(open.notes.front(),
+             Catch::Contains("No candidate teaches anything of b") && Catch::Contains("asks about a"));
+  const PlanReport stated = plan_of(study, formula::emulators(0.0, of_a), section, {.about = "b"});
+  CHECK(stated.about == "b");
+  CHECK_FALSE(stated.candidates.front().teaches);
+  CHECK_THAT(stated.sentence, Catch::Contains("No candidate teaches anything of b") &&
+                                  Catch::Contains("a can be learnt") && Catch::Contains("--about a plans for it"));
+  CHECK_THAT(stated.candidates.front().parameters[1].floor, Catch::Contains("neither it nor the data change"));
+}
+
 TEST_CASE("a plan that cannot be is refused with its place and remedy", "[plan]") {
   const data::Study study = measured(0.5, 0.5, 0.1, 5);
   const auto entry = [](std::size_t output, double speed, std::optional<data::Spread> error) {
@@ -426,4 +445,54 @@ TEST_CASE("without a budget a batch is the best per cost, as single candidates a
   REQUIRE(plan.batches.size() == 1);
   CHECK(plan.batches[0].candidates == std::vector<std::string>{"next", "next"});
   CHECK(plan.batches[0].information < named(plan, "dear").parameters[0].information);
+}
+
+namespace {
+
+/// a and b with normal priors of sd 0.1 about 0.5.
+data::Study two_normal() {
+  data::Study study = measured(0.5, 0.5, 0.15, 1);
+  for (data::Parameter& one : study.parameters)
+    one.prior = {.kind = data::PriorKind::normal, .low = 0.0, .high = 1.0, .mean = 0.5, .sd = 0.1};
+  return study;
+}
+
+/// What these readings at speed 0.5, torques or angles of one sd, teach of a, from the normal law.
+double taught_of_a(const std::vector<std::string>& readings, double sd) {
+  Eigen::Matrix2d precision = Eigen::Matrix2d::Identity() * 100.0;
+  for (const std::string& one : readings) {
+    const Eigen::Vector2d slope = one == "angle" ? Eigen::Vector2d(3.0, -3.0) : Eigen::Vector2d(5.15, 3.85);
+    precision += slope * slope.transpose() / (sd * sd);
+  }
+  return 0.5 * std::log(0.01 / precision.inverse()(0, 0));
+}
+
+}  // namespace
+
+TEST_CASE("before any measurement the stated error of a batch's information holds what the normal law says",
+          "[plan][slow]") {
+  constexpr int seeds = 20;
+  constexpr double sd = 0.1;
+  data::PlanEntry torque = reading_of(0, sd), angle = reading_of(1, sd);
+  torque.name = "torque";
+  angle.name = "angle";
+  const data::Study study = two_normal();
+  const std::vector<uq::Emulator> emulators = formula::emulators();
+  const uq::SampledCase sampled = uq::sample_case(study, emulators, 0, {.seed = 1});
+  std::vector<int> held(2, 0);
+  double largest = 0.0;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    const PlanReport plan = uq::plan::make_plan(study, emulators, 0, sampled, {.candidates = {torque, angle}},
+                                                {.about = "a", .batch = 3, .prior = true, .draws = 1000, .seed = seed});
+    REQUIRE(plan.batches.size() == 2);
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      const double off = plan.batches[k].information - taught_of_a(plan.batches[k].candidates, sd);
+      held[k] += std::abs(off) <= plan.batches[k].information_error ? 1 : 0;
+      largest = std::max(largest, std::abs(off));
+    }
+  }
+  INFO("two readings " << held[0] << ", three " << held[1] << " of " << seeds << ", largest " << largest);
+  CHECK(held[0] >= 17);
+  CHECK(held[1] >= 17);
+  CHECK(largest < 0.04);
 }
