@@ -97,9 +97,9 @@ PriorKind read_kind(const Section& section) {
     section.pass_over(numbers);
     return PriorKind::uniform;
   }
-  const std::optional<PriorKind> kind = from_text<PriorKind>(section.choice("kind", kinds));
-  if (!kind) section.pass_over(numbers);
-  return kind.value_or(PriorKind::uniform);
+  const std::string chosen = section.choice("kind", kinds);
+  if (section.kind("kind") != ValueKind::text || section.text("kind") != chosen) section.pass_over(numbers);
+  return from_text<PriorKind>(chosen).value_or(PriorKind::uniform);
 }
 
 }  // namespace
