@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "uq/infer/factor.hpp"
+#include "uq/infer/resample.hpp"
 
 namespace uq {
 namespace {
@@ -12,18 +13,13 @@ namespace {
 void thin(Adaptation& state, Eigen::Index count, data::RandomStream& random) {
   if (state.points.rows() <= count) return;
   std::vector<Eigen::Index> kept;
-  const double spacing = state.shares.sum() / static_cast<double>(count);
-  double position = random.uniform() * spacing, sum = state.shares[0];
-  Eigen::Index i = 0;
   std::vector<double> weight;
-  for (Eigen::Index j = 0; j < count; ++j, position += spacing) {
-    while (sum < position && i + 1 < state.points.rows()) sum += state.shares[++i];
-    if (!kept.empty() && kept.back() == i) {
-      weight.back() += 1.0;
-    } else {
+  for (const Eigen::Index i : resample(state.shares, count, random.uniform())) {
+    if (kept.empty() || kept.back() != i) {
       kept.push_back(i);
-      weight.push_back(1.0);
+      weight.push_back(0.0);
     }
+    weight.back() += 1.0;
   }
   state.points = Eigen::MatrixXd(state.points(kept, Eigen::all));
   state.shares = Eigen::Map<const Eigen::VectorXd>(weight.data(), static_cast<Eigen::Index>(weight.size())) /

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "uq/infer/resample.hpp"
+
 namespace uq {
 namespace {
 
@@ -23,21 +25,6 @@ double next_step(const Eigen::VectorXd& slope, double left, Eigen::Index populat
     (effective_share(slope, middle) >= wanted ? low : high) = middle;
   }
   return low;
-}
-
-/// Systematic resampling of `count` by weights.
-std::vector<Eigen::Index> resample(const Eigen::ArrayXd& weights, Eigen::Index count, data::RandomStream& random) {
-  const Eigen::Index n = weights.size();
-  std::vector<Eigen::Index> kept;
-  kept.reserve(static_cast<std::size_t>(count));
-  const double spacing = weights.sum() / static_cast<double>(count);
-  double position = random.uniform() * spacing, sum = weights[0];
-  Eigen::Index i = 0;
-  for (Eigen::Index j = 0; j < count; ++j, position += spacing) {
-    while (sum < position && i + 1 < n) sum += weights[++i];
-    kept.push_back(i);
-  }
-  return kept;
 }
 
 struct MoveState {
@@ -96,7 +83,8 @@ Population temper(const Target& target, Starts starts, data::RandomStream& rando
       state.log_reference[i] = target.reference.log_density(population.x.row(i).transpose());
     const Eigen::VectorXd slope = (population.log_density - state.log_reference).cwiseMax(-1e300);
     const double step = next_step(slope, 1.0 - b, n);
-    const std::vector<Eigen::Index> kept = resample((step * (slope.array() - slope.maxCoeff())).exp(), n, random);
+    const std::vector<Eigen::Index> kept =
+        resample((step * (slope.array() - slope.maxCoeff())).exp(), n, random.uniform());
     b = step >= 1.0 - b ? 1.0 : b + step;
 
     population.x = Eigen::MatrixXd(population.x(kept, Eigen::all));

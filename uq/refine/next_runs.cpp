@@ -7,6 +7,7 @@
 
 #include "data/random.hpp"
 #include "surrogate/design.hpp"
+#include "uq/infer/resample.hpp"
 #include "uq/posterior/posterior.hpp"
 
 namespace uq {
@@ -35,20 +36,6 @@ Eigen::VectorXd prior_point(const CaseModel& model, const Eigen::VectorXd& cube)
   return u;
 }
 
-/// Systematic resampling of `count` rows with probability proportional to exp(logs).
-std::vector<Index> resample(const Eigen::VectorXd& logs, int count, double offset) {
-  const Eigen::VectorXd weight = (logs.array() - logs.maxCoeff()).exp();
-  const double total = weight.sum();
-  std::vector<Index> rows;
-  double reached = 0.0;
-  for (Index i = 0; i < weight.size() && static_cast<int>(rows.size()) < count; ++i) {
-    reached += weight[i] / total * count;
-    while (static_cast<int>(rows.size()) < count && static_cast<double>(rows.size()) + offset < reached)
-      rows.push_back(i);
-  }
-  return rows;
-}
-
 /// Points of the prior, kept with probability proportional to likelihood^(1/4).
 Eigen::MatrixXd tempered_points(const CaseModel& model, int count, std::uint64_t seed) {
   constexpr int tried = 1024;
@@ -57,7 +44,7 @@ Eigen::MatrixXd tempered_points(const CaseModel& model, int count, std::uint64_t
   for (Index i = 0; i < tried; ++i) points.row(i) = prior_point(model, cube.row(i).transpose()).transpose();
   const Eigen::VectorXd logs = 0.25 * log_likelihoods(model, points);
   if (!std::isfinite(logs.maxCoeff())) return points.topRows(std::min(count, tried));
-  const std::vector<Index> rows = resample(logs, count, 0.5);
+  const std::vector<Index> rows = resample((logs.array() - logs.maxCoeff()).exp(), count, 0.5);
   Eigen::MatrixXd kept(static_cast<Index>(rows.size()), points.cols());
   for (std::size_t i = 0; i < rows.size(); ++i) kept.row(i) = points.row(rows[i]);
   return kept;

@@ -6,6 +6,7 @@
 #include "uq/posterior/support.hpp"
 #include "uq/verdict/hills.hpp"
 #include "uq/verdict/profile.hpp"
+#include "uq/verdict/range_end.hpp"
 
 namespace uq {
 namespace {
@@ -65,9 +66,8 @@ std::optional<int> pinned(const CaseModel& model, const Box& box, const Profiles
                           const Crossing& end, const VerdictThresholds& thresholds) {
   for (int other = 0; other < model.dimension(); ++other) {
     if (other == profile.unknown || !all.influence[other].some) continue;
-    const double width = box.upper[other] - box.lower[other];
-    const bool low = end.maximiser[other] - box.lower[other] < 1e-4 * width && !physical_low(model.unknowns[other]);
-    if (!low && box.upper[other] - end.maximiser[other] >= 1e-4 * width) continue;
+    const End at = end_of(end.maximiser[other], box.lower[other], box.upper[other]);
+    if (at == End::inside || (at == End::low && physical_low(model.unknowns[other]))) continue;
     // The middle of where the path has it inside the interval.
     double least = box.upper[other], most = box.lower[other];
     for (Eigen::Index i = 0; i < profile.u.size(); ++i)

@@ -12,14 +12,12 @@ namespace {
 
 constexpr double widths_beyond = 2.0;  // how far beyond its end a mere range is thought of, in its widths
 
-enum class End { inside, low_end, high_end };
-
-End end_of(const Eigen::VectorXd& best, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper, Eigen::Index s) {
-  const double slack = 1e-4 * (upper[s] - lower[s]);
-  return best[s] - lower[s] <= slack ? End::low_end : upper[s] - best[s] <= slack ? End::high_end : End::inside;
-}
-
 }  // namespace
+
+End end_of(double value, double low, double high) {
+  const double slack = 1e-4 * (high - low);
+  return value - low <= slack ? End::low : high - value <= slack ? End::high : End::inside;
+}
 
 std::vector<RangeEnd> range_ends(const CaseModel& model, const Eigen::VectorXd& best) {
   const Eigen::VectorXd lower = model.lower(), upper = model.upper();
@@ -27,14 +25,14 @@ std::vector<RangeEnd> range_ends(const CaseModel& model, const Eigen::VectorXd& 
   std::vector<Eigen::Index> inside, pulled;
   Eigen::VectorXd gradient;
   for (Eigen::Index s = 0; s < dimension; ++s) {
-    const End end = end_of(best, lower, upper, s);
+    const End end = end_of(best[s], lower[s], upper[s]);
     if (end == End::inside) {
       inside.push_back(s);
       continue;
     }
-    if (end == End::low_end && physical_low(model.unknowns[s])) continue;
+    if (end == End::low && physical_low(model.unknowns[s])) continue;
     if (gradient.size() == 0) gradient = profiled(model)(best).gradient;
-    if (end == End::low_end ? gradient[s] < 0.0 : gradient[s] > 0.0) pulled.push_back(s);
+    if (end == End::low ? gradient[s] < 0.0 : gradient[s] > 0.0) pulled.push_back(s);
   }
   std::vector<RangeEnd> found;
   if (pulled.empty() || inside.empty()) return found;

@@ -16,6 +16,10 @@
 
 namespace uq {
 
+enum class End { inside, low, high };
+/// The end of the range at which a value sits, to 1e-4 of the range: optimisers come no closer.
+End end_of(double value, double low, double high);
+
 /// An unknown at the end of its range, and what a longer range would change.
 struct RangeEnd {
   int unknown = 0;

@@ -9,6 +9,7 @@
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/predictive.hpp"
 #include "uq/verdict/hills.hpp"
+#include "uq/verdict/range_end.hpp"
 
 namespace uq {
 namespace {
@@ -45,12 +46,11 @@ std::vector<PathPoint> path_points(const CaseModel& model, const CaseModel& judg
     const Eigen::MatrixXd slopes = sensitivity(model, u);
     std::vector<Eigen::Index> free;
     for (Eigen::Index s = 0; s < u.size(); ++s) {
-      const double slack = 1e-4 * (upper[s] - lower[s]);
       if (s == profile.unknown) continue;
-      const bool low = u[s] - lower[s] <= slack, high = upper[s] - u[s] <= slack;
-      if (!low && !high) free.push_back(s);
+      const End at = end_of(u[s], lower[s], upper[s]);
+      if (at == End::inside) free.push_back(s);
       // A bound at 0 that nature sets ends nothing (uq/verdict/profile.hpp).
-      if (s < model.own_count() && (high || (low && !physical_low(model.unknowns[s]))))
+      if (s < model.own_count() && (at == End::high || (at == End::low && !physical_low(model.unknowns[s]))))
         point.at_end = static_cast<int>(s);
     }
     const Evaluation certificates = log_certificates(model, u);
