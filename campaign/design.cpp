@@ -130,13 +130,33 @@ std::vector<Point> read_design(const Workspace& workspace) {
   return read_points(workspace, path);
 }
 
+namespace {
+
+/// The material that a list names; the study's first where the list has no such column or leaves it empty.
+std::string listed_material(const data::Study& study, const data::Csv& csv, const data::CsvRow& row,
+                            const std::string& path) {
+  const std::optional<std::size_t> column = csv.find("material");
+  if (!column || row.fields[*column].empty()) return study.materials.front().name;
+  const std::string& name = row.fields[*column];
+  std::vector<std::string> known;
+  for (const data::Material& material : study.materials) {
+    if (material.name == name) return name;
+    known.push_back(material.name);
+  }
+  throw data::InputError(
+      data::ExitStatus::bad_data,
+      {csv.place(row, *column), fmt::format("the study has no material '{}' (it has {})", name, fmt::join(known, ", ")),
+       fmt::format("give the material that name again, {}", made_again(path))});
+}
+
+}  // namespace
+
 std::vector<Point> read_points(const Workspace& workspace, const std::string& path) {
   const data::Study& study = workspace.study;
   const data::Csv csv = data::read_csv(path);
-  const std::optional<std::size_t> material = csv.find("material");
   std::vector<Point> points;
   for (const data::CsvRow& row : csv.rows) {
-    Point point{choose_material(study, material ? row.fields[*material] : ""), {}};
+    Point point{listed_material(study, csv, row, path), {}};
     const auto read = [&](const std::string& name, const data::Unit& unit) {
       const std::size_t column = csv.column(name);
       if (!std::isfinite(csv.number(row, column)))

@@ -1,6 +1,8 @@
 // demcal export: a point's case for another engine, and what that engine made of it as a row of a table.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -80,7 +82,10 @@ Point point_of(const ExportOptions& options, Workspace& workspace) {
     const std::string material = json.at("material");
     if (json.at("study") != workspace.study.name)
       throw wrong(fmt::format("is of the study '{}'", json.at("study").get<std::string>()));
-    if (json.at("settings") != settings_hash(workspace, choose_material(workspace.study, material)))
+    if (std::none_of(workspace.study.materials.begin(), workspace.study.materials.end(),
+                     [&](const data::Material& one) { return one.name == material; }))
+      throw wrong(fmt::format("is of the material '{}', which the study no longer has", material));
+    if (json.at("settings") != settings_hash(workspace, material))
       throw wrong("was written with other settings than the study has now");
     return parse_point(workspace, material, json.at("at").get<std::vector<std::string>>());
   } catch (const nlohmann::json::exception&) {

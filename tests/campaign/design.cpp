@@ -112,3 +112,16 @@ TEST_CASE(
   CHECK(course_hash(softer, point.material) != course_hash(workspace, point.material));
   CHECK(run_path(softer, point) != run_path(workspace, point));
 }
+
+TEST_CASE("a list with a material that the study no longer has says where it stands, and what may be done") {
+  const TemporaryFolder folder;
+  const Workspace workspace = test::small_study(folder.path("out"));
+  make_out(workspace, "");
+  write_design(workspace, training_design(workspace, workspace.study.materials.front().name, 0, 2));
+  Workspace renamed = workspace;
+  renamed.study.materials.front().name = "glass";
+  CHECK_THAT(failure_of(folder, [&] { read_design(renamed); }),
+             Catch::StartsWith("65: ") && Catch::Contains("design.csv:3: material") &&
+                 Catch::Contains("the study has no material 'powder' (it has glass)") &&
+                 Catch::Contains("or remove design.csv"));
+}

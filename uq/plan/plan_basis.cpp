@@ -143,15 +143,15 @@ void PlanBasis::look_out() {
     for (int r = 0; r < prior_repeats; ++r) {
       // The noise of a batch, too, has to differ from one scrambling to the next: that tells the error.
       const int readings = static_cast<int>(most) * std::max(options.batch, 1);
-      const PriorDraws prior =
-          prior_draws(*sampled.model, std::max(count / 2, 400), readings,
-                      data::child_seed(options.seed, data::Purpose::planned_prior, static_cast<std::uint32_t>(r)));
+      seeds.push_back(data::child_seed(options.seed, data::Purpose::planned_prior, static_cast<std::uint32_t>(r)));
+      const PriorDraws prior = prior_draws(*sampled.model, std::max(count / 2, 400), readings, seeds.back());
       outlooks.emplace_back(extended, prior.u, Outlook::Given::nothing, options.threads);
       noise.push_back(prior.noise);
     }
   } else {
     outlooks.emplace_back(extended, spread(draws, count), Outlook::Given::data, options.threads);
     noise.emplace_back();
+    seeds.push_back(options.seed);
     forecast.emplace(extended, *sampled.model, *found, outlooks.front(), options.thresholds, options.seed);
   }
   tell(0.3);
@@ -160,9 +160,7 @@ void PlanBasis::look_out() {
 Information PlanBasis::information_of(const std::vector<Index>& rows) const {
   std::vector<Information> repeats;
   for (std::size_t r = 0; r < outlooks.size(); ++r) {
-    InformationOptions how{
-        .seed = data::child_seed(options.seed, data::Purpose::planned_noise, static_cast<std::uint32_t>(r)),
-        .noise = {}};
+    InformationOptions how{.seed = seeds[r], .noise = {}};
     if (noise[r].cols() >= static_cast<Index>(rows.size()))
       how.noise = noise[r].leftCols(static_cast<Index>(rows.size()));
     repeats.push_back(information(outlooks[r].ensemble(rows), how));

@@ -2,6 +2,7 @@
 // The basis of a plan for one case: draws of its posterior or prior, the candidates, and the law of every reading that
 // they could give.
 #include <Eigen/Dense>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,6 +56,7 @@ struct PlanBasis {
   ExtendedCase extended;
   std::vector<Outlook> outlooks;       ///< one, or one for each scrambling of the prior's draws
   std::vector<Eigen::MatrixXd> noise;  ///< noise of each outlook's readings; none: the information draws its own
+  std::vector<std::uint64_t> seeds;    ///< of each outlook, for that
   std::optional<Forecast> forecast;    ///< none before a measurement
 
  private:
