@@ -121,7 +121,7 @@ TEST_CASE("a list with a material that the study no longer has says where it sta
   Workspace renamed = workspace;
   renamed.study.materials.front().name = "glass";
   CHECK_THAT(failure_of(folder, [&] { read_design(renamed); }),
-             Catch::StartsWith("65: ") && Catch::Contains("design.csv:3: material") &&
+             Catch::StartsWith("65: ") && Catch::Contains("design.csv:4: material") &&
                  Catch::Contains("the study has no material 'powder' (it has glass)") &&
                  Catch::Contains("or remove design.csv"));
 }
