@@ -32,6 +32,8 @@ struct Fit {
   double share = 0.0;        ///< share of fields that are numbers, in lines with as many fields as most
   double lines = 0.0;        ///< share of the lines with that many
   std::size_t fields = 1;
+  double of_a_kind = 0.0;           ///< share of fields that are what most of their column are, numbers or words
+  std::size_t numeric_columns = 0;  ///< columns most of whose fields are numbers
 };
 
 struct SplitLine {
@@ -85,6 +87,8 @@ Fit fit_of(const std::vector<std::string_view>& lines, char separator) {
            (line.fields.size() == fit.fields || line.all == wide);
   };
   std::size_t numbers = 0, fields = 0, matching = 0;
+  std::vector<std::size_t> of_column(fit.fields, 0);  // numbers, in lines with some
+  std::size_t with_numbers = 0;
   // R names no column of row names, so that its heading has one field fewer.
   const auto is_heading_of_r = [&](const SplitLine& line) {
     return &line == &split.front() && (separator == ' ' || separator == '\t') && line.fields.size() + 1 == fit.fields &&
@@ -100,7 +104,15 @@ Fit fit_of(const std::vector<std::string_view>& lines, char separator) {
     if (line.comment || here == 0) continue;
     numbers += here;
     fields += line.fields.size();
+    if (line.fields.size() != fit.fields) continue;
+    ++with_numbers;
+    for (std::size_t i = 0; i < fit.fields; ++i) of_column[i] += numeric(line.fields[i], separator) ? 1 : 0;
   }
+  for (const std::size_t count : of_column) {
+    fit.of_a_kind += static_cast<double>(std::max(count, with_numbers - count));
+    fit.numeric_columns += 2 * count > with_numbers ? 1 : 0;
+  }
+  fit.of_a_kind /= static_cast<double>(std::max<std::size_t>(1, with_numbers * fit.fields));
   fit.lines = static_cast<double>(matching) / static_cast<double>(rows);
   if (fields > 0) fit.share = static_cast<double>(numbers) / static_cast<double>(fields);
   return fit;
@@ -208,11 +220,13 @@ Dialect find_dialect(std::string_view text) {
   for (const char separator : {',', ';', '\t', '|', ' '}) {
     const Fit fit = fit_of(lines, separator);
     if (fit.fields < 2) continue;
-    // Blanks stand in names and texts, too: they part columns only where nothing else does.
+    // Blanks stand in names and texts, too: they part columns only where nothing else does, of numbers, or below a heading
+    // of numbers and words (a run's name, a status).
+    const bool table = fit.share > 0.99 || (fit.has_heading && fit.numeric_columns > 1 && fit.of_a_kind > 0.97);
     // A separator that stands in a few remarks parts few lines.
-    const double worth = separator == ' '  ? (fit.share <= 0.99 || fit.lines <= 0.9 ? -1.0
-                                              : fit.has_heading                     ? 0.01
-                                                                                    : 0.005)
+    const double worth = separator == ' '  ? (!table || fit.lines <= 0.9 ? -1.0
+                                              : fit.has_heading          ? 0.01
+                                                                         : 0.005)
                          : fit.has_heading ? 1.0 + fit.share + fit.lines
                                            : 0.02 + 0.5 * fit.share * fit.lines;
     if (worth > best) {

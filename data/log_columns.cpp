@@ -125,11 +125,16 @@ void part_headings(Csv& csv, const LogColumns& columns) {
   for (const auto& [wanted, quantity] :
        {std::pair(&columns.time, time_of_log), {&columns.torque, torque_of_log}, {&columns.speed, speed_of_log}})
     for (std::size_t i = 0; i < csv.columns.size(); ++i) {
-      if (is_named(csv.columns[i], *wanted)) continue;
+      if (!csv.units[i].empty() && unit_meant(csv.units[i], quantity.dimension)) continue;
       const auto split = heading_with_unit(csv.headings[i], quantity.dimension);
-      if (!split || !is_named(split->name, *wanted)) continue;
-      csv.columns[i] = split->name;
-      csv.units[i] = split->unit;
+      if (!split) continue;
+      const bool named = is_named(csv.columns[i], *wanted) || is_named(csv.headings[i], *wanted);
+      const bool named_less = is_named(split->name, *wanted);
+      if (!named && named_less) csv.columns[i] = split->name;
+      // Of any other name the unit may tell the quantity: "drive_torque_mNm".
+      const bool by_unit = csv.units[i].empty() && quantity.option != time_of_log.option;
+      if (named || named_less || (by_unit && tells_quantity(split->unit, quantity.dimension)))
+        csv.units[i] = split->unit;
     }
 }
 

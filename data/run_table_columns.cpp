@@ -25,14 +25,23 @@ bool says_steadiness(const Csv& csv, std::size_t column) {
   });
 }
 
-/// Whether the table has the column of an output's standard errors, or should: one of our own, or one that has another
-/// word for an error there, which may be a standard deviation.
-bool has_errors(const Csv& csv, const std::string& output) {
-  constexpr std::array error_words = {"se",  "sd",    "std",   "stdev", "sem",        "stderr",
-                                      "err", "error", "sigma", "unc",   "uncertainty"};
-  return csv.find("settings").has_value() || std::any_of(error_words.begin(), error_words.end(), [&](const char* word) {
-           return csv.find(output + "_" + word, Csv::Capitals::any).has_value();
-         });
+/// The first of the columns OUTPUT_WORD that is there.
+template <std::size_t n>
+std::optional<std::size_t> beside(const Csv& csv, const std::string& output, const std::array<const char*, n>& words) {
+  for (const char* word : words)
+    if (const auto column = csv.find(output + "_" + word, Csv::Capitals::any)) return column;
+  return {};
+}
+
+/// The column of an output's standard errors; an own table without one is damaged, and another's has none.
+std::optional<std::size_t> errors_of(const Csv& csv, const std::string& output) {
+  if (csv.find("settings")) return csv.column(output + "_se");
+  return beside(csv, output, std::array{"se", "sem", "stderr", "standard_error", "std_error"});
+}
+
+/// A column that may be an output's standard errors, or the standard deviations of its samples.
+std::optional<std::size_t> doubtful_errors_of(const Csv& csv, const std::string& output) {
+  return beside(csv, output, std::array{"sd", "std", "stdev", "err", "error", "sigma", "unc", "uncertainty"});
 }
 
 bool is_empty(const Csv& csv, std::size_t column) {
@@ -64,8 +73,7 @@ TableColumns find_columns(const Csv& csv, const RunTable& table, const Study& st
   for (const Column& column : table.controls) at.inputs.push_back(csv.column(column.name));
   for (const Column& column : table.outputs) {
     at.outputs.push_back(csv.column(column.name));
-    std::optional<std::size_t> errors;
-    if (has_errors(csv, column.name)) errors = csv.column(column.name + "_se");
+    std::optional<std::size_t> errors = errors_of(csv, column.name);
     if (errors && is_empty(csv, *errors)) errors.reset();
     at.errors.push_back(errors);
   }
@@ -83,6 +91,7 @@ TableColumns find_columns(const Csv& csv, const RunTable& table, const Study& st
   read.insert(at.outputs.begin(), at.outputs.end());
   for (const auto& error : at.errors)
     if (error) read.insert(*error);
+  if (at.material) read.insert(*at.material);
   for (std::size_t i = 0; i < csv.columns.size(); ++i) {
     if (read.contains(i) || reserved_columns().contains(csv.columns[i]) || i == at.state || i == at.unreliable)
       continue;
@@ -94,16 +103,25 @@ TableColumns find_columns(const Csv& csv, const RunTable& table, const Study& st
 std::vector<Finding> column_findings(const Csv& csv, const TableColumns& at, const RunTable& table) {
   std::vector<Finding> findings;
   const std::string place = fmt::format("{}:{}", csv.file, csv.header_line);
-  std::vector<std::string> without;
-  for (std::size_t i = 0; i < at.errors.size(); ++i)
-    if (!at.errors[i]) without.push_back(table.outputs[i].name + "_se");
+  std::vector<std::string> without, doubtful;
+  for (std::size_t i = 0; i < at.errors.size(); ++i) {
+    if (at.errors[i]) continue;
+    without.push_back(table.outputs[i].name + "_se");
+    if (const auto column = doubtful_errors_of(csv, table.outputs[i].name)) doubtful.push_back(csv.columns[*column]);
+  }
   if (!without.empty())
-    findings.push_back({.kind = FindingKind::zero_standard_error,
-                        .place = place,
-                        .severity = Severity::note,
-                        .what = fmt::format("has no {}: the runs' scatter is estimated", fmt::join(without, ", ")),
-                        .remedy = "where the code states standard errors, give their column that name",
-                        .places = {}});
+    findings.push_back(
+        {.kind = FindingKind::zero_standard_error,
+         .place = place,
+         .severity = Severity::note,
+         .what = fmt::format("has no {}: the runs' scatter is estimated{}", fmt::join(without, ", "),
+                             doubtful.empty()
+                                 ? ""
+                                 : fmt::format(" ({} may be standard deviations, and {} not read)",
+                                               fmt::join(doubtful, " and "), doubtful.size() == 1 ? "is" : "are")),
+         .remedy = doubtful.empty() ? "where the code states standard errors, give their column that name"
+                                    : "where they are the standard errors of the runs' means, give them that name",
+         .places = {}});
   if (!at.unread.empty()) {
     std::vector<std::string> names;
     for (const std::size_t column : at.unread) names.push_back(contents(csv, column));

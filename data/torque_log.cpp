@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <set>
 
 #include "data/steadiness.hpp"
@@ -234,13 +235,15 @@ bool swings_back(std::span<const double> series) {
 
 SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count) {
   constexpr double few = 60.0;
+  constexpr double clearly = std::numbers::sqrt2;
   SeriesMean found = mean_with_error(torque, {.spikes_count = spikes_count});
   if (found.sd == 0.0) return found;
   const std::span<const double> rest = torque.subspan(found.dropped);
   const std::vector<double> without = spikes_count ? std::vector<double>() : without_spikes(rest).series;
   const std::span<const double> used = spikes_count ? rest : std::span<const double>(without);
-  if (!(found.effective_samples < few) && !swings_back(used)) return found;
   const SeriesMean slow = steadiness(used).mean;
+  const bool wanders = slow.standard_error > clearly * found.standard_error;
+  if (!(found.effective_samples < few) && !wanders && !swings_back(used)) return found;
   // Where it is not known, what it states is the least that the error is.
   if (!(slow.standard_error > (slow.reliable ? 0.0 : found.standard_error))) return found;
   found.standard_error = slow.standard_error;

@@ -112,10 +112,13 @@ struct MeanTorque {
   double value = 0.0, error = 0.0;
 };
 
-/// Mean and error of the torque of a hold. The error comes from the slowest modes (steadiness.hpp) in two cases.
+/// Mean and error of the torque of a hold. The error is that of the integrated time, but comes from the slowest modes
+/// (steadiness.hpp) in three cases.
 /// Of few independent samples the integrated time is hardly known: means of series with 20, 30 and 50 lie 1.35, 1.2 and
 /// 1.1 errors from the truth, and 1.2, 1.1 and 1.05 by modes. Where the torque hums, at the mains' or the blade's
-/// frequency, Sokal's window closes on the hum, and the error of what is slower is lost (a factor of 3 to 11).
+/// frequency, Sokal's window closes on the hum, and the error of what is slower is lost (a factor of 3 to 11). So it does
+/// on fast noise over a slow wander (a factor of 2 to 3: of 90 % intervals 45 to 73 hold, and 87 to 90 by this rule):
+/// then the modes state more than sqrt(2) times as much, which by chance they do of one in seven series without.
 SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count = true);
 
 /// The idle torque at a speed, from the plateaus of a log of the empty machine: the mean, weighted by the errors, over

@@ -232,6 +232,12 @@ std::vector<double> times_of(const Csv& csv, std::size_t column, const LogColumn
   return stamps.seconds;
 }
 
+/// Whether a heading says that it counts revolutions per minute, or names them as one does.
+bool says_rpm(const std::string& heading) {
+  const std::string name = lower_case(heading);
+  return name.find("rpm") != std::string::npos || name.find("/min") != std::string::npos || name == "n";
+}
+
 }  // namespace
 
 TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
@@ -250,6 +256,9 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
     speed = find_column(csv, columns.speed, speed_of_log, log.took);
     log.speed_unit = find_unit(csv, *speed, columns.speed, speed_of_log);
     in_unit = per_shown_unit(csv, *speed, columns.speed);
+    if (columns.speed.unit.empty() && csv.units[*speed].empty() && !says_rpm(csv.headings[*speed]))
+      log.notes.push_back(
+          fmt::format("'{}' has no unit, and is taken as rpm; --rpm-unit says another", csv.headings[*speed]));
   }
   take_words(csv, torque, log);
   if (speed) take_words(csv, *speed, log);

@@ -249,13 +249,25 @@ Heading read_heading(std::string_view given) {
 
 std::optional<Heading> heading_with_unit(std::string_view given, std::string_view dimension) {
   const std::string text(trimmed(given));
+  const auto parted = [&](std::size_t at, std::string unit) -> std::optional<Heading> {
+    if (!unit_meant(unit, dimension)) return {};
+    return Heading{std::string(trimmed(std::string_view(text).substr(0, at))), std::move(unit)};
+  };
   for (const std::string_view mark : {" in ", "_", ":", "<", " "}) {
     const auto at = mark == " in " ? text.find(mark) : text.rfind(mark);
     if (at == std::string::npos || at == 0) continue;
     std::string unit(trimmed(std::string_view(text).substr(at + mark.size())));
     if (mark == "<" && unit.ends_with('>')) unit.pop_back();
-    if (unit_meant(unit, dimension)) return Heading{std::string(trimmed(std::string_view(text).substr(0, at))), unit};
+    if (auto found = parted(at, unit)) return found;
   }
+  // A name that may hold no other sign writes rad/s and N m with the same: "omega_rad_s", "torque_N_m".
+  for (auto at = text.find('_', 1); at != std::string::npos; at = text.find('_', at + 1))
+    for (const char between : {'/', ' '}) {
+      std::string unit = text.substr(at + 1);
+      if (const auto per = unit.find("_per_"); per != std::string::npos) unit.replace(per, 5, "_");
+      std::replace(unit.begin(), unit.end(), '_', between);
+      if (auto found = parted(at, unit)) return found;
+    }
   return {};
 }
 

@@ -156,6 +156,22 @@ TEST_CASE("a table gives the same numbers however it is written, and says how it
   CHECK(data::parse_csv(plain, "bench.csv").took_line().empty());
 }
 
+TEST_CASE("blanks part columns of words, too, below a heading, and no lines of prose") {
+  const TemporaryFolder folder;
+  const auto table = [&](const std::string& text) { return data::read_csv(folder.write("t.dat", text)); };
+  const data::Csv dakota = table(
+      "%eval_id interface   mu_s    torque \n1  NO_ID  0.63  12.2 \n2  NO_ID  0.49  13.5 \n3  NO_ID  0.11  5.9 \n");
+  CHECK(dakota.headings == std::vector<std::string>{"eval_id", "interface", "mu_s", "torque"});
+  REQUIRE(dakota.rows.size() == 3);
+  CHECK(dakota.rows[1].fields == std::vector<std::string>{"2", "NO_ID", "0.49", "13.5"});
+  const data::Csv log =
+      table("Date Time Torque[Nm] Status\n2024-05-03 14:02:00.0 1.02 OK\n2024-05-03 14:02:00.1 1.10 OK\n");
+  CHECK(log.columns == std::vector<std::string>{"Date", "Time", "Torque", "Status"});
+  CHECK(log.rows.size() == 2);
+  const data::Csv prose = table("a,b\nsee page 3,1 of 2\nsee page 4,2 of 2\n");
+  CHECK(prose.headings == std::vector<std::string>{"a", "b"});
+}
+
 TEST_CASE("a column of another error than the standard error, or with an unknown unit, is named with what to do") {
   const auto missing = [](const std::string& heading, const char* column) {
     try {

@@ -108,9 +108,19 @@ TEST_CASE("a table of another code without standard errors is read with none, an
   REQUIRE(empty.table.rows.size() == 2);
   CHECK(empty.table.rows[1].outputs[0] == Approx(0.009));
   CHECK(empty.table.rows[1].standard_errors[0] == 0.0);
-  // A standard deviation is no standard error, and says that there is one.
-  const auto sd = folder.write("sd.csv", "friction,cohesion,speed,warmth,torque,torque_sd\n0.4,4,60,20,8,1\n");
-  CHECK_THROWS_WITH(data::read_table(sd, study), Catch::Contains("the column 'torque_se' is missing"));
+  // What may be a standard deviation is not taken for a standard error, and that is said.
+  const auto errors = [&](const char* name) {
+    return data::read_table(
+        folder.write("e.csv", std::string("friction,cohesion,speed,warmth,torque,") + name + "\n0.4,4,60,20,8,1\n"),
+        study);
+  };
+  for (const char* name : {"torque_sd", "torque_std", "torque_Error"}) {
+    const data::TableRead doubtful = errors(name);
+    CHECK(doubtful.table.rows[0].standard_errors[0] == 0.0);
+    CHECK_THAT(doubtful.findings[0].what, Catch::Contains(std::string(name) + " may be standard deviations"));
+  }
+  for (const char* name : {"torque_se", "torque_SEM", "torque_stderr"})
+    CHECK(errors(name).table.rows[0].standard_errors[0] == Approx(0.001));
 }
 
 TEST_CASE("rows with NaN or an empty cell are left out and named") {

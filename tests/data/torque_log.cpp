@@ -224,6 +224,35 @@ TEST_CASE("the error of a mean is that of the slow noise, whatever hums on top o
   }
 }
 
+TEST_CASE("the error of a mean is that of a slow wander below fast noise") {
+  // White noise of sd 4 over an autoregressive wander of sd 1 and memory 0.99. Without either, the error stays honest.
+  struct Noise {
+    double fast, slow;
+  };
+  for (const Noise noise : {Noise{4.0, 1.0}, {3.0, 1.5}, {4.0, 0.0}, {0.0, 1.0}}) {
+    constexpr int n = 6000, draws = 80;
+    const double variance = (noise.fast * noise.fast + noise.slow * noise.slow * 1.99 / 0.01) / n;
+    double squares = 0.0, stated = 0.0;
+    for (std::uint64_t seed = 0; seed < draws; ++seed) {
+      data::RandomStream random(seed, data::Purpose::test, 12);
+      std::vector<double> series;
+      double slow = random.normal();
+      for (int i = 0; i < n; ++i) {
+        slow = 0.99 * slow + std::sqrt(1.0 - 0.99 * 0.99) * random.normal();
+        series.push_back(noise.slow * slow + noise.fast * random.normal());
+      }
+      const data::SeriesMean mean = data::mean_of_hold(series);
+      squares += std::pow(mean.mean / mean.standard_error, 2) / draws;
+      stated += mean.standard_error / std::sqrt(variance) / draws;
+    }
+    INFO("fast " << noise.fast << ", slow " << noise.slow);
+    CHECK(std::sqrt(squares) > 0.75);
+    CHECK(std::sqrt(squares) < 1.25);
+    CHECK(stated > 0.9);
+    CHECK(stated < 1.25);
+  }
+}
+
 TEST_CASE("a hold a hundred times slower than the fastest is one, and standstill with its scatter is none") {
   const auto speeds = [](int i) { return i < 600 ? 1.0 : i < 1200 ? 200.0 : 0.0; };
   data::RandomStream random(3, data::Purpose::test, 10);

@@ -190,6 +190,36 @@ TEST_CASE("columns of names unknown are found where they alone have a unit of th
   CHECK_THAT(refusal("time [s],motor [N m],rpm\n0,1,2\n1,1,2\n", named), Contains("'shaft' is missing"));
 }
 
+TEST_CASE("a unit in a heading holds however its column is found, by its name, by the command line or by the unit") {
+  const std::string rows = "\n0,2000,0.8\n100,2010,0.8\n200,2005,0.8\n";
+  const auto first_of = [&](const std::string& heading, const char* time, const char* torque, const char* speed) {
+    data::LogColumns columns;
+    const auto name = [](data::LogColumn& column, const char* given) {
+      if (given == nullptr) return;
+      column.name = given;
+      column.also.clear();
+    };
+    name(columns.time, time);
+    name(columns.torque, torque);
+    name(columns.speed, speed);
+    const data::TorqueLog log = log_of(heading + rows, columns);
+    CHECK(log.time[1] == Approx(0.1));
+    CHECK(log.torque[0] == Approx(2.0));
+    return log.speed[0];
+  };
+  constexpr double hertz = 2.0 * std::numbers::pi;
+  CHECK(first_of("t_ms,torque_mNm,speed_Hz", nullptr, nullptr, nullptr) == Approx(0.8 * hertz));
+  CHECK(first_of("t_ms,torque_mNm,speed_Hz", "t_ms", "torque_mNm", "speed_Hz") == Approx(0.8 * hertz));
+  CHECK(first_of("t_ms,torque_mNm,speed_rad_s", nullptr, nullptr, nullptr) == Approx(0.8));
+  CHECK(first_of("t_ms,drive_torque_mNm,drum_speed_rad_s", nullptr, nullptr, nullptr) == Approx(0.8));
+  CHECK(first_of("t_ms,torque_mN_m,omega_rad_per_s", nullptr, nullptr, "omega_rad_per_s") == Approx(0.8));
+  CHECK(first_of("t_ms,torque_mNm,speed in rad/s", nullptr, nullptr, "speed in rad/s") == Approx(0.8));
+  const data::TorqueLog bare = log_of("time [ms],torque [mN m],omega" + rows);
+  CHECK(bare.speed[0] == Approx(0.8 * rpm));
+  REQUIRE_FALSE(bare.notes.empty());
+  CHECK_THAT(bare.notes.back(), Contains("'omega' has no unit, and is taken as rpm"));
+}
+
 TEST_CASE("an instrument's export of one section a hold is one log") {
   std::string text = "Filename\tpowder\nOperator\tA\n";
   for (int hold = 0; hold < 3; ++hold) {
