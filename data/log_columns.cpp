@@ -97,6 +97,27 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const LogQuanti
       remedy);
 }
 
+void take_unit_of_cells(Csv& csv, std::size_t column, const LogColumn& wanted, const LogQuantity& quantity,
+                        std::vector<std::string>& took) {
+  if (!wanted.unit.empty() || !csv.units[column].empty()) return;
+  std::string unit;
+  std::vector<std::string> numbers;
+  for (const CsvRow& row : csv.rows) {
+    const std::string& field = row.fields[column];
+    const std::size_t gap = field.rfind(' ');
+    const auto number = plain_number(field.substr(0, std::min(gap, field.size())), DecimalMark::point);
+    if (gap == std::string::npos || !number) return;
+    const std::string here = field.substr(gap + 1);
+    if (unit.empty() && unit_meant(here, quantity.dimension)) unit = here;
+    if (here != unit) return;
+    numbers.push_back(*number);
+  }
+  if (unit.empty()) return;
+  for (std::size_t i = 0; i < numbers.size(); ++i) csv.rows[i].fields[column] = std::move(numbers[i]);
+  csv.units[column] = unit;
+  took.push_back(fmt::format("'{}' in {}, which every cell says", csv.headings[column], unit));
+}
+
 Unit shown_unit(const Unit& meant, const std::string& given) {
   if (multiple_of_rpm(meant)) return parse_unit("rpm");
   Unit unit = meant;

@@ -81,6 +81,9 @@ std::optional<std::string> plain_number(std::string_view given, DecimalMark mark
   if (given.empty() || given.size() > 64) return {};
   std::string text(given);
   replace_all(text, "\xe2\x88\x92", "-");  // U+2212
+  // A sign in a column of its own: "+  1.74".
+  if (text.front() == '+' || text.front() == '-')
+    text.erase(1, std::min(text.find_first_not_of(' ', 1), text.size()) - 1);
   for (const std::string_view gap : {"\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x89", "\xe2\x80\x99", " ", "'"}) {
     std::string marked = text;
     replace_all(marked, gap, "'");
@@ -134,9 +137,10 @@ bool is_overload(std::string_view given) {
   std::string word = lower_case(trimmed(given));
   if (!word.empty() && word.find_first_not_of('+') == std::string::npos) return true;
   std::erase_if(word, [](char c) { return c == ' ' || c == '.' || c == '+' || c == '-'; });
-  static constexpr std::array known{"ol",    "ovl",        "ovld",      "ovf",       "ovr",        "ofl",
-                                    "over",  "overload",   "overflow",  "overrange", "outofrange", "overlimit",
-                                    "under", "underrange", "underflow", "inf",       "infinity",   "1#inf"};
+  static constexpr std::array known{"ol",         "ovl",       "ovld",     "ovf",         "ovr",
+                                    "ofl",        "over",      "overload", "overflow",    "overrange",
+                                    "outofrange", "overlimit", "under",    "underrange",  "underflow",
+                                    "inf",        "infinity",  "1#inf",    "\xe2\x88\x9e"};
   return std::find(known.begin(), known.end(), word) != known.end();
 }
 

@@ -246,7 +246,9 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
   TorqueLog log{.file = csv.file};
   log.took = csv.took;
   const std::size_t time = columns.rate ? 0 : find_column(csv, columns.time, time_of_log, log.took);
+  if (!columns.rate) take_unit_of_cells(csv, time, columns.time, time_of_log, log.took);
   const std::size_t torque = find_column(csv, columns.torque, torque_of_log, log.took);
+  take_unit_of_cells(csv, torque, columns.torque, torque_of_log, log.took);
   log.torque_unit = find_unit(csv, torque, columns.torque, torque_of_log);
   std::optional<std::size_t> speed;
   double in_unit = 1.0;
@@ -254,6 +256,7 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
   log.speed_unit = shown_unit(unit_meant(given_speed, "rpm").value_or(parse_unit("rpm")), given_speed);
   if (!columns.constant_speed) {
     speed = find_column(csv, columns.speed, speed_of_log, log.took);
+    take_unit_of_cells(csv, *speed, columns.speed, speed_of_log, log.took);
     log.speed_unit = find_unit(csv, *speed, columns.speed, speed_of_log);
     in_unit = per_shown_unit(csv, *speed, columns.speed);
     if (columns.speed.unit.empty() && csv.units[*speed].empty() && !says_rpm(csv.headings[*speed]))

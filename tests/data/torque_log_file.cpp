@@ -220,6 +220,20 @@ TEST_CASE("a unit in a heading holds however its column is found, by its name, b
   CHECK_THAT(bare.notes.back(), Contains("'omega' has no unit, and is taken as rpm"));
 }
 
+TEST_CASE("a unit behind every number is that of the column, signs may stand apart, and no end is too much") {
+  const data::TorqueLog log = log_of(
+      "Time,Torque [N m],rpm\n0 sec,+  1.5,100\n0.1 sec,-  0.5,100\n0.2 sec,\xe2\x88\x9e,100\n0.3 sec,1.0,100\n");
+  REQUIRE(log.time.size() == 3);
+  CHECK(log.time[1] == Approx(0.1));
+  CHECK(log.torque[0] == 1.5);
+  CHECK(log.torque[1] == -0.5);
+  CHECK(log.missing == 1);
+  CHECK_THAT(fmt::format("{}", fmt::join(log.took, ", ")), Contains("'Time' in sec, which every cell says"));
+  REQUIRE(log.warnings.size() == 1);
+  CHECK_THAT(log.warnings[0], Contains("beyond its range"));
+  CHECK_THAT(refusal("Time,Torque [N m],rpm\n0 sec,1,100\n0.1 min,1,100\n"), Contains("'0 sec' is not a number"));
+}
+
 TEST_CASE("an instrument's export of one section a hold is one log") {
   std::string text = "Filename\tpowder\nOperator\tA\n";
   for (int hold = 0; hold < 3; ++hold) {
