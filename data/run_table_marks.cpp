@@ -27,6 +27,18 @@ constexpr std::array ended_well{"converged", "ok",        "success",  "successfu
 constexpr std::array ended_badly{"failed", "failure", "crashed", "error", "aborted", "diverged"};
 constexpr std::array state_columns{"status", "state", "result", "outcome", "exit", "flag", "remark", "comment", "note"};
 constexpr std::array use_columns{"use", "include", "keep"};
+constexpr std::array code_columns{"exit code",   "exitcode", "return code", "returncode",
+                                  "exit status", "rc",       "error code",  "errorcode"};  // 0: it ended well
+
+/// A heading without capitals, with blanks between its words, and without the word for what has the status: "Run_Status".
+std::string plain_heading(std::string_view name) {
+  std::string plain = lower_case(trimmed(name));
+  std::replace_if(
+      plain.begin(), plain.end(), [](char c) { return c == '_' || c == '-' || c == '.'; }, ' ');
+  for (const std::string_view of : {"run ", "job ", "case ", "sim ", "simulation ", "dem "})
+    if (plain.starts_with(of)) return plain.substr(of.size());
+  return plain;
+}
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -219,23 +231,26 @@ bool names_row(const std::string& label, const std::string& place) {
 }
 
 bool is_status_column(std::string_view name) {
-  const std::string plain = lower_case(name);
+  const std::string plain = plain_heading(name);
   return one_of(plain, ended_well) || one_of(plain, ended_badly) || one_of(plain, state_columns) ||
-         one_of(plain, use_columns);
+         one_of(plain, use_columns) || one_of(plain, code_columns);
 }
 
 bool is_user_column(std::string_view name) { return one_of(lower_case(name), use_columns); }
 
 bool says_failed(std::string_view column, std::string_view field) {
-  const std::string name = lower_case(column), word = lower_case(field);
+  const std::string name = plain_heading(column), word = lower_case(trimmed(field));
   static constexpr std::array no{"0", "no", "false", "n", "none"};
   static constexpr std::array yes{"1", "yes", "true", "y", "x"};
   if (one_of(name, ended_well) || one_of(name, use_columns)) return one_of(word, no) || word == "0.0";
   if (one_of(name, ended_badly) && one_of(word, yes)) return true;
+  if (one_of(name, code_columns) && plain_number(word, DecimalMark::point)) return std::stod(word) != 0.0;
   static constexpr std::array parts{"fail",          "crash",       "abort",      "diverg",    "unstable",
                                     "timeout",       "timed out",   "killed",     "explod",    "invalid",
                                     "not converged", "unconverged", "incomplete", "unfinished"};
-  if (word == "error" || word == "bad" || word == "nan") return true;
+  // As whole words alone: "0 particles lost" is no failure.
+  static constexpr std::array whole{"error", "bad", "nan", "lost", "lost particles", "particles lost"};
+  if (one_of(word, whole)) return true;
   return std::any_of(parts.begin(), parts.end(),
                      [&](const char* part) { return word.find(part) != std::string::npos; });
 }

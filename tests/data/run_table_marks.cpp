@@ -99,6 +99,18 @@ TEST_CASE("words of failure in a status column leave the row out, and a column u
   CHECK(data::used_rows(status.table) == 2);
   REQUIRE(find(status, "failed runs"));
   CHECK_THAT(find(status, "failed runs")->what, Contains("status says 'FAILED'"));
+  for (const auto& [heading, well, badly] : {std::tuple{"run_status", "completed", "lost particles"},
+                                             {"Run Status", "ok", "failed"},
+                                             {"exit_code", "0", "137"},
+                                             {"ReturnCode", "0", "1"},
+                                             {"Job-Status", "done", "timeout"}}) {
+    const auto row = [](const char* front, const char* word) { return std::string(front) + "," + word + "\n"; };
+    const auto other = read(row("0.4,100,8.1,0.1", well) + row("0.5,100,3,0.1", badly) + row("0.6,100,9,0.1", well), "",
+                            header + "," + heading);
+    INFO(heading);
+    CHECK(data::used_rows(other.table) == 2);
+    CHECK(find(other, "failed runs"));
+  }
   const auto converged = read("0.4,100,8.1,0.1,1\n0.5,100,3,0.1,0\n", "", header + ",converged");
   CHECK(data::used_rows(converged.table) == 1);
   const auto use = read("0.4,100,8.1,0.1,1\n0.5,100,3,0.1,0\n", "", header + ",use");
