@@ -55,10 +55,10 @@ std::vector<std::string> warnings_of(const data::TorqueLog& log, const std::vect
                                        : fmt::format("{} of {} torques are", negative, plateaus.size()),
                                    idle.kind == Idle::Kind::none ? "" : ", and is so much idle torque meant"));
   if (log.missing > 0)
-    warnings.push_back(fmt::format(
-        "{} samples without all three values are left out: where the sensor was beyond its range then, means are too "
-        "small",
-        log.missing));
+    warnings.push_back(fmt::format("{} samples without all three values are left out: {}", log.missing,
+                                   log.missing_torque > 0
+                                       ? "where the sensor was beyond its range then, means are too small"
+                                       : "none of them lacks its torque, but a time or a speed"));
   for (const data::Plateau& plateau : plateaus)
     if (!plateau.torque.reliable)
       warnings.push_back(fmt::format(

@@ -57,6 +57,7 @@ struct TorqueLog {
   std::vector<double> torque;         ///< N m
   std::vector<double> speed;          ///< rad/s
   std::size_t missing = 0;            ///< samples left out because a field was empty or NaN
+  std::size_t missing_torque = 0;     ///< those of them whose torque was
   std::vector<std::string> took;      ///< how the file was read, where it is not plain CSV in seconds
   std::vector<std::string> notes;     ///< what was assumed of it, in words: the unit of its times
   std::vector<std::string> warnings;  ///< what is doubtful in its fields, in words: a meter beyond its range

@@ -152,6 +152,15 @@ bool repeats_lines(const Csv& csv) {
 }
 
 /// Words in the fields of a column that is to hold numbers, with how often and where first.
+bool is_one_of(const std::string& field, std::initializer_list<std::string_view> words) {
+  return std::find(words.begin(), words.end(), lower_case(trimmed(field))) != words.end();
+}
+bool is_good(const std::string& field) { return is_one_of(field, {"good", "ok", "valid", "192", "good (192)"}); }
+bool is_bad(const std::string& field) {
+  return is_one_of(field, {"bad", "invalid", "uncertain", "stale", "error", "fail", "failed", "not ok", "nok",
+                           "questionable", "comm fail", "0", "64", "bad (0)"});
+}
+
 struct Words {
   std::map<std::string, std::size_t> counts;
   const CsvRow* first = nullptr;
@@ -200,6 +209,45 @@ void take_words(Csv& csv, std::size_t column, TorqueLog& log) {
         fmt::format("{}: {} samples that say the meter was beyond its range, {}, are left out, the first "
                     "in line {}: the mean of a hold with them is too near to 0",
                     csv.columns[column], beyond.total, beyond.list(), beyond.first->line));
+}
+
+/// Whether a column says of every sample whether it is good, and not of all the same; words as of OPC and historians.
+bool tells_quality(const Csv& csv, std::size_t column) {
+  const std::string name = lower_case(csv.headings[column]);
+  if (name.find("quality") == std::string::npos && name != "status" && name != "state" && name != "valid") return false;
+  std::size_t good = 0, bad = 0;
+  for (const CsvRow& row : csv.rows) {
+    if (is_good(row.fields[column]))
+      ++good;
+    else if (is_bad(row.fields[column]))
+      ++bad;
+    else
+      return false;
+  }
+  return good > 0 && bad > 0;
+}
+
+/// The samples that a column of their quality calls bad; none where there is no such column. Where there are several,
+/// those beside torque and speed count.
+std::vector<bool> bad_samples(const Csv& csv, std::size_t torque, std::optional<std::size_t> speed, TorqueLog& log) {
+  std::vector<std::size_t> columns;
+  for (std::size_t i = 0; i < csv.columns.size(); ++i)
+    if (tells_quality(csv, i)) columns.push_back(i);
+  if (columns.size() > 1)
+    std::erase_if(columns, [&](std::size_t i) { return i != torque + 1 && !(speed && i == *speed + 1); });
+  std::vector<bool> bad(csv.rows.size(), false);
+  for (const std::size_t column : columns) {
+    Words words;
+    for (std::size_t i = 0; i < csv.rows.size(); ++i) {
+      if (!is_bad(csv.rows[i].fields[column])) continue;
+      bad[i] = true;
+      words.add(csv.rows[i].fields[column], csv.rows[i]);
+    }
+    if (words.total > 0)
+      log.notes.push_back(fmt::format("{} says {}: these samples are left out, the first in line {}",
+                                      csv.headings[column], words.list(), words.first->line));
+  }
+  return bad;
 }
 
 /// The times of the rows that have one, made good; rows without stay NaN.
@@ -266,12 +314,15 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
   take_words(csv, torque, log);
   if (speed) take_words(csv, *speed, log);
   const std::vector<double> times = times_of(csv, time, columns, log);
+  const std::vector<bool> bad = bad_samples(csv, torque, speed, log);
   for (std::size_t i = 0; i < csv.rows.size(); ++i) {
     const CsvRow& row = csv.rows[i];
+    if (bad[i]) continue;
     const double m = log.torque_unit.to_si(csv.number(row, torque));
     const double w = speed ? log.speed_unit.to_si(in_unit * csv.number(row, *speed)) : *columns.constant_speed;
     if (!std::isfinite(times[i]) || !std::isfinite(m) || !std::isfinite(w)) {
       ++log.missing;
+      log.missing_torque += std::isfinite(m) ? 0 : 1;
       continue;
     }
     if (!log.time.empty() && !(times[i] > log.time.back())) {

@@ -234,6 +234,21 @@ TEST_CASE("a unit behind every number is that of the column, signs may stand apa
   CHECK_THAT(refusal("Time,Torque [N m],rpm\n0 sec,1,100\n0.1 min,1,100\n"), Contains("'0 sec' is not a number"));
 }
 
+TEST_CASE("samples that a log itself calls bad are left out, and that is said") {
+  const std::string rows = "\n0;1,0;GOOD;100;GOOD\n1;9,9;BAD;100;GOOD\n2;1,2;GOOD;7;Uncertain\n3;1,1;GOOD;100;GOOD\n";
+  const data::TorqueLog log = log_of("time [s];torque [N m];Torque_Quality;rpm;Speed_Quality" + rows);
+  CHECK(log.torque == std::vector<double>{1.0, 1.1});
+  CHECK(log.missing == 0);
+  REQUIRE(log.notes.size() == 2);
+  CHECK_THAT(log.notes[0], Contains("Torque_Quality says 'BAD' (1)") && Contains("the first in line 3"));
+  // Another tag's quality is none of ours, and a status of another kind is no quality.
+  CHECK(log_of(
+            "time [s];torque [N m];rpm;Flow;Flow_Quality;x;X_Quality\n0;1,0;100;5;GOOD;1;GOOD\n1;1,5;100;5;BAD;1;BAD\n")
+            .torque.size() == 2);
+  CHECK(log_of("time [s],torque [N m],rpm,status\n0,1,100,ramp\n1,1,100,hold\n").torque.size() == 2);
+  CHECK(log_of("time [s],torque [N m],rpm,status\n0,1,100,OK\n1,1,100,BAD\n2,1,100,OK\n").torque.size() == 2);
+}
+
 TEST_CASE("an instrument's export of one section a hold is one log") {
   std::string text = "Filename\tpowder\nOperator\tA\n";
   for (int hold = 0; hold < 3; ++hold) {
