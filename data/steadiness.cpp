@@ -40,29 +40,13 @@
 #include <limits>
 #include <numbers>
 
+#include "data/cosine_modes.hpp"
+
 namespace data {
 namespace {
 
 constexpr std::size_t slow = 2;             // modes in which a drift lies
 constexpr std::size_t spectrum_modes = 66;  // by which its shape is judged
-
-/// c_j, j = 1 ... count, by the recurrence cos((k + 1) a) = 2 cos(a) cos(k a) - cos((k - 1) a).
-std::vector<double> cosine_modes(std::span<const double> x, double mean, std::size_t count) {
-  const auto n = static_cast<double>(x.size());
-  std::vector<double> c;
-  for (std::size_t j = 1; j <= count; ++j) {
-    const double angle = static_cast<double>(j) * std::numbers::pi / n, twice = 2.0 * std::cos(angle);
-    double now = std::cos(0.5 * angle), before = now, sum = 0.0;  // cos(-a/2) = cos(a/2)
-    for (const double value : x) {
-      sum += (value - mean) * now;
-      const double next = twice * now - before;
-      before = now;
-      now = next;
-    }
-    c.push_back(std::numbers::sqrt2 / n * sum);
-  }
-  return c;
-}
 
 std::vector<double> without_slow_modes(std::span<const double> x, const std::vector<double>& c) {
   std::vector<double> rest(x.begin(), x.end());

@@ -5,11 +5,12 @@
 #include "data/torque_log.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <set>
 
+#include "data/cosine_modes.hpp"
 #include "data/steadiness.hpp"
 
 namespace data {
@@ -231,19 +232,36 @@ bool swings_back(std::span<const double> series) {
   return false;
 }
 
+/// Whether the slowest modes have clearly more power than the integrated time says that they have: Sokal's window has
+/// closed on fast noise. Their mean power over the stated one follows chi-square's law over its degrees of freedom where
+/// it has not; one in thirty series of white noise passes one of these limits, and fewer where it is correlated.
+bool wanders(std::span<const double> series, const SeriesMean& stated) {
+  struct Limit {
+    std::size_t modes;
+    double ratio;
+  };
+  constexpr std::array limits{Limit{8, 2.5}, Limit{16, 2.0}, Limit{32, 1.65}, Limit{64, 1.45}};
+  const auto n = static_cast<double>(series.size());
+  const std::vector<double> c = cosine_modes(series, stated.mean, limits.back().modes);
+  const double each = stated.sd * stated.sd * stated.integrated_time;  // n times the mean's variance
+  return std::any_of(limits.begin(), limits.end(), [&](const Limit& limit) {
+    double power = 0.0;
+    for (std::size_t j = 0; j < limit.modes; ++j) power += n * c[j] * c[j] / static_cast<double>(limit.modes);
+    return power > limit.ratio * each;
+  });
+}
+
 }  // namespace
 
 SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count) {
   constexpr double few = 60.0;
-  constexpr double clearly = std::numbers::sqrt2;
   SeriesMean found = mean_with_error(torque, {.spikes_count = spikes_count});
   if (found.sd == 0.0) return found;
   const std::span<const double> rest = torque.subspan(found.dropped);
   const std::vector<double> without = spikes_count ? std::vector<double>() : without_spikes(rest).series;
   const std::span<const double> used = spikes_count ? rest : std::span<const double>(without);
+  if (!(found.effective_samples < few) && !wanders(used, found) && !swings_back(used)) return found;
   const SeriesMean slow = steadiness(used).mean;
-  const bool wanders = slow.standard_error > clearly * found.standard_error;
-  if (!(found.effective_samples < few) && !wanders && !swings_back(used)) return found;
   // Where it is not known, what it states is the least that the error is.
   if (!(slow.standard_error > (slow.reliable ? 0.0 : found.standard_error))) return found;
   found.standard_error = slow.standard_error;
