@@ -13,14 +13,27 @@
 #include "data/unit_text.hpp"
 
 namespace data {
+namespace {
+
+/// A heading as a name of a study would write it, without capitals: "Static Friction" as "static_friction".
+std::string with_underscores(std::string_view heading) {
+  std::string name = lower_case(trimmed(heading));
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ' ' || c == '-' || c == '.' || c == ':'; }, '_');
+  return name;
+}
+
+}  // namespace
 
 std::optional<std::size_t> Csv::find(std::string_view column, Capitals capitals) const {
   // In a name of one letter, a capital may mean another quantity.
   const bool any = capitals == Capitals::any && column.size() > 1;
-  for (const bool lower : {false, true}) {
-    if (lower && !any) break;
-    const std::string wanted = lower ? lower_case(column) : std::string(column);
-    const auto named = [&](const std::string& one) { return (lower ? lower_case(one) : one) == wanted; };
+  static constexpr std::array<std::string (*)(std::string_view), 3> spellings{
+      [](std::string_view name) { return std::string(name); }, lower_case, with_underscores};
+  for (const auto spelling : spellings) {
+    if (spelling != spellings.front() && !any) break;
+    const std::string wanted = spelling(column);
+    const auto named = [&](const std::string& one) { return spelling(one) == wanted; };
     for (const std::vector<std::string>* names : {&columns, &headings}) {
       const auto found = std::find_if(names->begin(), names->end(), named);
       if (found == names->end()) continue;

@@ -299,6 +299,15 @@ TEST_CASE("a column is found whatever its capitals, and an error in a field is a
         "own, torque_se, if it is the standard error of the mean)");
 }
 
+TEST_CASE("a heading of several words is found by the name that a study can have") {
+  const data::Csv csv = data::parse_csv("Static Friction,A:mu,Run-Time [s],torque\n0.4,1,2,3\n", "edem.csv");
+  CHECK(csv.column("static_friction") == 0);
+  CHECK(csv.column("A_mu") == 1);
+  CHECK(csv.column("run_time") == 2);
+  CHECK_FALSE(csv.find("static_friction"));
+  CHECK_THROWS_WITH(data::parse_csv("a b,a-b,c\n1,2,3\n", "t.csv").column("a_b"), Catch::Contains("is there twice"));
+}
+
 TEST_CASE("a name that two columns have matters where it is asked for and they differ") {
   CHECK(column_of("torque,status,status\n1,0,1\n", "torque") == std::vector<double>{1.0});
   CHECK(column_of("time [s],torque,time [s],rpm\n1,2,1,3\n2,2,2,3\n", "time") == std::vector<double>{1.0, 2.0});
