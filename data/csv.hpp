@@ -39,7 +39,7 @@ struct Csv {
       took;  ///< how the table was read, where it is not plain CSV or not as demcal wrote it: "separated by semicolons"
 
   /// Finds a column by its name, with or without its unit. With Capitals::any, where no column is spelled so, "Speed"
-  /// is found for speed, and where there is none either "Static Friction" for static_friction. Throws InputError (65) where two columns have the name and differ.
+  /// is found for speed and "Run Time" for run_time. Throws InputError (65) where two columns have the name and differ.
   enum class Capitals { as_written, any };
   std::optional<std::size_t> find(std::string_view column, Capitals capitals = Capitals::as_written) const;
   /// Whether two columns hold the same in every row.
