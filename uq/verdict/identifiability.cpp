@@ -162,6 +162,14 @@ ParameterEvidence evidence_of(ParameterReport report, const Profile& profile, co
   return one;
 }
 
+/// Whether a parameter would be narrow enough for a word with an exact surrogate, as far as the draws tell.
+bool runs_could_tell(const SurrogateShare& surrogate, std::size_t k, double contraction,
+                     const VerdictThresholds& thresholds) {
+  constexpr double far = 1.0;  // sds by which the posterior would move: then too few draws tell how narrow it would be
+  if (surrogate.effective_draws < least_effective || surrogate.moved[k] > far) return true;
+  return 1.0 - surrogate.left[k] * (1.0 - contraction) >= thresholds.contraction_weak;
+}
+
 /// What the draws, the profile and the influence of each own parameter say of it.
 std::vector<ParameterEvidence> evidence_of_each(const CaseModel& model, const Eigen::MatrixXd& draws,
                                                 const Guides& guide, const Profiles& all,
@@ -184,6 +192,7 @@ std::vector<ParameterEvidence> evidence_of_each(const CaseModel& model, const Ei
     if (k < options.unsupported.size()) one.unsupported = options.unsupported[k];
     one.unusable = unusable;
     one.surrogate_share = surrogate.shares[k];
+    one.runs_could_tell = runs_could_tell(surrogate, k, one.facts.contraction, options.thresholds);
     evidence.push_back(std::move(one));
   }
   return evidence;

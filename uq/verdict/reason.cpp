@@ -58,7 +58,7 @@ std::optional<Reason> find_reason(const ParameterEvidence& evidence, Verdict ver
   if (evidence.traded && verdict == Verdict::not_identified && (half_open || evidence.unknown_beyond) &&
       evidence.surrogate_share <= mostly_share)
     return Reason::traded;
-  if (evidence.unknown_beyond || evidence.faint) return Reason::surrogate;
+  if ((evidence.unknown_beyond || evidence.faint) && evidence.runs_could_tell) return Reason::surrogate;
   if (facts.open_low && !facts.open_high && facts.physical_low) return Reason::bound;
   if (half_open && !ended_by_prior(evidence)) return Reason::one_sided;
   if (evidence.surrogate_share > mostly_share) return Reason::surrogate;

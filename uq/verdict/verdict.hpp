@@ -52,6 +52,7 @@ struct ParameterEvidence {
   bool traded = false;              ///< the parameter is known only in a combination with others
   bool unknown_beyond = false;      ///< open since the surrogate knows too little beyond an end
   bool faint = false;               ///< a part of its range is excluded, though the surrogate shows no effect of it
+  bool runs_could_tell = true;      ///< an exact surrogate may leave a width that is narrow enough for a word
   double surrogate_share = 0.0;     ///< the surrogate's share of the variance, where two values are compared
   bool hidden = false;              ///< without influence only since the data's errors are large
   double silent_sds = 0.0;  ///< of the data's errors: what the surrogate's own error leaves room for, without influence
