@@ -37,7 +37,7 @@ CHOICES = {
     "walls do not attract": {"contact.wall_hamaker": "0 J"},
     "stiffness 1200 N/m": {"contact.stiffness": "1200 N/m"},
 }
-DIAMETERS = {"spread-1131": 1.1314, "spread-566": 0.5657, "spread-400": 0.4}  # mm; dearest last: 20 minutes a run
+DIAMETERS = {"spread-1131": 1.1314, "spread-566": 0.5657, "spread-400": 0.4}  # mm; dearest last: half an hour a run at 300 rpm, an hour and a half at 50
 # The slice's cross-section as a machine of two augers, 48 mm long: 20,080 spheres, 31.5 g, fill 47 % of the room up to the blades' top, as in the slice.
 # At 300 N/m spheres that a blade's leading edge pinches overlap too deep.
 STIFFER = {"contact.stiffness": "600 N/m"}
