@@ -204,11 +204,11 @@ data::ExitStatus simulate(const SimulateOptions& options) {
   const RunFiles files = files_of(workspace, point);
   const std::string& path = files.path;
   const auto name_of = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
-  if (path != out / "run.h5")
-    notes.push_back(fmt::format("run.h5 holds another run and is kept; this one is in {}", name_of(path)));
   if (!files.from.empty() && files.from != path)
-    notes.push_back(fmt::format("{} holds this run with another length: it is not made anew, but gone on from",
-                                name_of(files.from)));
+    notes.push_back(fmt::format("{} holds this run with another length and is kept; this one goes on from it, in {}",
+                                name_of(files.from), name_of(path)));
+  else if (path != out / "run.h5")
+    notes.push_back(fmt::format("run.h5 holds another run and is kept; this one is in {}", name_of(path)));
   std::string frames_folder;
   if (options.frames > 0) {
     frames_folder = frames_folder_of(workspace, point, options.frames);

@@ -332,7 +332,8 @@ TEST_CASE("rows of other settings stay in the table, and runs of other points st
   CHECK_THAT(other.err, Contains("run.h5 holds another run and is kept"));
   CHECK(names_in(folder.path / "s").size() == 2);
   const auto longer = simulate("100", "0.5 s");
-  CHECK_THAT(longer.err, Contains("run.h5 holds this run with another length: it is not made anew, but gone on from"));
+  CHECK_THAT(longer.err,
+             Contains("run.h5 holds this run with another length and is kept; this one goes on from it, in run-"));
   CHECK(names_in(folder.path / "s").size() == 3);
 }
 

@@ -152,9 +152,8 @@ void count_readings(const PlanBasis& basis, std::vector<PlanCandidate>& all, con
 void add_runs(const PlanBasis& basis, PlanReport& report) {
   if (!basis.found) return;
   const SurrogateShare share = surrogate_share(*basis.sampled.model, basis.draws);
-  if (share.effective_draws < least_effective) return;
-  constexpr double far = 1.0;  // sds by which the posterior would move: then too few draws tell how narrow it would be
-  if (std::any_of(share.moved.begin(), share.moved.end(), [](double moved) { return moved > far; })) return;
+  for (std::size_t k = 0; k < share.left.size(); ++k)
+    if (!share.tells(k)) return;
   for (std::size_t k = 0; k < share.left.size(); ++k) {
     const double now = basis.sd_now(static_cast<int>(k)), left = std::clamp(share.left[k], 1e-12, 1.0);
     report.runs.parameters.push_back({.name = basis.name_of(static_cast<int>(k)),

@@ -8,6 +8,11 @@
 
 namespace uq {
 
+bool SurrogateShare::tells(std::size_t k) const {
+  constexpr double far = 1.0;  // sds by which the posterior would move: then too few draws tell how narrow it would be
+  return effective_draws >= least_effective && moved[k] <= far;
+}
+
 SurrogateShare surrogate_share(const CaseModel& model, const Eigen::MatrixXd& draws,
                                const Eigen::VectorXd& log_likelihood) {
   SurrogateShare found;

@@ -22,6 +22,9 @@ struct SurrogateShare {
   std::vector<double> left;    ///< for each: v / V, the variance that is left without the surrogate's error
   std::vector<double> moved;   ///< for each: |a - b| / sqrt(V); where it is large, few draws lie where v is asked for
   double effective_draws = 0.0;
+
+  /// Whether the draws tell what an exact surrogate would leave of parameter k: there are enough of them where it would be.
+  bool tells(std::size_t k) const;
 };
 
 inline constexpr double least_effective = 20.0;  ///< least effective number of draws

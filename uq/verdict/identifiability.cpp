@@ -165,9 +165,7 @@ ParameterEvidence evidence_of(ParameterReport report, const Profile& profile, co
 /// Whether a parameter would be narrow enough for a word with an exact surrogate, as far as the draws tell.
 bool runs_could_tell(const SurrogateShare& surrogate, std::size_t k, double contraction,
                      const VerdictThresholds& thresholds) {
-  constexpr double far = 1.0;  // sds by which the posterior would move: then too few draws tell how narrow it would be
-  if (surrogate.effective_draws < least_effective || surrogate.moved[k] > far) return true;
-  return 1.0 - surrogate.left[k] * (1.0 - contraction) >= thresholds.contraction_weak;
+  return !surrogate.tells(k) || 1.0 - surrogate.left[k] * (1.0 - contraction) >= thresholds.contraction_weak;
 }
 
 /// What the draws, the profile and the influence of each own parameter say of it.

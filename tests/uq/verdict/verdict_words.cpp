@@ -236,6 +236,23 @@ TEST_CASE("an end that the surrogate's ignorance makes asks for runs", "[uq]") {
   CHECK(found.shares.surrogate == 1.0);
 }
 
+TEST_CASE("runs are no remedy where an exact surrogate would leave the width", "[uq]") {
+  // Open on both sides, a tenth of the variance the surrogate's.
+  const WordFacts facts{.open_low = true, .open_high = true, .contraction = 0.2, .contraction_within = 0.2};
+  ParameterEvidence more;
+  more.unknown_beyond = true;
+  more.surrogate_share = 0.1;
+  more.undecided = true;
+  CHECK(judged("a", facts, more).reason == uq::Reason::surrogate);
+  more.runs_could_tell = false;
+  const ParameterReport found = judged("a", facts, more);
+  CHECK(found.reason == uq::Reason::traded);
+  CHECK(found.shares.surrogate == 0.1);
+  more.unknown_beyond = more.undecided = false;
+  more.faint = true;
+  CHECK(judged("a", facts, more).reason == uq::Reason::practical);
+}
+
 TEST_CASE("narrow parts at the ends of the range are separate values, unless something else ends them", "[uq]") {
   WordFacts facts{.parts = 2, .open_low = true, .open_high = true, .contraction = -1.0, .contraction_within = 0.99};
   CHECK(word_of(facts, {}) == uq::Verdict::several_values);
