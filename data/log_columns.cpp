@@ -45,20 +45,30 @@ std::vector<std::size_t> by_unit(const Csv& csv, std::string_view dimension) {
   return found;
 }
 
-}  // namespace
-
-std::size_t find_column(const Csv& csv, const LogColumn& wanted, const LogQuantity& quantity,
-                        std::vector<std::string>& took) {
+/// The columns of the name; where there are none, those of the other names.
+std::vector<std::size_t> by_name(const Csv& csv, const LogColumn& wanted) {
   const auto named = [&](std::size_t i, const std::string& name) {
     return lower_case(csv.columns[i]) == lower_case(name) || lower_case(csv.headings[i]) == lower_case(name);
   };
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < csv.columns.size(); ++i)
     if (named(i, wanted.name)) found.push_back(i);
-  if (found.empty())
-    for (std::size_t i = 0; i < csv.columns.size(); ++i)
-      if (std::any_of(wanted.also.begin(), wanted.also.end(), [&](const std::string& name) { return named(i, name); }))
-        found.push_back(i);
+  if (!found.empty()) return found;
+  for (std::size_t i = 0; i < csv.columns.size(); ++i)
+    if (std::any_of(wanted.also.begin(), wanted.also.end(), [&](const std::string& name) { return named(i, name); }))
+      found.push_back(i);
+  return found;
+}
+
+}  // namespace
+
+bool may_be_column(const Csv& csv, const LogColumn& wanted, const LogQuantity& quantity) {
+  return !by_name(csv, wanted).empty() || (!wanted.also.empty() && !by_unit(csv, quantity.dimension).empty());
+}
+
+std::size_t find_column(const Csv& csv, const LogColumn& wanted, const LogQuantity& quantity,
+                        std::vector<std::string>& took) {
+  std::vector<std::size_t> found = by_name(csv, wanted);
   // "t" and "T" are a time and a torque.
   const auto as_written = [&](std::size_t i) {
     return std::find(wanted.also.begin(), wanted.also.end(), csv.columns[i]) != wanted.also.end();

@@ -28,6 +28,9 @@ inline constexpr LogQuantity time_of_log{"time", "s", "time"}, torque_of_log{"to
 std::size_t find_column(const Csv& csv, const LogColumn& wanted, const LogQuantity& quantity,
                         std::vector<std::string>& took);
 
+/// Whether find_column would find one column or more.
+bool may_be_column(const Csv& csv, const LogColumn& wanted, const LogQuantity& quantity);
+
 /// Takes a unit that stands behind every number of a column, "0.1 sec", to its heading, where that has none.
 void take_unit_of_cells(Csv& csv, std::size_t column, const LogColumn& wanted, const LogQuantity& quantity,
                         std::vector<std::string>& took);

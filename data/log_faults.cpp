@@ -65,7 +65,7 @@ double drift(const std::vector<double>& values) {
   std::vector<double> rest;
   for (std::size_t i = 0; i < values.size(); ++i)
     rest.push_back(values[i] - slope * (static_cast<double>(i) - 0.5 * (n - 1.0)));
-  const double error = std::sqrt(12.0) * mean_with_error(rest, {.start_up_fraction_max = 0.0}).standard_error;
+  const double error = std::sqrt(12.0) * mean_of_hold(rest).standard_error;
   const double change = slope * n;
   return std::abs(change) > 5.0 * error ? change : 0.0;
 }

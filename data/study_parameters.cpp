@@ -15,7 +15,7 @@ Unit read_unit(const Section& section, const std::string& fallback) {
   try {
     return parse_unit(symbol);
   } catch (const std::invalid_argument& unknown) {
-    for (const char* dimension : {"N m", "degree"})  // "mNm", "deg": as instruments spell them
+    for (const char* dimension : {"N m", "degree", "rpm", "s"})  // "mNm", "deg", "U/min": as instruments spell them
       if (const auto meant = unit_meant(symbol, dimension)) return *meant;
     section.problem("unit", unknown.what(), "write it like \"mN m\", \"rpm\" or \"kg/m3\"");
     return {};

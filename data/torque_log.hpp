@@ -28,9 +28,10 @@ struct LogColumns {
   LogColumn time{.name = "time",
                  .unit = "",
                  .usual = "s",
-                 .also = {"timestamp",   "x_value", "time stamp", "datetime", "date time", "elapsed time", "zeit",
-                          "zeitstempel", "temps",   "tiempo",     "tempo",    "czas",      "čas",          "Čas",
-                          "tijd",        "время",   "Время",      "时间",     "時間",      "시간",         "t"}};
+                 .also = {"timestamp", "x_value",     "time stamp", "datetime", "date time", "elapsed time",
+                          "zeit",      "zeitstempel", "temps",      "tiempo",   "tempo",     "czas",
+                          "čas",       "Čas",         "timestring", "_time",    "tijd",      "время",
+                          "Время",     "时间",        "時間",       "시간",     "t"}};
   /// No usual unit: it must be said somewhere.
   LogColumn torque{.name = "torque",
                    .unit = "",

@@ -9,7 +9,9 @@
 
 #include "data/csv.hpp"
 #include "data/error.hpp"
+#include "data/log_channels.hpp"
 #include "data/log_columns.hpp"
+#include "data/log_stamps.hpp"
 #include "data/log_times.hpp"
 #include "data/number_text.hpp"
 #include "data/time_text.hpp"
@@ -40,15 +42,6 @@ void check_spacing(TorqueLog& log) {
         fmt::format("{:.0f} % of the samples are not evenly spaced in time: each counts until the next one",
                     100.0 * log.uneven_share));
 }
-
-/// The stamps of all rows, s; NaN where there is none.
-struct Stamps {
-  std::vector<double> seconds;
-  bool clock = false;    ///< times of day, with or without a date
-  bool of_day = false;   ///< without
-  bool assumed = false;  ///< numbers whose unit nothing states
-  std::vector<std::string> took;
-};
 
 /// Seconds since the beginning of some calendar, not of the log: from three years on.
 constexpr double of_calendar = 1e8;
@@ -86,64 +79,6 @@ std::string assumed_seconds(const std::vector<double>& times) {
       times.size(), median_interval(times), times.back() - times.front());
 }
 
-/// The column of dates beside one of times of day.
-std::optional<std::size_t> find_dates(const Csv& csv, std::size_t times, const CsvRow& first) {
-  for (std::size_t i = 0; i < csv.columns.size(); ++i) {
-    const std::string name = lower_case(csv.columns[i]);
-    if (i == times || (name != "date" && name != "datum")) continue;
-    const auto both = read_time(first.fields[i] + " " + first.fields[times]);
-    if (both && both->dated && !read_time(first.fields[times])->dated) return i;
-  }
-  return {};
-}
-
-Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted) {
-  Stamps stamps;
-  const auto first = std::find_if(csv.rows.begin(), csv.rows.end(),
-                                  [&](const CsvRow& row) { return !is_missing(row.fields[column]); });
-  stamps.clock = first != csv.rows.end() && read_time(first->fields[column]).has_value();
-  stamps.assumed = !stamps.clock && wanted.unit.empty() && csv.units[column].empty();
-  const Unit unit = stamps.clock ? parse_unit("s") : find_unit(csv, column, wanted, time_of_log);
-  const std::optional<std::size_t> dates = stamps.clock ? find_dates(csv, column, *first) : std::nullopt;
-  if (dates) stamps.took.push_back(fmt::format("days by the column '{}'", csv.headings[*dates]));
-  const auto text_of = [&](const CsvRow& row) {
-    return dates ? row.fields[*dates] + " " + row.fields[column] : row.fields[column];
-  };
-  DateOrder order = DateOrder::unknown;  // the day of 01/06/2024, as 31/05/2024 above or below shows it
-  if (stamps.clock)
-    for (const CsvRow& row : csv.rows)
-      if (const auto time = read_time(text_of(row)); time && time->order != DateOrder::unknown) order = time->order;
-  bool dated = false, either = false;
-  for (const CsvRow& row : csv.rows) {
-    const std::string& field = row.fields[column];
-    if (is_missing(field)) {
-      stamps.seconds.push_back(std::numeric_limits<double>::quiet_NaN());
-    } else if (!stamps.clock) {
-      stamps.seconds.push_back(unit.to_si(csv.number(row, column)));
-    } else {
-      const auto time = read_time(text_of(row), order);
-      if (!time && dates)
-        refuse_data(csv.place(row, *dates), fmt::format("'{}' is no date like those before", row.fields[*dates]),
-                    "write every date alike");
-      if (!time)
-        refuse_data(csv.place(row, column), fmt::format("'{}' is no time like those before", field),
-                    "write every time alike");
-      if (time->two_parts)
-        refuse_data(csv.place(row, column), fmt::format("'{}' may be hours and minutes, or minutes and seconds", field),
-                    "write hours, minutes and seconds, or seconds alone");
-      dated = dated || time->dated;
-      either = either || time->day_or_month;
-      stamps.seconds.push_back(time->seconds);
-    }
-  }
-  if (stamps.clock) stamps.took.push_back(dated ? "dates and times" : "times of day");
-  stamps.of_day = stamps.clock && !dated;
-  if (dated && either)
-    refuse_data(csv.place(*first, column), "has dates whose day and month cannot be told apart beside others",
-                "write dates like 2024-05-31");
-  return stamps;
-}
-
 /// Whether lines are there twice, one behind the other: then equal stamps are no clock's doing.
 bool repeats_lines(const Csv& csv) {
   return std::adjacent_find(csv.rows.begin(), csv.rows.end(), [](const CsvRow& one, const CsvRow& other) {
@@ -155,10 +90,12 @@ bool repeats_lines(const Csv& csv) {
 bool is_one_of(const std::string& field, std::initializer_list<std::string_view> words) {
   return std::find(words.begin(), words.end(), lower_case(trimmed(field))) != words.end();
 }
-bool is_good(const std::string& field) { return is_one_of(field, {"good", "ok", "valid", "192", "good (192)"}); }
+bool is_good(const std::string& field) {
+  return is_one_of(field, {"good", "ok", "valid", "true", "192", "good (192)"});
+}
 bool is_bad(const std::string& field) {
   return is_one_of(field, {"bad", "invalid", "uncertain", "stale", "error", "fail", "failed", "not ok", "nok",
-                           "questionable", "comm fail", "0", "64", "bad (0)"});
+                           "questionable", "comm fail", "false", "0", "64", "bad (0)"});
 }
 
 struct Words {
@@ -214,10 +151,11 @@ void take_words(Csv& csv, std::size_t column, TorqueLog& log) {
 /// Whether a column says of every sample whether it is good, and not of all the same; words as of OPC and historians.
 bool tells_quality(const Csv& csv, std::size_t column) {
   const std::string name = lower_case(csv.headings[column]);
-  if (name.find("quality") == std::string::npos && name != "status" && name != "state" && name != "valid") return false;
+  const bool yes_or_no = name == "valid" || name == "validity";  // 1 and 0; a machine's state may be these, too
+  if (name.find("quality") == std::string::npos && name != "status" && name != "state" && !yes_or_no) return false;
   std::size_t good = 0, bad = 0;
   for (const CsvRow& row : csv.rows) {
-    if (is_good(row.fields[column]))
+    if (is_good(row.fields[column]) || (yes_or_no && row.fields[column] == "1"))
       ++good;
     else if (is_bad(row.fields[column]))
       ++bad;
@@ -248,6 +186,12 @@ std::vector<bool> bad_samples(const Csv& csv, std::size_t torque, std::optional<
                                       csv.headings[column], words.list(), words.first->line));
   }
   return bad;
+}
+
+/// Takes rows out of a table.
+void leave_out(Csv& csv, const std::vector<bool>& out) {
+  std::size_t row = 0;
+  std::erase_if(csv.rows, [&](const CsvRow&) { return out[row++]; });
 }
 
 /// The times of the rows that have one, made good; rows without stay NaN.
@@ -293,6 +237,10 @@ TorqueLog read_torque_log(const std::string& path, const LogColumns& columns) {
   part_headings(csv, columns);
   TorqueLog log{.file = csv.file};
   log.took = csv.took;
+  if (const auto channels = find_channels(csv, columns)) {
+    leave_out(csv, bad_samples(csv, channels->value, {}, log));
+    csv = with_channels_as_columns(csv, *channels, columns, log.took);
+  }
   const std::size_t time = columns.rate ? 0 : find_column(csv, columns.time, time_of_log, log.took);
   if (!columns.rate) take_unit_of_cells(csv, time, columns.time, time_of_log, log.took);
   const std::size_t torque = find_column(csv, columns.torque, torque_of_log, log.took);

@@ -249,6 +249,24 @@ TEST_CASE("samples that a log itself calls bad are left out, and that is said") 
   CHECK(log_of("time [s],torque [N m],rpm,status\n0,1,100,OK\n1,1,100,BAD\n2,1,100,OK\n").torque.size() == 2);
 }
 
+TEST_CASE("a row for each value of each channel is a log whose rows are those of the torque") {
+  const data::TorqueLog log = log_of(
+      "Tag,Timestamp,Value,Unit\nMixer.Speed,0,100,rpm\nMixer.Torque,1,0.5,N m\nMixer.Torque,2,0.6,N m\n"
+      "Mixer.Speed,2.5,200,rpm\nPump.Flow,2.6,3,l/h\nMixer.Torque,3,0.7,N m\n");
+  CHECK(log.time == std::vector{1.0, 2.0, 3.0});
+  CHECK(log.torque == std::vector{0.5, 0.6, 0.7});
+  CHECK(log.speed[1] == Approx(100.0 * std::numbers::pi / 30.0));  // as last written
+  CHECK(log.speed[2] == Approx(200.0 * std::numbers::pi / 30.0));
+  CHECK_THAT(log.took.front(), Contains("3 channels as columns") && Contains("'Mixer.Torque'"));
+  // One channel behind the other: of two values at one time each counts from there on.
+  CHECK(log_of("name,time,value\ntorque_Nm,0,1\ntorque_Nm,1,2\nrpm,0,100\nrpm,1,200\n").speed ==
+        log_of("time,torque_Nm,rpm\n0,1,100\n1,2,200\n").speed);
+  // A table with a torque is none of these, whatever else it has, and the channels are named where none is the torque.
+  CHECK(log_of("name,value,time,torque_Nm,rpm\na,7,0,1,100\nb,8,1,2,100\n").torque == std::vector{1.0, 2.0});
+  CHECK_THROWS_WITH(log_of("name,time,value\nM1,0,1\nM1,1,2\nM2,0,100\nM2,1,200\n"),
+                    Contains("M1, M2") && Contains("--torque"));
+}
+
 TEST_CASE("an instrument's export of one section a hold is one log") {
   std::string text = "Filename\tpowder\nOperator\tA\n";
   for (int hold = 0; hold < 3; ++hold) {

@@ -46,6 +46,10 @@ def stamp(form, step=0.1, begin=BEGIN, digits=3):
     return text
 
 
+DAY, ISO = stamp("%d.%m.%Y %H:%M:%S"), stamp("%Y-%m-%dT%H:%M:%S.%fZ")
+LATE = stamp("%H:%M:%S.%f", begin=datetime.datetime(2026, 3, 2, 23, 59, 40))
+
+
 def summer_time_ends(i, zone):
     at = datetime.datetime(2026, 10, 25, 0, 59, 40) + datetime.timedelta(seconds=0.1 * i)  # UTC
     summer = at.hour < 1
@@ -136,6 +140,18 @@ READ = [
     *((f"no value: {word}", HEAD + every_50th(word), (), (100, 200), None)
       for word in ("NaN", "---", "#DIV/0!", "#NAME?", "#WERT!", "<NA>", "nil", "Bad", "I/O Timeout", "No Data")),
     ("beyond the range", HEAD + every_50th("OVER"), (), (100, 200), None),
+    ("WinCC, a row for each value", '"VarName";"TimeString";"VarValue";"Validity";"Time_ms"\n' + "".join(
+        f'"{name}";"{DAY(i)}";{value(i)};1;45415{i}\n' for i in range(COUNT)
+        for name, value in (("Torque_Nm", lambda i: torque(i).replace(".", ",") + "0"), ("Speed_rpm", speed))), ()),
+    ("a historian, values as they change", "Tag,Timestamp,Value,Quality,Units\n" + "".join(
+        (f"L1.Mixer.Speed,{ISO(i)},{speed(i)},Good,1/min\n" if i in (0, 200) else "")
+        + f"L1.Mixer.Torque,{ISO(i)},{torque(i)},Good,N m\nL1.Mixer.Torque,{ISO(i + 0.5)},0,Bad,N m\n" for i in range(COUNT)), ()),
+    ("InfluxDB, one channel behind the other", "#group,false,false,true,false,false,true\n#datatype,string,long,dateTime:RFC3339,double,string,string\n"
+     "#default,_result,,,,,\n,result,table,_time,_value,_field,_measurement\n" + "".join(
+        f",,{table},{ISO(i)},{value(i)},{name},mixer\n" for table, (name, value) in enumerate((("torque_Nm", torque), ("rpm", speed)))
+        for i in range(COUNT)), ()),
+    ("channels past midnight", "Channel;Time;Value\n" + "".join(
+        f"{name};{LATE(i)};{value(i)}\n" for i in range(COUNT) for name, value in (("Torque [N m]", torque), ("Speed [rpm]", speed))), ()),
 ]
 
 # title, text, words of the answer
