@@ -14,6 +14,8 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
+constexpr int most_lines_of_words = 4;  // between a line of units and the first row
+
 bool is_number_field(const std::string& field) {
   return plain_number(field, DecimalMark::point) || plain_number(field, DecimalMark::comma) || read_time(field);
 }
@@ -155,11 +157,13 @@ class BlockFinder {
       block.units_line = records_[block.first].line;
       block.first = next_line(block.first);
     }
-    // A third line of words: what each column is, as plotting programs have it.
-    if (block.units_line > 0 && block.first < records_.size() && is_words(records_[block.first]) &&
-        has_as_many(records_[block.first], block.headings.size()) &&
-        rows_follow(next_line(block.first), block.headings.size()))
-      block.first = next_line(block.first);
+    // Further lines of words: what each column is, as plotting programs have it, its rate and its amplifier.
+    std::size_t behind = block.first;
+    for (int line = 0; block.units_line > 0 && line < most_lines_of_words && behind < records_.size() &&
+                       is_words(records_[behind]) && has_as_many(records_[behind], block.headings.size());
+         ++line)
+      behind = next_line(behind);
+    if (rows_follow(behind, block.headings.size())) block.first = behind;
     if (!rows_follow(block.first, block.headings.size())) return {};
     const bool apart = blocks_.empty() || record.gap_above || block.units_line > 0 || names_units(block.headings) ||
                        columns() != block.headings.size() || same_columns(blocks_.back().headings, block.headings) ||

@@ -10,6 +10,7 @@
 
 #include "data/error.hpp"
 #include "data/number_text.hpp"
+#include "data/time_text.hpp"
 #include "data/unit_text.hpp"
 
 namespace data {
@@ -60,6 +61,17 @@ std::vector<std::size_t> by_name(const Csv& csv, const LogColumn& wanted) {
   return found;
 }
 
+/// The columns whose first value is a time of day or a date with one.
+std::vector<std::size_t> of_clock(const Csv& csv) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < csv.columns.size(); ++i) {
+    const auto first =
+        std::find_if(csv.rows.begin(), csv.rows.end(), [i](const CsvRow& row) { return !is_missing(row.fields[i]); });
+    if (first != csv.rows.end() && read_time(first->fields[i])) found.push_back(i);
+  }
+  return found;
+}
+
 }  // namespace
 
 bool may_be_column(const Csv& csv, const LogColumn& wanted, const LogQuantity& quantity) {
@@ -91,6 +103,12 @@ std::size_t find_column(const Csv& csv, const LogColumn& wanted, const LogQuanti
     took.push_back(
         fmt::format("'{}' as the {}: the only column in a unit of it", csv.headings[in_unit[0]], quantity.word));
     return in_unit.front();
+  }
+  const std::vector<std::size_t> clocks =
+      any_name && quantity.option == time_of_log.option ? of_clock(csv) : std::vector<std::size_t>{};
+  if (clocks.size() == 1) {
+    took.push_back(fmt::format("'{}' as the time: the only column of a clock's times", csv.headings[clocks[0]]));
+    return clocks.front();
   }
   std::string remedy = fmt::format("name it with --{}", quantity.option);
   if (in_unit.size() > 1) {

@@ -260,8 +260,10 @@ SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count) {
   const std::span<const double> rest = torque.subspan(found.dropped);
   const std::vector<double> without = spikes_count ? std::vector<double>() : without_spikes(rest).series;
   const std::span<const double> used = spikes_count ? rest : std::span<const double>(without);
-  if (!(found.effective_samples < few) && !wanders(used, found) && !swings_back(used)) return found;
+  const bool wander = wanders(used, found);
+  if (!(found.effective_samples < few) && !wander && !swings_back(used)) return found;
   const SeriesMean slow = steadiness(used).mean;
+  if (wander && !slow.reliable) found.reliable = false;  // slower than the hold can tell
   // Where it is not known, what it states is the least that the error is.
   if (!(slow.standard_error > (slow.reliable ? 0.0 : found.standard_error))) return found;
   found.standard_error = slow.standard_error;

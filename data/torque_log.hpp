@@ -28,10 +28,11 @@ struct LogColumns {
   LogColumn time{.name = "time",
                  .unit = "",
                  .usual = "s",
-                 .also = {"timestamp", "x_value",     "time stamp", "datetime", "date time", "elapsed time",
-                          "zeit",      "zeitstempel", "temps",      "tiempo",   "tempo",     "czas",
-                          "čas",       "Čas",         "timestring", "_time",    "tijd",      "время",
-                          "Время",     "时间",        "時間",       "시간",     "t"}};
+                 .also = {"timestamp", "x_value",     "time stamp", "datetime",       "date time", "elapsed time",
+                          "zeit",      "zeitstempel", "temps",      "tiempo",         "tempo",     "czas",
+                          "čas",       "Čas",         "timestring", "unix timestamp", "unix time", "epoch",
+                          "日時",      "時刻",        "日付/時刻",  "_time",          "tijd",      "время",
+                          "Время",     "时间",        "時間",       "시간",           "t"}};
   /// No usual unit: it must be said somewhere.
   LogColumn torque{.name = "torque",
                    .unit = "",
@@ -120,7 +121,8 @@ struct MeanTorque {
 /// 1.1 errors from the truth, and 1.2, 1.1 and 1.05 by modes. Where the torque hums, at the mains' or the blade's
 /// frequency, Sokal's window closes on the hum, and the error of what is slower is lost (a factor of 3 to 11). So it does
 /// on fast noise over a slow wander (a factor of 2 to 3: of 90 % intervals 45 to 73 hold, and 87 to 89 so): there
-/// the modes have clearly more power than the integrated time says.
+/// the modes have clearly more power than the integrated time says. A wander so slow that the modes do not know it either
+/// leaves the mean not `reliable`.
 SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count = true);
 
 /// The idle torque at a speed, from the plateaus of a log of the empty machine: the mean, weighted by the errors, over

@@ -224,6 +224,29 @@ TEST_CASE("the error of a mean is that of the slow noise, whatever hums on top o
   }
 }
 
+TEST_CASE("a wander below fast noise that is too slow for its hold is told, and plain noise is none") {
+  // An autoregressive wander of an integrated time of 10 s, in holds of 60 and 2400 s at 100 samples a second.
+  const auto told = [](double wander, int n) {
+    constexpr int draws = 40;
+    int unreliable = 0;
+    for (std::uint64_t seed = 0; seed < draws; ++seed) {
+      data::RandomStream random(seed, data::Purpose::test, 14);
+      std::vector<double> series;
+      double slow = random.normal();
+      constexpr double memory = 0.998;  // (1 + 0.998)/(1 - 0.998) samples are 10 s
+      for (int i = 0; i < n; ++i) {
+        slow = memory * slow + std::sqrt(1.0 - memory * memory) * random.normal();
+        series.push_back(wander * slow + random.normal());
+      }
+      unreliable += !data::mean_of_hold(series).reliable;
+    }
+    return unreliable / static_cast<double>(draws);
+  };
+  CHECK(told(0.3, 6000) > 0.7);
+  CHECK(told(0.3, 240000) < 0.1);
+  CHECK(told(0.0, 6000) == 0.0);
+}
+
 TEST_CASE("the error of a mean is that of a slow wander below fast noise") {
   // White noise of sd 4 over an autoregressive wander of sd 1 and memory 0.99. Without either, the error stays honest.
   struct Noise {

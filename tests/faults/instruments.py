@@ -129,6 +129,10 @@ READ = [
     ("a preamble of keys", "[Header]\nOperator=M\u00fcller\nDevice=T22/50Nm\n[Data]\n" + HEAD + rows(), ()),
     ("catman", ("HBM_CATMAN_DATAFILE_40 V5.4\t\nDATEI\tx.asc\nKAN\u00c4LE\t3\n\nZeit  1\tDrehmoment\tDrehzahl\ns\tNm\t1/min\n"
                 + rows(separator="\t", comma=True)).encode("cp1252"), ("--time", "Zeit  1", *GERMAN[2:])),
+    ("catman with rates and amplifiers below the units", ("Zeit  1 - Standardmessrate\tDrehmoment T20WN\tDrehzahl T20WN\n[s]\t[Nm]\t[1/min]\n"
+                                                          "SR: 10 Hz\tSR: 10 Hz\tSR: 10 Hz\nMX840B_CH 1\tMX840B_CH 2\tMX840B_CH 3\n"
+                                                          + rows(separator="\t", comma=True)).encode("cp1252"), ()),
+    ("a clock of any name", "Aufgezeichnet;M1 [N m];rpm\n" + rows(stamp("%d.%m.%Y %H:%M:%S.%f"), separator=";"), ()),
     ("columns of one width", "  time [s]   torque [Nm]      rpm\n" + "".join(f"{seconds(i):>10}{torque(i):>12}{speed(i):>9}\n" for i in range(COUNT)), ()),
     ("a table of Markdown", "| time [s] | torque [N m] | rpm |\n|---|---|---|\n"
      + rows(lambda i: "| " + seconds(i), separator=" | ", behind=" |"), ()),

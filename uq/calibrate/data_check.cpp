@@ -35,7 +35,7 @@ std::vector<UnitFactor> unit_factors(const data::Unit& unit) {
       {{180.0 / std::numbers::pi, "degrees against radians"}, {"rad"}, true},
       {{100.0, "percent, or cm against m"}, {"m"}, true},
       {{1e4, "cm2 against m2"}, {"m"}},
-      {{9.80665, "kgf against N"}, {"kg"}},
+      {{9.80665, "kgf against N, or N cm against mN m"}, {"kg"}},
       {{1e9, "three prefixes (n, G) more or less"}, {}},
   };
   const bool bare = data::is_bare(unit.symbol);  // nothing is known of what it measures
