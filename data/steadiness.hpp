@@ -23,6 +23,7 @@ inline constexpr std::array texts_of<FlowState> = {"steady", "drifting", "short"
 struct SteadinessOptions {
   std::size_t error_modes = 8;   ///< slowest modes that make the error; with fewer, the series is too short
   std::size_t drift_modes = 16;  ///< at most; the slowest two of them are compared with the others
+  bool fast_noise = false;  ///< white noise may lie over the series, as a sensor's does: is it long enough below that?
 };
 
 struct Steadiness {

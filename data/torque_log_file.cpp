@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "data/csv.hpp"
@@ -14,7 +13,6 @@
 #include "data/log_stamps.hpp"
 #include "data/log_times.hpp"
 #include "data/number_text.hpp"
-#include "data/time_text.hpp"
 #include "data/torque_log.hpp"
 #include "data/unit_text.hpp"
 
