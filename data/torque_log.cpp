@@ -254,8 +254,7 @@ bool wanders(std::span<const double> series, const SeriesMean& stated) {
 }  // namespace
 
 SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count) {
-  constexpr double few = 60.0,
-                   fewest = 20.0;  // independent samples; of fewest an error is known at all (time_series.hpp)
+  constexpr double few = 60.0;
   SeriesMean found = mean_with_error(torque, {.spikes_count = spikes_count});
   if (found.sd == 0.0) return found;
   const std::span<const double> rest = torque.subspan(found.dropped);
@@ -264,7 +263,7 @@ SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count) {
   const bool wander = wanders(used, found);
   if (!(found.effective_samples < few) && !wander && !swings_back(used)) return found;
   const SeriesMean slow = steadiness(used, {.fast_noise = true}).mean;
-  if (!slow.reliable && (wander || slow.effective_samples < fewest)) found.reliable = false;
+  if (wander && !slow.reliable) found.reliable = false;
   // Where it is not known, what it states is the least that the error is.
   if (!(slow.standard_error > (slow.reliable ? 0.0 : found.standard_error))) return found;
   found.standard_error = slow.standard_error;
