@@ -14,6 +14,7 @@
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
 #include "dem/run/run_file.hpp"
+#include "source_dir.hpp"
 
 namespace test {
 

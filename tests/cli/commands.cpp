@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/table.hpp"
 

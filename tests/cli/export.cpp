@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 namespace fs = std::filesystem;

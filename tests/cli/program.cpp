@@ -1,4 +1,5 @@
 #include "tests/cli/program.hpp"
+#include "source_dir.hpp"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "data/csv.hpp"
+#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 using Catch::Contains;

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "data/random.hpp"
+#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 using Catch::Contains;

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 namespace test {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "data/observations.hpp"
+#include "source_dir.hpp"
 #include "tests/temporary.hpp"
 
 namespace {

@@ -11,6 +11,7 @@
 #include "data/log_times.hpp"
 #include "data/random.hpp"
 #include "data/torque_log.hpp"
+#include "source_dir.hpp"
 #include "tests/temporary.hpp"
 
 using Catch::Contains;

@@ -7,6 +7,7 @@
 
 #include "asked.hpp"
 #include "data/study_keys.hpp"
+#include "source_dir.hpp"
 #include "toml++/toml.h"
 
 namespace {
