@@ -14,7 +14,6 @@
 #include "data/atomic_file.hpp"
 #include "data/csv.hpp"
 #include "dem/run/run_file.hpp"
-#include "source_dir.hpp"
 
 namespace test {
 

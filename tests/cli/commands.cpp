@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/table.hpp"
 

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 namespace fs = std::filesystem;

@@ -12,7 +12,6 @@
 #include "data/folder_lock.hpp"
 #include "data/hdf5.hpp"
 #include "data/origin.hpp"
-#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 using Catch::Contains;

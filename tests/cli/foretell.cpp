@@ -5,7 +5,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 using Catch::Contains;

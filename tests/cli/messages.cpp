@@ -1,7 +1,6 @@
 // Bad input: one clear message with place, value, bound and remedy, and the exit status of data::ExitStatus.
 #include <catch2/catch.hpp>
 
-#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 using Catch::Contains;

@@ -1,5 +1,4 @@
 #include "tests/cli/program.hpp"
-#include "source_dir.hpp"
 
 #include <fcntl.h>
 #include <signal.h>

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "data/csv.hpp"
-#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 using Catch::Contains;

@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "data/random.hpp"
-#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 using Catch::Contains;

@@ -4,7 +4,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "source_dir.hpp"
 #include "tests/cli/program.hpp"
 
 namespace test {

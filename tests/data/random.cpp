@@ -1,6 +1,5 @@
 // Known answers: the kat_vectors file of Random123 (D. E. Shaw Research), philox4x32 with 10 rounds.
 #include "data/random.hpp"
-#include "source_dir.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

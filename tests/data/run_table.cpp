@@ -6,7 +6,6 @@
 #include "data/atomic_file.hpp"
 #include "data/hdf5.hpp"
 #include "data/random.hpp"
-#include "source_dir.hpp"
 #include "tests/temporary.hpp"
 
 namespace {

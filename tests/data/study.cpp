@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "data/observations.hpp"
-#include "source_dir.hpp"
 #include "tests/temporary.hpp"
 
 namespace {

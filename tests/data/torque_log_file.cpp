@@ -11,7 +11,6 @@
 #include "data/log_times.hpp"
 #include "data/random.hpp"
 #include "data/torque_log.hpp"
-#include "source_dir.hpp"
 #include "tests/temporary.hpp"
 
 using Catch::Contains;

@@ -7,7 +7,6 @@
 
 #include "asked.hpp"
 #include "data/study_keys.hpp"
-#include "source_dir.hpp"
 #include "toml++/toml.h"
 
 namespace {

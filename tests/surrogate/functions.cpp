@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "data/random.hpp"
-#include "source_dir.hpp"
 #include "surrogate/design.hpp"
 #include "surrogate/fit.hpp"
 

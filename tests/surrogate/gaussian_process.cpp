@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "data/random.hpp"
-#include "source_dir.hpp"
 #include "surrogate/design.hpp"
 
 using Eigen::MatrixXd;

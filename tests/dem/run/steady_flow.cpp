@@ -9,7 +9,6 @@
 #include "data/csv.hpp"
 #include "data/steadiness.hpp"
 #include "dem/run/run.hpp"
-#include "source_dir.hpp"
 
 namespace {
 

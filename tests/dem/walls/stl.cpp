@@ -7,7 +7,6 @@
 #include "dem/rig/slice.hpp"
 #include "dem/walls/mesh_check.hpp"
 #include "dem/walls/stl.hpp"
-#include "source_dir.hpp"
 #include "tests/dem/walls/cube.hpp"
 #include "tests/temporary.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "data/csv.hpp"
 #include "data/error.hpp"
-#include "source_dir.hpp"
 #include "uq/calibrate/effort.hpp"
 #include "uq/calibrate/posterior_nc.hpp"
 #include "uq/infer/diagnostics.hpp"

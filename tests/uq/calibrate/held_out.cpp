@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "data/study_file.hpp"
-#include "source_dir.hpp"
 #include "uq/calibrate/calibrate.hpp"
 #include "uq/infer/diagnostics.hpp"
 #include "uq/posterior/posterior.hpp"

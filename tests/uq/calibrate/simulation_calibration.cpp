@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "data/study_file.hpp"
-#include "source_dir.hpp"
 #include "tests/uq/closed_form.hpp"
 #include "uq/calibrate/calibrate.hpp"
 #include "uq/posterior/posterior.hpp"

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "data/random.hpp"
-#include "source_dir.hpp"
 
 TEST_CASE("R-hat, effective sample sizes and Monte Carlo errors agree with R's posterior package to 1e-9", "[uq]") {
   std::ifstream file(DEMCAL_SOURCE_DIR "/tests/reference/posterior-diagnostics.json");

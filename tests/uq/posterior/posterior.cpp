@@ -6,7 +6,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "source_dir.hpp"
 #include "surrogate/fit.hpp"
 #include "tests/uq/closed_form.hpp"
 #include "uq/infer/diagnostics.hpp"
