@@ -45,8 +45,6 @@ build() {
     say "configuring ($preset)"
     (cd "$root" && cmake --preset "$preset") >"$log" 2>&1 || { tail -n 30 "$log" >&2; say "configuring failed (whole log: $log)"; exit 70; }
   fi
-  # What one clone compiled, another one of the same machine takes from ccache.
-  export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=true
   (cd "$root" && cmake --build --preset "$preset" ${1:+--target "$@"}) >&2 9>&- || { say "the build failed"; exit 70; }
   exec 9>&-
 }
