@@ -191,6 +191,8 @@ TEST_CASE("ranges and names of parameters are checked where they stand") {
         "78: study.toml:4: parameters.a.low: 0 has no logarithm (choose low above 0, or scale = \"linear\")");
   CHECK(with("[parameters.a]\nhigh = 1\n") ==
         "78: study.toml:3: parameters.a.low: is missing (add a line like low = 0.5)");
+  for (const char* unit : {"U/min", "mNm", "sek"})  // as instruments spell them
+    CHECK(with("[parameters.a]\nunit = \"" + std::string(unit) + "\"\nlow = 0\nhigh = 1\n").empty());
   CHECK(with("[parameters.a]\nunit = \"qq\"\nlow = 0\nhigh = 1\n")
             .find("78: study.toml:4: parameters.a.unit: 'qq' is not a unit") == 0);
   CHECK(with("[parameters.a]\nunit = \"m\"\nlow = \"1 s\"\nhigh = 2\n").find("has the wrong unit") !=

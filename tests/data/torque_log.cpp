@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "data/log_faults.hpp"
 #include "data/random.hpp"
 #include "tests/temporary.hpp"
 
@@ -274,6 +275,30 @@ TEST_CASE("the error of a mean is that of a slow wander below fast noise") {
     CHECK(stated > 0.9);
     CHECK(stated < 1.25);
   }
+}
+
+TEST_CASE("a slow wander below fast noise is no drift, and a drift below it is one") {
+  constexpr int n = 6000, draws = 40;
+  const auto called = [](double slope) {
+    int drifts = 0;
+    for (std::uint64_t seed = 0; seed < draws; ++seed) {
+      data::RandomStream random(seed, data::Purpose::test, 16);
+      double slow = random.normal();
+      const data::TorqueLog log = log_of(
+          n, 0.01,
+          [&](int i) {
+            slow = 0.99 * slow + std::sqrt(1.0 - 0.99 * 0.99) * random.normal();
+            return 100.0 + slow + 3.0 * random.normal() + slope * i / n;
+          },
+          [](int) { return 100.0; });
+      for (const data::Plateau& plateau : data::find_plateaus(log))
+        for (const std::string& fault : data::plateau_faults(log, plateau))
+          drifts += fault.find("drifts") != std::string::npos;
+    }
+    return drifts;
+  };
+  CHECK(called(0.0) <= 1);
+  CHECK(called(10.0) > 30);
 }
 
 TEST_CASE("a hold a hundred times slower than the fastest is one, and standstill with its scatter is none") {
