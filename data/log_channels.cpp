@@ -98,6 +98,19 @@ std::vector<Channel> channels_of(const Csv& csv, std::size_t column, Stamps& sta
   return channels;
 }
 
+/// "3 rows without a time left out, the first in line 7"; nothing where all have one.
+std::string rows_without_time(const Csv& csv, const Stamps& stamps) {
+  std::size_t count = 0, first = 0;
+  for (std::size_t i = csv.rows.size(); i-- > 0;) {
+    if (std::isfinite(stamps.seconds[i])) continue;
+    ++count;
+    first = csv.rows[i].line;
+  }
+  if (count == 0) return "";
+  return fmt::format("{} without a time left out, the first in line {}",
+                     count == 1 ? "1 row" : fmt::format("{} rows", count), first);
+}
+
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
 /// For each row of the torque the row of another channel that was written last; `none` before its first. Rows are in the
@@ -205,6 +218,7 @@ Csv with_channels_as_columns(const Csv& csv, const ChannelColumns& at, const Log
   took.push_back(fmt::format(
       "a row for each value of {}: its {} channels as columns, at the times of '{}', the others as last written",
       csv.headings[at.channel], channels.size(), torque.name));
+  if (std::string said = rows_without_time(csv, stamps); !said.empty()) took.push_back(std::move(said));
   return wide;
 }
 

@@ -189,6 +189,21 @@ void add_lacking(Csv& csv, const std::vector<Column>& outputs) {
   }
 }
 
+/// The number in a field that need not hold one.
+double number_or_nan(const std::string& field) {
+  double value = 0.0;
+  const char* const end = field.data() + field.size();
+  const auto [rest, error] = std::from_chars(field.data(), end, value);
+  return error == std::errc{} && rest == end ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Whether a column has numbers or nothing in all rows.
+bool holds_numbers(const Csv& csv, std::size_t column) {
+  return std::all_of(csv.rows.begin(), csv.rows.end(), [&](const CsvRow& row) {
+    return is_missing(row.fields[column]) || std::isfinite(number_or_nan(row.fields[column]));
+  });
+}
+
 /// Reads the rows of a table, each in the units of its columns.
 class RowReader {
  public:
@@ -208,11 +223,19 @@ class RowReader {
           (at_.errors[i] ? csv.unit(*at_.errors[i], output_units_.back()) : output_units_.back()).differences());
     }
     if (is_own(csv)) find_others();
+    std::copy_if(at_.unread.begin(), at_.unread.end(), std::back_inserter(unread_),
+                 [&](std::size_t column) { return holds_numbers(csv, column); });
   }
 
   const TableColumns& columns() const { return at_; }
   /// Outputs that the study has no longer, and where they stand with their errors.
   const std::vector<std::pair<Column, std::array<std::size_t, 2>>>& others() const { return others_; }
+  /// Columns of numbers that are neither input nor output.
+  std::vector<std::string> unread() const {
+    std::vector<std::string> names;
+    for (const std::size_t column : unread_) names.push_back(csv_.columns[column]);
+    return names;
+  }
   /// What is said of rows that are left out, and of those that lack an output.
   std::vector<std::string> notes() const { return notes_.texts(); }
 
@@ -239,6 +262,7 @@ class RowReader {
       if (has_number(csv_, line, at[0]) && has_number(csv_, line, at[1]))
         row.others[column.name] = {column.unit.to_si(line.fields[at[0]]),
                                    column.unit.differences().to_si(line.fields[at[1]])};
+    for (const std::size_t column : unread_) row.unread.push_back(number_or_nan(line.fields[column]));
     row.place = fmt::format("{}:{}", file_name_, line.line);
     row.left_out = left_out_by_its_columns(csv_, line, at_);
     return row;
@@ -303,6 +327,7 @@ class RowReader {
   std::string file_name_;
   std::vector<Unit> input_units_, output_units_, error_units_;
   std::vector<std::pair<Column, std::array<std::size_t, 2>>> others_;
+  std::vector<std::size_t> unread_;  // of at_.unread, those of numbers
   RowNotes notes_;
 };
 
@@ -316,6 +341,7 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
   if (is_own(csv)) add_lacking(csv, result.table.outputs);
   RowReader reader(csv, result.table, study, std::filesystem::path(path).filename().string());
   result.findings = column_findings(csv, reader.columns(), result.table);
+  result.table.unread = reader.unread();
   for (const auto& [column, unused] : reader.others()) result.table.others.push_back(column);
   for (const CsvRow& line : csv.rows)
     if (std::optional<RunRow> row = reader.read(line)) result.table.rows.push_back(*std::move(row));

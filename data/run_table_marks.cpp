@@ -113,20 +113,21 @@ void leave_out_zeros(TableRead& read) {
 struct OtherRuns {
   std::size_t count = 0;
   double least = HUGE_VAL, largest = 0.0;  ///< magnitudes
-  bool one_sign = true;
+  bool positive = true, negative = true;   ///< all of them
+  /// Whether all have one sign, and `value` not.
+  bool without(double value) const { return (positive && value <= 0.0) || (negative && value >= 0.0); }
 };
 
 OtherRuns runs_beside(const RunTable& table, std::size_t output, double value) {
   OtherRuns others;
-  double sign = 0.0;
   for (const RunRow& row : table.rows) {
     const double one = row.outputs[output];
     if (row.left_out || !std::isfinite(one) || one == value) continue;
     ++others.count;
     others.least = std::min(others.least, std::abs(one));
     others.largest = std::max(others.largest, std::abs(one));
-    others.one_sign = others.one_sign && one * sign >= 0.0;
-    sign = one;
+    others.positive = others.positive && one > 0.0;
+    others.negative = others.negative && one < 0.0;
   }
   return others;
 }
@@ -147,8 +148,8 @@ bool are_apart(const RunTable& table, const std::vector<RunRow*>& rows) {
   return false;
 }
 
-/// Runs that wrote one number in the place of a result: far beyond all others (1e30, 9999), or exactly 0 where all
-/// others lie well away from it.
+/// Runs that wrote one number in the place of a result: far beyond all others (1e30, 9999), or exactly 0 or of the other
+/// sign (-1) where all others lie well away from 0.
 void leave_out_stand_ins(TableRead& read) {
   constexpr std::size_t several = 3;                       // equal to the last digit, at different inputs
   constexpr double far = 10.0, absurd = 1e6, away = 0.05;  // of the largest of the others
@@ -165,12 +166,13 @@ void leave_out_stand_ins(TableRead& read) {
     for (auto& [value, rows] : rows_of) {
       // Few values are looked at beside all others: those that many rows have, and the least and the largest.
       const bool extreme = value == rows_of.begin()->first || value == rows_of.rbegin()->first;
-      if ((rows.size() < several && !extreme) || (value != 0.0 && std::abs(value) <= far * typical)) continue;
+      const bool within = std::abs(value) <= far * typical;
+      if ((rows.size() < several && (!extreme || within)) || (within && value != 0.0 && !extreme)) continue;
       const OtherRuns others = runs_beside(table, k, value);
       if (others.count < several || rows.size() > others.count) continue;
       const bool beyond = std::abs(value) > (rows.size() < several ? absurd : far) * others.largest;
-      const bool nothing = value == 0.0 && rows.size() >= several && others.one_sign &&
-                           others.least > away * others.largest && !are_apart(table, rows);
+      const bool nothing = rows.size() >= several && others.without(value) && others.least > away * others.largest &&
+                           !are_apart(table, rows);
       std::set<std::vector<double>> points;
       for (const RunRow* row : rows) points.insert(row->inputs);
       if (!(beyond || nothing) || (rows.size() >= several && points.size() < several)) continue;

@@ -82,6 +82,8 @@ TEST_CASE("one number in the place of several results is no result, whatever its
   CHECK(left_out("0.4,100,9999,0.1\n0.25,200,9999,0.1\n0.6,90,9999,0.1\n").size() == 3);
   CHECK(left_out("0.4,100,1.7e308,0.1\n").size() == 1);
   CHECK(left_out("0.4,100,0,0.1\n0.25,200,0,0.1\n0.6,90,0,0.1\n").size() == 3);
+  CHECK(left_out("0.4,100,-1,0.1\n0.25,200,-1,0.1\n0.6,90,-1,0.1\n").size() == 3);
+  CHECK(left_out("0.4,100,-1,0.1\n0.25,200,-1.1,0.1\n0.6,90,-1,0.1\n").empty());  // not the same to the last digit
   CHECK(left_out("0.4,100,80,0.1\n").empty());                               // an outlier, for the surrogate to name
   CHECK(left_out("0.1,100,0,0.1\n0.1,200,0,0.1\n0.15,90,0,0.1\n").empty());  // where friction is low: the model's
   CHECK(left_out("0.4,100,9.5,0.1\n0.25,200,9.5,0.1\n0.6,90,9.5,0.1\n").empty());  // rounded

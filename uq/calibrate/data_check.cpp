@@ -153,7 +153,10 @@ std::vector<Finding> check_data(const data::Study& study, data::RunTable& table,
     add(check_ranges(study, table, thresholds));
     add(check_outputs(study, table, log_outputs));
     add(check_mixed_units(study, table));
-    if (!data::has(all, Severity::refusal)) add(check_design(study, table, thresholds));
+    if (!data::has(all, Severity::refusal)) {
+      add(check_design(study, table, thresholds));
+      add(check_unread_inputs(study, table, thresholds));
+    }
   }
   add(check_priors(study));
   add(check_observations(study, table, thresholds));

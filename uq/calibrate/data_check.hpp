@@ -8,7 +8,7 @@
 //             parameter fixed where no run is; one file observed twice in a case; two columns exchanged; a column in
 //             another unit
 //   warned    copies, rows outside the ranges, standard errors of 0 among others, an output that no run changes, inputs
-//             that move together, ranges that the runs do not cover, magnitudes that suggest another unit, standard
+//             that move together, a column that nothing reads and that moves an output, ranges that the runs do not cover, magnitudes that suggest another unit, standard
 //             errors that suggest a percentage
 //   noted     a parameter over decades whose prior, uniform in its value, nobody stated
 // A factor between units is suspected in two cases: where the values fill their range, or meet the runs, only when
@@ -23,12 +23,15 @@
 namespace uq {
 
 struct DataCheckThresholds {
-  double outside = 1e-3;           ///< of a parameter's range: a row further out is named
-  double far_outside = 1.0;        ///< of the range: a row further out is not learnt from
-  double covered = 0.5;            ///< of a parameter's range, in u: runs that cover less are named
-  double together = 0.98;          ///< correlation of two inputs over the runs, of values or of ranks
-  double multiple = 0.98;          ///< squared multiple correlation of an input with all others
-  double exchanged = 0.95;         ///< share of values in the other column's range
+  double outside = 1e-3;      ///< of a parameter's range: a row further out is named
+  double far_outside = 1.0;   ///< of the range: a row further out is not learnt from
+  double covered = 0.5;       ///< of a parameter's range, in u: runs that cover less are named
+  double together = 0.98;     ///< correlation of two inputs over the runs, of values or of ranks
+  double multiple = 0.98;     ///< squared multiple correlation of an input with all others
+  double exchanged = 0.95;    ///< share of values in the other column's range
+  double unread_own = 0.5;    ///< R^2 of a column that nothing reads on the inputs: above it is no input of its own
+  double unread_share = 0.3;  ///< of what the inputs leave of an output: a column that takes more is named
+  double unread_p = 1e-6;     ///< chance of that share where the column has no influence
   double unlikely_scatter = 2e-3;  ///< probability that errors as stated scatter as little
 };
 
@@ -46,6 +49,8 @@ std::vector<data::Finding> check_outputs(const data::Study& study, const data::R
 std::vector<data::Finding> check_mixed_units(const data::Study& study, const data::RunTable& table);
 std::vector<data::Finding> check_design(const data::Study& study, const data::RunTable& table,
                                         const DataCheckThresholds& thresholds);
+std::vector<data::Finding> check_unread_inputs(const data::Study& study, const data::RunTable& table,
+                                               const DataCheckThresholds& thresholds);
 std::vector<data::Finding> check_observations(const data::Study& study, const data::RunTable& table,
                                               const DataCheckThresholds& thresholds);
 std::vector<data::Finding> check_saturated(const data::Study& study, const data::RunTable& table);
