@@ -53,9 +53,10 @@ struct RunRow {
   /// Outputs whose errors are not known, by name, separated by spaces; NAME:short where the run was only too short.
   std::string unreliable = {};
   std::map<std::string, OutputMean> others = {};  ///< outputs that the study no longer has, by name (RunTable::others)
-  std::vector<double> unread = {};  ///< as written, NaN where there is no number (RunTable::unread); not stored
-  std::string place = {};           ///< "runs.csv:31": where the row stands, by which the user names it; not stored
-  LeftOut left_out = {};            ///< not stored
+  std::map<std::string, double> unread =
+      {};                  ///< numbers of columns that are neither input nor output, as written; not stored
+  std::string place = {};  ///< "runs.csv:31": where the row stands, by which the user names it; not stored
+  LeftOut left_out = {};   ///< not stored
 };
 /// Whether the row says that its means are not those of the steady flow.
 bool is_unsteady(const RunRow& row);
@@ -68,7 +69,6 @@ struct RunTable {
   std::vector<Column> outputs;
   std::vector<RunRow> rows;
   std::vector<Column> others = {};  ///< outputs of an earlier form of the study: learnt by nobody, and written back
-  std::vector<std::string> unread = {};  ///< columns of numbers that are neither input nor output; not stored
 };
 
 /// Whether the row has no mean of an output and does not call it unreliable, as one that was written before it became

@@ -189,7 +189,7 @@ void add_lacking(Csv& csv, const std::vector<Column>& outputs) {
   }
 }
 
-/// The number in a field that need not hold one.
+/// The number in a field that need not hold one; NaN where it does not.
 double number_or_nan(const std::string& field) {
   double value = 0.0;
   const char* const end = field.data() + field.size();
@@ -230,12 +230,6 @@ class RowReader {
   const TableColumns& columns() const { return at_; }
   /// Outputs that the study has no longer, and where they stand with their errors.
   const std::vector<std::pair<Column, std::array<std::size_t, 2>>>& others() const { return others_; }
-  /// Columns of numbers that are neither input nor output.
-  std::vector<std::string> unread() const {
-    std::vector<std::string> names;
-    for (const std::size_t column : unread_) names.push_back(csv_.columns[column]);
-    return names;
-  }
   /// What is said of rows that are left out, and of those that lack an output.
   std::vector<std::string> notes() const { return notes_.texts(); }
 
@@ -262,7 +256,9 @@ class RowReader {
       if (has_number(csv_, line, at[0]) && has_number(csv_, line, at[1]))
         row.others[column.name] = {column.unit.to_si(line.fields[at[0]]),
                                    column.unit.differences().to_si(line.fields[at[1]])};
-    for (const std::size_t column : unread_) row.unread.push_back(number_or_nan(line.fields[column]));
+    for (const std::size_t column : unread_)
+      if (const double value = number_or_nan(line.fields[column]); std::isfinite(value))
+        row.unread[csv_.columns[column]] = value;
     row.place = fmt::format("{}:{}", file_name_, line.line);
     row.left_out = left_out_by_its_columns(csv_, line, at_);
     return row;
@@ -341,7 +337,6 @@ TableRead read_table_csv(const std::string& path, const Study& study) {
   if (is_own(csv)) add_lacking(csv, result.table.outputs);
   RowReader reader(csv, result.table, study, std::filesystem::path(path).filename().string());
   result.findings = column_findings(csv, reader.columns(), result.table);
-  result.table.unread = reader.unread();
   for (const auto& [column, unused] : reader.others()) result.table.others.push_back(column);
   for (const CsvRow& line : csv.rows)
     if (std::optional<RunRow> row = reader.read(line)) result.table.rows.push_back(*std::move(row));

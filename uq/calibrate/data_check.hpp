@@ -29,8 +29,8 @@ struct DataCheckThresholds {
   double together = 0.98;     ///< correlation of two inputs over the runs, of values or of ranks
   double multiple = 0.98;     ///< squared multiple correlation of an input with all others
   double exchanged = 0.95;    ///< share of values in the other column's range
-  double unread_own = 0.5;    ///< R^2 of a column that nothing reads on the inputs: above it is no input of its own
-  double unread_share = 0.3;  ///< of what the inputs leave of an output: a column that takes more is named
+  double unread_own = 0.3;    ///< R^2 of a column that nothing reads on the inputs: above it is no input of its own
+  double unread_share = 0.1;  ///< of what the inputs leave of an output: a column that takes more is named
   double unread_p = 1e-6;     ///< chance of that share where the column has no influence
   double unlikely_scatter = 2e-3;  ///< probability that errors as stated scatter as little
 };

@@ -28,7 +28,6 @@ std::vector<data::Finding> found(int count, unsigned seed, const std::function<d
   study.outputs.resize(1);
   study.outputs[0].name = "torque";
   data::RunTable table = data::empty_table(study);
-  table.unread = {"restitution"};
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> uniform;
   std::normal_distribution<double> normal;
@@ -38,7 +37,7 @@ std::vector<data::Finding> found(int count, unsigned seed, const std::function<d
     row.inputs = {run.friction, run.cohesion};
     row.outputs = {torque(run)};
     row.standard_errors = {0.01};
-    row.unread = {column(run)};
+    row.unread = {{"restitution", column(run)}, {"a_power", 3.0 * torque(run) + 0.01 * run.cohesion}};
     row.place = "runs.csv:" + std::to_string(i + 2);
     table.rows.push_back(row);
   }
@@ -61,7 +60,9 @@ TEST_CASE("a column that moves the torque, and that nothing reads, is named") {
   CHECK_THAT(findings[0].remedy, Contains("[parameters.restitution]"));
   // Also of two levels, and where its influence is no straight line.
   CHECK(found(60, 2, torque, [](const Run& run) { return run.unread < 0.5 ? 0.2 : 0.8; }).size() == 1);
-  const auto bent = [](const Run& run) { return of_both(run) + 4.0 * std::pow(run.unread - 0.5, 2) + 0.01 * run.noise; };
+  const auto bent = [](const Run& run) {
+    return of_both(run) + 4.0 * std::pow(run.unread - 0.5, 2) + 0.01 * run.noise;
+  };
   CHECK(found(60, 3, bent, as_written).size() == 1);
 }
 
