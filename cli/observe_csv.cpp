@@ -53,8 +53,8 @@ std::string observations_csv(const ObserveOptions& options, const data::TorqueLo
                     options.idle_log.empty() ? "same log" : in_comment(fs::path(options.idle_log).filename().string()),
                     options.output);
   }
-  text += fmt::format("{},{},{},idle,from_s,seconds,independent,{}\n", data::csv_field(options.control),
-                      data::csv_field(options.output), data::csv_field(options.output + "_se"),
+  text += fmt::format("{},{},{},{},{}\n", data::csv_field(options.control), data::csv_field(options.output),
+                      data::csv_field(options.output + "_se"), fmt::join(data::columns_of_observe, ","),
                       data::csv_field(options.control + "_sd"));
   for (std::size_t i = 0; i < plateaus.size(); ++i) {
     const data::Plateau& plateau = plateaus[i];

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "data/edit_distance.hpp"
@@ -114,6 +115,35 @@ std::size_t Csv::column(std::string_view name) const {
     refuse_data(fmt::format("{}:{}", file, header_line), fmt::format("the unit in '{}' is unknown", heading),
                 "write one that UDUNITS-2 knows, like \"mN m\", or none");
   refuse_data(fmt::format("{}:{}", file, header_line), fmt::format("the column '{}' is missing", name), remedy);
+}
+
+double Csv::number_if_any(const CsvRow& row, std::size_t column) const {
+  const std::string& field = row.fields.at(column);
+  double value = 0.0;
+  const char* const end = field.data() + field.size();
+  const auto [rest, error] = std::from_chars(field.data(), end, value);
+  return error == std::errc{} && rest == end ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::optional<std::pair<double, double>> Csv::number_range(std::size_t column) const {
+  std::pair<double, double> range{HUGE_VAL, -HUGE_VAL};
+  for (const CsvRow& row : rows) {
+    const double value = number_if_any(row, column);
+    if (std::isfinite(value))
+      range = {std::min(range.first, value), std::max(range.second, value)};
+    else if (!is_missing(row.fields[column]))
+      return {};
+  }
+  if (range.first > range.second) return {};
+  return range;
+}
+
+std::string column_in_words(const Csv& csv, std::size_t column) {
+  const auto range = csv.number_range(column);
+  if (!range) return csv.columns[column] + " (text)";
+  const auto [low, high] = *range;
+  return low == high ? fmt::format("{} ({:.5g} everywhere)", csv.columns[column], low)
+                     : fmt::format("{} (from {:.5g} to {:.5g})", csv.columns[column], low, high);
 }
 
 std::string Csv::place(const CsvRow& row, std::size_t column) const {

@@ -48,6 +48,10 @@ struct Csv {
   std::size_t column(std::string_view name) const;
   /// The number in a field of a row; NaN where there is no value. Throws InputError (65) with line and column name.
   double number(const CsvRow& row, std::size_t column) const;
+  /// The number in a field of a column that need not hold any; NaN where it does not.
+  double number_if_any(const CsvRow& row, std::size_t column) const;
+  /// The least and the largest number of a column. None where a field is neither a number nor missing, or all are missing.
+  std::optional<std::pair<double, double>> number_range(std::size_t column) const;
   std::string place(const CsvRow& row, std::size_t column) const;  ///< "bench.csv:3: speed"
   /// The unit of a column's numbers: the table's own where it gives one, else `wanted`. Throws InputError (65) where
   /// the two measure different things.
@@ -60,6 +64,9 @@ struct Csv {
 /// fields, a quote that does not end, two ways to read it.
 Csv read_csv(const std::string& path);
 Csv parse_csv(const std::string& text, const std::string& file);
+
+/// A column and what it holds: "fill (from 200 to 300)", "fill (0.5 everywhere)", "note (text)".
+std::string column_in_words(const Csv& csv, std::size_t column);
 
 /// The text as a field of a CSV file, quoted where it must be.
 std::string csv_field(std::string_view text);

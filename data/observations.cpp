@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "data/copies.hpp"
 #include "data/csv.hpp"
@@ -87,6 +88,25 @@ void read_outputs(const Csv& csv, const CsvRow& row, const std::vector<OutputCol
   }
 }
 
+/// Columns of numbers that vary, beside those that are read and those of demcal observe.
+std::vector<std::string> unread_columns(const Csv& csv, const Study& study) {
+  std::set<std::size_t> known;
+  const auto add = [&](const std::string& name) {
+    if (const auto column = csv.find(name, Csv::Capitals::any)) known.insert(*column);
+  };
+  for (const std::string_view name : columns_of_observe) add(std::string(name));
+  for (const Control& control : study.controls)
+    for (const char* ending : {"", "_sd"}) add(control.name + ending);
+  for (const Output& output : study.outputs)
+    for (const char* ending : {"", "_se"}) add(output.name + ending);
+  for (const Parameter& parameter : study.parameters) add(parameter.name);
+  std::vector<std::string> unread;
+  for (std::size_t i = 0; i < csv.columns.size(); ++i)
+    if (const auto range = csv.number_range(i); range && range->first < range->second && !known.contains(i))
+      unread.push_back(column_in_words(csv, i));
+  return unread;
+}
+
 }  // namespace
 
 void count_copies_once(ObservationSet& set, const Study& study) {
@@ -133,6 +153,7 @@ ObservationSet read_observations(const std::string& path, const Study& study,
     if (csv.find(parameter.name, Csv::Capitals::any)) set.parameter_columns.push_back(parameter.name);
   const std::vector<OutputColumns> outputs = output_columns(csv, study, missing, set);
   for (const OutputColumns& one : outputs) set.outputs.push_back(one.output);
+  set.unread = unread_columns(csv, study);
   if (csv.rows.empty()) {
     throw InputError(ExitStatus::bad_data, Problem{csv.file, "has a header but no rows", "add the measured points"});
   }

@@ -2,6 +2,7 @@
 // Measured points from a CSV: one column per control, one per output, and OUTPUT_se beside each, in the study's units.
 // Other columns are left alone. A field of an output may be empty where the row has another output's value: that output
 // was not measured there (Observation::has).
+#include <array>
 #include <map>
 #include <string>
 #include <string_view>
@@ -13,6 +14,9 @@ namespace data {
 /// The words in the head of a file of observations before what a study must state: the error of an idle torque, which
 /// is common to all rows.
 inline constexpr std::string_view idle_error_mark = "its error is common to all of them: ";
+
+/// Columns that demcal observe writes beside control, output and errors, and CONTROL_sd.
+inline constexpr std::array<std::string_view, 4> columns_of_observe = {"idle", "from_s", "seconds", "independent"};
 
 /// Indices into set.points of the points at which the output of this column (an index into set.outputs) was measured.
 std::vector<std::size_t> points_with(const ObservationSet& set, std::size_t column);

@@ -49,22 +49,6 @@ bool is_empty(const Csv& csv, std::size_t column) {
                      [column](const CsvRow& row) { return trimmed(row.fields[column]).empty(); });
 }
 
-/// The contents of an unread column in words: "fill (from 200 to 300)", "note (text)".
-std::string contents(const Csv& csv, std::size_t column) {
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (const CsvRow& row : csv.rows) {
-    const std::string& field = row.fields[column];
-    double value = 0.0;
-    const auto [rest, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (field.empty() || error != std::errc{} || rest != field.data() + field.size())
-      return csv.columns[column] + " (text)";
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  return low == high ? fmt::format("{} ({:.5g} everywhere)", csv.columns[column], low)
-                     : fmt::format("{} (from {:.5g} to {:.5g})", csv.columns[column], low, high);
-}
-
 }  // namespace
 
 TableColumns find_columns(const Csv& csv, const RunTable& table, const Study& study) {
@@ -124,7 +108,7 @@ std::vector<Finding> column_findings(const Csv& csv, const TableColumns& at, con
          .places = {}});
   if (!at.unread.empty()) {
     std::vector<std::string> names;
-    for (const std::size_t column : at.unread) names.push_back(contents(csv, column));
+    for (const std::size_t column : at.unread) names.push_back(column_in_words(csv, column));
     findings.push_back(
         {.kind = FindingKind::unread_columns,
          .place = place,

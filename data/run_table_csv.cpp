@@ -189,21 +189,6 @@ void add_lacking(Csv& csv, const std::vector<Column>& outputs) {
   }
 }
 
-/// The number in a field that need not hold one; NaN where it does not.
-double number_or_nan(const std::string& field) {
-  double value = 0.0;
-  const char* const end = field.data() + field.size();
-  const auto [rest, error] = std::from_chars(field.data(), end, value);
-  return error == std::errc{} && rest == end ? value : std::numeric_limits<double>::quiet_NaN();
-}
-
-/// Whether a column has numbers or nothing in all rows.
-bool holds_numbers(const Csv& csv, std::size_t column) {
-  return std::all_of(csv.rows.begin(), csv.rows.end(), [&](const CsvRow& row) {
-    return is_missing(row.fields[column]) || std::isfinite(number_or_nan(row.fields[column]));
-  });
-}
-
 /// Reads the rows of a table, each in the units of its columns.
 class RowReader {
  public:
@@ -224,7 +209,7 @@ class RowReader {
     }
     if (is_own(csv)) find_others();
     std::copy_if(at_.unread.begin(), at_.unread.end(), std::back_inserter(unread_),
-                 [&](std::size_t column) { return holds_numbers(csv, column); });
+                 [&](std::size_t column) { return csv.number_range(column).has_value(); });
   }
 
   const TableColumns& columns() const { return at_; }
@@ -257,7 +242,7 @@ class RowReader {
         row.others[column.name] = {column.unit.to_si(line.fields[at[0]]),
                                    column.unit.differences().to_si(line.fields[at[1]])};
     for (const std::size_t column : unread_)
-      if (const double value = number_or_nan(line.fields[column]); std::isfinite(value))
+      if (const double value = csv_.number_if_any(line, column); std::isfinite(value))
         row.unread[csv_.columns[column]] = value;
     row.place = fmt::format("{}:{}", file_name_, line.line);
     row.left_out = left_out_by_its_columns(csv_, line, at_);

@@ -181,6 +181,7 @@ struct ObservationSet {
   std::vector<SharedErrors> repeats = {};
   std::vector<std::size_t> empty_outputs = {};      ///< indices into Study::outputs, of columns without any value
   std::vector<std::string> parameter_columns = {};  ///< names of the study's parameters of which the file has columns
+  std::vector<std::string> unread = {};  ///< columns of numbers that vary and are neither read nor of demcal observe
   std::string meter = {};  ///< sets that name one meter share its common errors; empty: each set has its own
   std::vector<CommonError> common_errors;
   std::vector<ErrorCorrelation> correlations = {};

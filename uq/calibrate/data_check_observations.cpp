@@ -71,6 +71,19 @@ void check_unmeasured(const data::Study& study, const data::ObservationSet& set,
   }
 }
 
+/// Columns that nothing reads: one may be a condition that the runs do not share.
+void check_unread(const data::ObservationSet& set, std::vector<Finding>& findings) {
+  if (set.unread.empty()) return;
+  findings.push_back(
+      {.kind = data::FindingKind::unread_columns,
+       .place = file_of(set),
+       .severity = Severity::note,
+       .what = fmt::format("nothing reads the {} {}", set.unread.size() == 1 ? "column" : "columns",
+                           fmt::join(set.unread, ", ")),
+       .remedy = "a condition among them that moves the readings belongs under [controls], and into the runs",
+       .places = {}});
+}
+
 /// A file of observations that states what nobody measures is a run table.
 void check_run_table(const data::Study& study, const data::ObservationSet& set, std::vector<Finding>& findings) {
   if (set.parameter_columns.empty() || set.parameter_columns.size() < study.parameters.size()) return;
@@ -253,6 +266,7 @@ std::vector<Finding> check_observations(const data::Study& study, const data::Ru
   std::vector<Finding> findings;
   for (const data::ObservationSet& set : study.observations) {
     check_run_table(study, set, findings);
+    check_unread(set, findings);
     check_copies(set, findings);
     check_unmeasured(study, set, findings);
     if (set.points.empty()) continue;
