@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "data/hash.hpp"
+#include "data/number_text.hpp"
 #include "data/provenance.hpp"
 #include "dem/reading/target.hpp"
 
@@ -25,22 +26,16 @@ std::string names_of(const std::vector<data::Input>& inputs) {
 
 /// "2e-18 J" or, in the input's unit, "2e-18".
 double parse_value(const std::string& text, const data::Input& input, const std::string& place) {
-  std::size_t used = 0;
-  try {
-    std::stod(text, &used);
-  } catch (const std::exception&) {
+  const auto number = data::number_with_unit(text);
+  if (!number)
     throw usage(place, fmt::format("'{}' is not a number", text),
                 fmt::format("write {}=NUMBER or {}=\"NUMBER UNIT\"", input.name, input.name));
-  }
-  const std::string digits = text.substr(0, used);
-  std::string unit = text.substr(used);
-  unit.erase(0, unit.find_first_not_of(' '));
-  if (unit.empty()) return input.unit.to_si(digits);
+  if (number->unit.empty()) return input.unit.to_si(number->digits);
   try {
-    if (data::convertible(unit, input.unit.symbol)) return data::parse_unit(unit).to_si(digits);
+    if (data::convertible(number->unit, input.unit.symbol)) return data::parse_unit(number->unit).to_si(number->digits);
   } catch (const std::invalid_argument&) {
   }
-  throw usage(place, fmt::format("'{}' is not a unit of {}", unit, input.name),
+  throw usage(place, fmt::format("'{}' is not a unit of {}", number->unit, input.name),
               fmt::format("use {}", input.unit.symbol.empty() ? "a bare number" : input.unit.symbol));
 }
 

@@ -133,13 +133,10 @@ data::ExitStatus tell(const Common& common, const Workspace& workspace, const Po
 
 double parse_duration(const std::string& text, const std::string& place) {
   try {
-    std::size_t used = 0;
-    static_cast<void>(std::stod(text, &used));
-    std::string unit = text.substr(used);
-    unit.erase(0, unit.find_first_not_of(' '));
-    if (!unit.empty() && data::convertible(unit, "s"))
-      if (const double seconds = data::parse_unit(unit).to_si(text.substr(0, used)); seconds > 0.0) return seconds;
-  } catch (const std::exception&) {
+    if (const auto number = data::number_with_unit(text);
+        number && !number->unit.empty() && data::convertible(number->unit, "s"))
+      if (const double seconds = data::parse_unit(number->unit).to_si(number->digits); seconds > 0.0) return seconds;
+  } catch (const std::invalid_argument&) {  // an unknown unit
   }
   throw data::InputError(data::ExitStatus::usage,
                          {place, fmt::format("'{}' is not a time", text), "write a number and a unit: 2h, 90min"});

@@ -206,8 +206,7 @@ Dialect find_dialect(std::string_view text) {
   const std::string_view first = trimmed(text.substr(0, end));
   const std::string_view bare =
       first.starts_with('"') && first.ends_with('"') && first.size() > 1 ? first.substr(1, first.size() - 2) : first;
-  if ((bare.starts_with("sep=") || bare.starts_with("SEP=")) && text.substr(0, end).find("sep=") < 3 &&
-      bare.size() <= 5) {
+  if (lower_case(bare.substr(0, 4)) == "sep=" && bare.size() <= 5) {
     // A tab or a blank behind "sep=" was trimmed off.
     const std::size_t equals = text.find('=');
     dialect.separator = equals + 1 < end && text[equals + 1] != '"' ? text[equals + 1] : ',';

@@ -36,7 +36,7 @@ void refuse_other_kinds(std::string_view bytes, const std::string& file) {
        {"<html"sv, "a web page"},
        {"<!DOCTYPE"sv, "a web page"},
        {"<table"sv, "a web page"},
-       {"{\rtf"sv, "a word processor's file"},
+       {"{\\rtf"sv, "a word processor's file"},
        {"{\""sv, "JSON"},
        {"[{"sv, "JSON"}}};
   const std::size_t mark = bytes.starts_with("\xef\xbb\xbf"sv) ? 3 : 0;

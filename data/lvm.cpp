@@ -148,8 +148,9 @@ Segment begin_segment(PacketReader& reader) {
   segment.start = stamp_of(reader.tag(segment.tags, "Date", channel), reader.tag(segment.tags, "Time", channel));
   segment.x0 = reader.number(reader.tag(segment.tags, "X0", channel));
   segment.step = reader.number(reader.tag(segment.tags, "Delta_X", channel));
-  segment.samples = static_cast<std::size_t>(
-      std::max(0.0, reader.number(reader.tag(segment.tags, "Samples", channel)).value_or(0.0)));
+  constexpr double samples_most = 1e15;  // a whole number as a double still
+  const double stated = reader.number(reader.tag(segment.tags, "Samples", channel)).value_or(0.0);
+  segment.samples = stated > 0.0 ? static_cast<std::size_t>(std::min(stated, samples_most)) : 0;
   return segment;
 }
 

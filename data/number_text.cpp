@@ -9,6 +9,8 @@ namespace {
 
 bool digit(char c) { return c >= '0' && c <= '9'; }
 
+std::string without_plus(std::string_view text) { return std::string(text.substr(text.starts_with('+') ? 1 : 0)); }
+
 bool reads_as_number(std::string_view text) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   double value = 0.0;
@@ -77,7 +79,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::optional<std::string> plain_number(std::string_view given, DecimalMark mark) {
-  if (mark == DecimalMark::point && reads_as_number(given)) return std::string(given);
+  if (mark == DecimalMark::point && reads_as_number(given)) return without_plus(given);
   if (given.empty() || given.size() > 64) return {};
   std::string text(given);
   replace_all(text, "\xe2\x88\x92", "-");  // U+2212
@@ -95,7 +97,7 @@ std::optional<std::string> plain_number(std::string_view given, DecimalMark mark
         break;
       }
   }
-  if (!only_number_signs(text)) return reads_as_number(text) ? std::optional(text) : std::nullopt;
+  if (!only_number_signs(text)) return reads_as_number(text) ? std::optional(without_plus(text)) : std::nullopt;
   const char decimal = mark == DecimalMark::comma ? ',' : '.', other = mark == DecimalMark::comma ? '.' : ',';
   if (text.find(other) != std::string::npos) {
     const std::size_t end = std::min(text.find_first_of(std::string{decimal, 'e', 'E'}), text.size());
@@ -107,7 +109,19 @@ std::optional<std::string> plain_number(std::string_view given, DecimalMark mark
     std::replace(text.begin(), text.end(), ',', '.');
   }
   fortran_exponent(text);
-  return reads_as_number(text) ? std::optional(text) : std::nullopt;
+  return reads_as_number(text) ? std::optional(without_plus(text)) : std::nullopt;
+}
+
+std::optional<NumberWithUnit> number_with_unit(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  NumberWithUnit found;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), found.value);
+  if (error != std::errc{}) return {};
+  const auto length = static_cast<std::size_t>(rest - text.data());
+  found.digits = text.substr(0, length);
+  found.unit = trimmed(text.substr(length));
+  return found;
 }
 
 std::string lower_case(std::string_view text) {

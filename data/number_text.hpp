@@ -14,6 +14,15 @@ enum class DecimalMark { point, comma };
 /// one.
 std::optional<std::string> plain_number(std::string_view text, DecimalMark mark);
 
+/// A number and what stands behind it: "2e-18" and "J" of "2e-18 J". Blanks around either, and a plus, are taken off.
+struct NumberWithUnit {
+  std::string digits;  ///< what std::from_chars reads
+  double value = 0.0;
+  std::string unit;
+};
+/// None where the text begins with no number that a double can hold.
+std::optional<NumberWithUnit> number_with_unit(std::string_view text);
+
 /// Whether the text says that there is no value: empty, nan, N/A, -, ---.--, #N/A, #####, ?, NULL, 1.#QNAN, ****.
 bool is_missing(std::string_view text);
 

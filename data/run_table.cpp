@@ -108,7 +108,7 @@ std::size_t used_rows(const RunTable& table) {
 TableRead read_table(const std::string& path, const Study& study) {
   const std::string ending = lower_case(std::filesystem::path(path).extension().string());
   TableRead read = ending == ".h5" || ending == ".hdf5" ? read_table_hdf5(path, study) : read_table_csv(path, study);
-  mark_rows(read, path, study);
+  mark_rows(read, study);
   return read;
 }
 

@@ -23,7 +23,7 @@ OutputMean kept_mean(const RunRow& row, const Column& column);
 bool names_row(const std::string& label, const std::string& place);
 
 /// Marks the rows that are not learnt from (data/run_table_marks.cpp) and adds the findings about them.
-void mark_rows(TableRead& read, const std::string& path, const Study& study);
+void mark_rows(TableRead& read, const Study& study);
 
 TableRead read_table_hdf5(const std::string& path, const Study& study);
 TableRead read_table_csv(const std::string& path, const Study& study);

@@ -246,7 +246,8 @@ bool says_failed(std::string_view column, std::string_view field) {
   static constexpr std::array yes{"1", "yes", "true", "y", "x"};
   if (one_of(name, ended_well) || one_of(name, use_columns)) return one_of(word, no) || word == "0.0";
   if (one_of(name, ended_badly) && one_of(word, yes)) return true;
-  if (one_of(name, code_columns) && plain_number(word, DecimalMark::point)) return std::stod(word) != 0.0;
+  if (one_of(name, code_columns))
+    if (const auto code = number_with_unit(word); code && code->unit.empty()) return code->value != 0.0;
   static constexpr std::array parts{"fail",          "crash",       "abort",      "diverg",    "unstable",
                                     "timeout",       "timed out",   "killed",     "explod",    "invalid",
                                     "not converged", "unconverged", "incomplete", "unfinished"};
@@ -257,7 +258,7 @@ bool says_failed(std::string_view column, std::string_view field) {
                      [&](const char* part) { return word.find(part) != std::string::npos; });
 }
 
-void mark_rows(TableRead& read, const std::string&, const Study& study) {
+void mark_rows(TableRead& read, const Study& study) {
   leave_out_named(read, study);
   leave_out_zeros(read);
   leave_out_stand_ins(read);

@@ -1,10 +1,10 @@
 #include "data/study_value.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
+#include "data/number_text.hpp"
 #include "data/unit_text.hpp"
 
 namespace data {
@@ -74,15 +74,9 @@ std::optional<double> read_quantity(const Section::Node& node, std::string_view 
   std::optional<double> number = bare_number(value);
   std::string unit_text;
   if (const auto* text = value.as_string()) {
-    const std::string& written = text->get();
-    const char* begin = written.data() + std::min(written.find_first_not_of(" \t+"), written.size());
-    double parsed = 0.0;
-    const auto [rest, failure] = std::from_chars(begin, written.data() + written.size(), parsed);
-    if (failure == std::errc{}) {
-      number = parsed;
-      unit_text.assign(rest, static_cast<std::size_t>(written.data() + written.size() - rest));
-      unit_text.erase(0, unit_text.find_first_not_of(" \t"));
-      if (const auto last = unit_text.find_last_not_of(" \t"); last != std::string::npos) unit_text.resize(last + 1);
+    if (auto written = number_with_unit(text->get())) {
+      number = written->value;
+      unit_text = std::move(written->unit);
     }
   }
   const std::string_view usual_unit = si_unit == "rad/s" ? "rpm" : si_unit;

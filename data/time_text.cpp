@@ -170,7 +170,8 @@ std::optional<ClockTime> read_compact(std::string_view text) {
   if (text.size() < 15 || (text[8] != 'T' && text[8] != ' ' && text[8] != '_')) return {};
   const int day = digits(0, 8), time = digits(9, 6);
   const int hours = time / 10000, minutes = time / 100 % 100, seconds = time % 100;
-  if (day < 19000000 || day >= 22000000 || time < 0 || minutes > 59 || seconds > 60 || hours > 24) return {};
+  if (day < 19000000 || day >= 22000000 || time < 0 || minutes > 59 || seconds > 60) return {};
+  if (hours > 24 || (hours == 24 && time % 10000 > 0)) return {};
   const auto date = days(day / 10000, day / 100 % 100, day % 100);
   if (!date) return {};
   Cursor rest(text.substr(15));
@@ -216,10 +217,6 @@ std::optional<Date> read_date(Cursor& at, DateOrder order) {
   return date;
 }
 
-}  // namespace
-
-namespace {
-
 /// AM, pm, a.m.
 bool is_half_of_day(std::string_view text) {
   std::string word = lower_case(text);
@@ -246,9 +243,10 @@ std::optional<ClockTime> read_time(std::string_view text, DateOrder order) {
     at.blanks();
   }
   auto hours = at.whole(3);
-  if (!hours || !at.take(':')) return {};
+  const int hours_most = date ? 24 : 999;  // without a date it may be a duration
+  if (!hours || *hours > hours_most || !at.take(':')) return {};
   const auto minutes = at.whole(2);
-  if (!minutes || *minutes > 59) return {};
+  if (!minutes || *minutes > 59 || (date && *hours == 24 && *minutes > 0)) return {};
   double seconds = 0.0;
   if (at.take(':')) {
     const auto whole = at.whole(2);

@@ -84,7 +84,6 @@ bool repeats_lines(const Csv& csv) {
          }) != csv.rows.end();
 }
 
-/// Words in the fields of a column that is to hold numbers, with how often and where first.
 bool is_one_of(const std::string& field, std::initializer_list<std::string_view> words) {
   return std::find(words.begin(), words.end(), lower_case(trimmed(field))) != words.end();
 }
@@ -96,6 +95,7 @@ bool is_bad(const std::string& field) {
                            "questionable", "comm fail", "false", "0", "64", "bad (0)"});
 }
 
+/// Words in the fields of a column that is to hold numbers, with how often and where first.
 struct Words {
   std::map<std::string, std::size_t> counts;
   const CsvRow* first = nullptr;

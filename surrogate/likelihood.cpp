@@ -1,6 +1,7 @@
 #include "surrogate/likelihood.hpp"
 
 #include <Eigen/Cholesky>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -82,15 +83,18 @@ Likelihood::Likelihood(const Standardised& data, Kernel kernel, MeanBasis mean, 
   square_.resize(n);
 }
 
-/// K into matrix_ and its Cholesky factor over it; s^2 f into slope_ where wanted. Jitter grows from 1e-12 of the mean
-/// diagonal until the factorisation succeeds, at most 1e-6.
+/// Jitter that is tried, of the mean diagonal.
+constexpr std::array jitters = {0.0, 1e-12, 3e-11, 9e-10, 2.7e-8, 8.1e-7};
+
+/// K into matrix_ and its Cholesky factor over it; s^2 f into slope_ where wanted. Takes the least of `jitters` with which
+/// the factorisation succeeds.
 bool Likelihood::build(const ScaledParameters& parameters, const Eigen::VectorXd& variance, bool slopes) {
   const Eigen::Index n = data_.points.rows(), d = data_.points.cols();
   scaled_.noalias() = data_.points * parameters.length_scales.cwiseInverse().asDiagonal();
   if (slopes) slope_.resize(n, n);
   const double s2 = parameters.signal_variance;
-  jitter_ = 0.0;
-  for (int attempt = 0; attempt < 5; ++attempt) {
+  for (const double jitter : jitters) {
+    jitter_ = jitter == 0.0 ? 0.0 : jitter * (s2 + variance.mean());
     for (Eigen::Index j = 0; j < n; ++j) {
       const Eigen::Index length = n - j;
       Eigen::Map<Eigen::ArrayXd> square(square_.data(), length);
@@ -104,7 +108,6 @@ bool Likelihood::build(const ScaledParameters& parameters, const Eigen::VectorXd
       value[0] = s2 + variance[j] + jitter_;
     }
     if (cholesky_in_place(matrix_)) return true;
-    jitter_ = jitter_ == 0.0 ? 1e-12 * (s2 + variance.mean()) : jitter_ * 30.0;
   }
   return false;
 }

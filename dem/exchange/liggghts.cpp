@@ -281,6 +281,10 @@ std::vector<std::vector<double>> averages(const std::string& path, std::size_t c
     const char* place = line.c_str();
     char* next = nullptr;
     const double step = std::strtod(place, &next);
+    if (next == place)
+      throw data::InputError(data::ExitStatus::bad_data,
+                             {fmt::format("{}:{}", path, line_number), fmt::format("'{}' begins with no step", line),
+                              "let LIGGGHTS run the in.liggghts that lies beside it"});
     if (step == 0.0) continue;
     if (last > 0.0 && step - last != every && every > 0.0)
       throw data::InputError(

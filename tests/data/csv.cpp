@@ -114,6 +114,7 @@ TEST_CASE("a table gives the same numbers however it is written, and says how it
       {"% made by a script\n% " + std::string(plain), "the heading in the comment of line 2"},
       {"// " + std::string(plain), "the heading in the comment"},
       {"sep=,\n" + std::string(plain), ""},
+      {"SEP=;\n" + with(plain, ",", ";"), "separated by semicolons"},
       {"sep=;\r\n" + with(with(plain, ",", ";"), "\n", "\r\n"), "separated by semicolons"},
       {with(plain, "\n", "\r"), ""},
       {with(plain, "\n", ",\n"), ""},
@@ -409,7 +410,9 @@ TEST_CASE("a file of another kind is named for what it is") {
   for (const auto& [bytes, what] :
        {std::pair("PK\x03\x04zip", "spreadsheet"), std::pair("<html><td>1</td>", "web page"),
         std::pair("{\"time\": 1}", "JSON"), std::pair("TDSm....", "TDMS"), std::pair("\x1f\x8b\x08", "gzip"),
-        std::pair("%PDF-1.7", "PDF")})
+        std::pair("%PDF-1.7", "PDF"), std::pair("{\\rtf1\\ansi", "word processor"),
+        std::pair("\xd0\xcf\x11\xe0", "xls"), std::pair("MATLAB 5.0 MAT-file", "MATLAB"), std::pair("MDF 4.10", "MDF"),
+        std::pair("<?xml version", "XML"), std::pair("<!DOCTYPE html>", "web page"), std::pair("[{\"t\": 1}]", "JSON")})
     CHECK_THROWS_WITH(data::parse_csv(bytes, "x.csv"),
                       Catch::Contains("x.csv: is ") && Catch::Contains(what) && Catch::Contains("CSV"));
 }

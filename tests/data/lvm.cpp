@@ -71,6 +71,9 @@ TEST_CASE(
   check_four(log_of(Made{}.one(four)));
   check_four(log_of(Made{.decimal = ","}.one(four)));
   check_four(log_of(Made{.separator = "Comma"}.one(four)));
+  std::string plus = four;
+  plus.replace(plus.find("0.1"), 3, "+0.1");
+  check_four(log_of(Made{}.one(plus)));
   const data::Csv csv = data::parse_csv(Made{.decimal = ","}.one(four), "log.lvm");
   CHECK(csv.columns == std::vector<std::string>{"X_Value", "Speed", "Torque"});
   CHECK(csv.units == std::vector<std::string>{"s", "rpm", "N m"});

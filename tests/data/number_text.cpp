@@ -10,6 +10,9 @@ TEST_CASE("numbers as the world writes them become plain decimals, and what is n
   const auto comma = [](const std::string& text) { return data::plain_number(text, DecimalMark::comma).value_or("-"); };
   CHECK(point("1.5") == "1.5");
   CHECK(point("-2e-3") == "-2e-3");
+  CHECK(point("+1.5") == "1.5");
+  CHECK(point("+ 1.5") == "1.5");
+  CHECK(comma("+1,5") == "1.5");
   CHECK(point("1.0D+00") == "1.0E+00");
   CHECK(point("1D-3") == "1E-3");
   CHECK(point("2.5-101") == "2.5E-101");
@@ -27,6 +30,18 @@ TEST_CASE("numbers as the world writes them become plain decimals, and what is n
                                  "e5", "1d5", "12d3456", "4f2d17e9", "5 %"})
     CHECK(point(none) == "-");
   for (const std::string none : {"1,2,3", "12.34,5", "1.5.", "1,23.4"}) CHECK(comma(none) == "-");
+}
+
+TEST_CASE("a number is read with the unit behind it, as it stands, or not at all") {
+  const auto parts = [](const std::string& text) {
+    const auto found = data::number_with_unit(text);
+    return found ? found->digits + "|" + found->unit : "none";
+  };
+  CHECK(parts("2e-18 J") == "2e-18|J");
+  CHECK(parts(" 0.4") == "0.4|");
+  CHECK(parts("+90min ") == "90|min");
+  CHECK(parts("0x10") == "0|x10");  // no unit: refused by whoever asked
+  for (const char* none : {"", "J", "= 0.4", "1e999", "- 3"}) CHECK(parts(none) == "none");
 }
 
 TEST_CASE("a number says which decimal mark it has, or that it may be read in two ways") {
