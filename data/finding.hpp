@@ -35,6 +35,7 @@ enum class FindingKind {
   no_logarithm,               ///< no logarithm exists of an output that is 0 or less
   no_response,                ///< an output that does not vary
   copied_observations,        ///< the same readings more than once
+  counted_twice,              ///< the same readings, or nearly, in two sets of one case
   shared_errors,              ///< readings of one setting that agree too well to be independent
   standard_errors,            ///< standard errors of readings, too small or too large to be meant
   prior_not_stated,           ///< no prior is stated for a parameter whose range spans decades
@@ -61,6 +62,7 @@ inline constexpr std::array texts_of<FindingKind> = {"copied rows",
                                                      "no logarithm",
                                                      "no response",
                                                      "copied observations",
+                                                     "counted twice",
                                                      "shared errors",
                                                      "standard errors",
                                                      "prior not stated",

@@ -36,10 +36,27 @@ void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& 
   for (const data::Finding& finding : findings)
     if (finding.severity == data::Severity::warning &&
         (finding.kind == unit || (finding.kind == standard_errors && report.lone_reading.empty()) ||
-         finding.kind == no_response)) {
+         finding.kind == no_response || finding.kind == counted_twice)) {
+      report.consequence = "That holds only if the data are right as they stand. " + report.consequence;
       report.remedy = before_remedy(
           fmt::format("First settle what is said of the data ({}: {}).", to_text(finding.kind), finding.place),
           report.remedy);
+      return;
+    }
+}
+
+/// Where nothing fits and a surrogate is in doubt, the misfit may be the surrogate's: runs come before the look at the bench.
+void put_doubted_surrogate_first(CaseReport& report, const CaseModel& model,
+                                 const std::vector<FittedSurrogate>& surrogates) {
+  if (report.fits || report.unusable) return;
+  for (const RowGroup& group : model.groups)
+    for (const FittedSurrogate& one : surrogates) {
+      if (one.rows.material != group.emulator.material || one.rows.output != group.emulator.output) continue;
+      if (one.report.verdict != SurrogateWord::caution) continue;
+      report.consequence =
+          fmt::format("The surrogate of {} is in doubt, too, so that its error may be what does not fit. {}",
+                      one.report.output, report.consequence);
+      report.remedy = before_remedy("First make the surrogate sure. " + one.report.remedy, report.remedy);
       return;
     }
 }
@@ -59,6 +76,7 @@ void put_failed_prediction_first(CaseReport& report, const std::string& name) {
 struct Basis {
   const data::Study& study;
   const std::vector<data::Finding>& findings;  ///< findings about the data
+  const std::vector<FittedSurrogate>& surrogates;
   const std::vector<Emulator>& emulators;
 };
 
@@ -92,6 +110,7 @@ CaseReport whole_report(const Basis& basis, const SampledCase& sampled, std::siz
                         std::optional<WithoutRuns> without, const CalibrateOptions& own) {
   CaseReport made = report_case(basis.study, sampled, own);
   made.without = std::move(without);
+  put_doubted_surrogate_first(made, *sampled.model, basis.surrogates);
   put_suspicions_first(made, basis.findings);
   add_predictions(made, basis, sampled, index);
   if (made.doubt.empty()) made.comparisons = compare_models(basis.study, sampled, index, own);
@@ -195,7 +214,8 @@ Calibration calibrate_all(const data::Study& study, const data::RunTable& table,
   const std::vector<Emulator> emulators = emulators_of(result.surrogates);
   const std::vector<FittedSurrogate> others = without_outlying(study, looked_at.rows, learning, result.surrogates);
   steps.took(seconds());
-  const Basis basis{.study = study, .findings = looked_at.findings, .emulators = emulators};
+  const Basis basis{
+      .study = study, .findings = looked_at.findings, .surrogates = result.surrogates, .emulators = emulators};
 
   // Each case, and each again with other errors of its measurement.
   for (std::size_t index = 0; index < study.cases.size(); ++index) {

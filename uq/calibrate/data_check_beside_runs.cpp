@@ -93,6 +93,38 @@ Extent readings_of(const data::ObservationSet& set, std::size_t column) {
   return seen;
 }
 
+/// Two outputs whose readings each lie among what the runs give of the other, and outside what they give of their own.
+void check_exchanged_outputs(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
+                             std::vector<Finding>& findings) {
+  /// Numbers as the study writes them: a heading in the wrong place brings no unit with it.
+  struct Numbers {
+    Extent readings, runs;
+    bool among(const Numbers& other) const {
+      return readings.low >= other.runs.low && readings.high <= other.runs.high;
+    }
+    bool outside() const { return readings.high < runs.low || readings.low > runs.high; }
+  };
+  std::vector<Numbers> all;
+  for (std::size_t column = 0; column < set.outputs.size(); ++column) {
+    const data::Unit& unit = study.outputs[set.outputs[column]].unit;
+    Numbers numbers;
+    for (const double value : readings_of(set, column).values) numbers.readings.add(unit.from_si(value));
+    for (const double value : outputs_of_runs(table, set, set.outputs[column]).values)
+      numbers.runs.add(unit.from_si(value));
+    all.push_back(std::move(numbers));
+  }
+  for (std::size_t a = 0; a < all.size(); ++a)
+    for (std::size_t b = a + 1; b < all.size(); ++b) {
+      const auto few = [](const Numbers& one) { return one.readings.values.size() < 2 || one.runs.values.size() < 5; };
+      if (few(all[a]) || few(all[b]) || is_scaled(study, set, set.outputs[a]) || is_scaled(study, set, set.outputs[b]))
+        continue;
+      if (!all[a].outside() || !all[b].outside() || !all[a].among(all[b]) || !all[b].among(all[a])) continue;
+      const std::string &first = study.outputs[set.outputs[a]].name, &second = study.outputs[set.outputs[b]].name;
+      findings.push_back(exchanged_in(
+          set, first, second, "each lies outside what all runs give of it, and among what they give of the other"));
+    }
+}
+
 /// Whether the set is of a tool that turns backwards, at a negative setting.
 bool turns_backwards(const data::ObservationSet& set) {
   return std::any_of(set.points.begin(), set.points.end(), [](const data::Observation& point) {
@@ -134,6 +166,13 @@ void check_sign(const data::Study& study, const data::RunTable& table, const dat
   }
 }
 
+/// Whether readings times a factor lie where the runs do, or a fifth of their reach beyond.
+bool meets(const Extent& seen, const Extent& runs, double factor) {
+  const double beyond = 0.2 * (runs.high - runs.low);
+  const auto [low, high] = std::minmax(factor * seen.low, factor * seen.high);
+  return low >= runs.low - beyond && high <= runs.high + beyond;
+}
+
 /// Observed outputs beside those of all runs of the material.
 void check_magnitude(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
                      std::vector<Finding>& findings) {
@@ -158,7 +197,8 @@ void check_magnitude(const data::Study& study, const data::RunTable& table, cons
                             seen.low < seen.high ? "" : "s", shown(runs.low), shown(runs.high), unit),
         .remedy = "",
         .places = {}};
-    if (const auto known = known_factor(output.unit, data::median_of(seen.values), data::median_of(runs.values), 2.0))
+    const auto known = known_factor(output.unit, data::median_of(seen.values), data::median_of(runs.values), 2.0);
+    if (known && meets(seen, runs, ratio > 1.0 ? 1.0 / known->factor : known->factor))
       finding.what += fmt::format(": {:.3g} times the runs'. Is another unit meant, {}?", ratio, known->between);
     finding.remedy = fmt::format(
         "check the unit of {} in {} and in the run table, the fill and the geometry; where they are "
@@ -220,6 +260,7 @@ std::string place_of(const data::ObservationSet& set, const data::Observation& p
 void check_beside_runs(const data::Study& study, const data::RunTable& table, const data::ObservationSet& set,
                        std::vector<data::Finding>& findings) {
   check_exchanged(study, table, set, findings);
+  check_exchanged_outputs(study, table, set, findings);
   check_sign(study, table, set, findings);
   check_magnitude(study, table, set, findings);
   check_control_unit(study, table, set, findings);

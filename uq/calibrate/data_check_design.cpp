@@ -50,8 +50,33 @@ Eigen::MatrixXd correlations(Eigen::MatrixXd columns) {
   return columns.transpose() * columns;
 }
 
-void check_together(const std::string& material, const std::vector<const InputColumn*>& columns,
-                    const Eigen::MatrixXd& u, const DataCheckThresholds& t, std::vector<Finding>& findings) {
+/// Whether all readings of a material lie where the runs do, of two controls (unit interval) that move together in the runs:
+/// then nobody asks for their effects apart. About the runs' straight line, with a little beyond their own scatter.
+bool readings_lie_on_line(const data::Study& study, const std::string& material,
+                          const std::pair<std::string, std::string>& controls, const Eigen::VectorXd& first,
+                          const Eigen::VectorXd& second) {
+  constexpr double beyond = 0.02;  // of the second control's range
+  const double mean_first = first.mean(), mean_second = second.mean();
+  const Eigen::ArrayXd away = first.array() - mean_first;
+  const double slope = (away * (second.array() - mean_second)).sum() / away.square().sum();
+  const double scatter = (second.array() - mean_second - slope * away).abs().maxCoeff();
+  const std::size_t a = *study.control_index(controls.first), b = *study.control_index(controls.second);
+  bool any = false;
+  for (const data::ObservationSet& set : study.observations) {
+    if (set.material != material) continue;
+    for (const data::Observation& point : set.points) {
+      any = true;
+      const double at = study.controls[a].axis().to_unit(point.controls[a]) - mean_first;
+      const double off = study.controls[b].axis().to_unit(point.controls[b]) - mean_second - slope * at;
+      if (std::abs(off) > scatter + beyond) return false;
+    }
+  }
+  return any;
+}
+
+void check_together(const data::Study& study, const std::string& material,
+                    const std::vector<const InputColumn*>& columns, const Eigen::MatrixXd& u,
+                    const DataCheckThresholds& t, std::vector<Finding>& findings) {
   const Eigen::Index inputs = u.cols(), runs = u.rows();
   if (inputs < 2 || runs < 6) return;
   Eigen::MatrixXd ranked(runs, inputs);
@@ -71,12 +96,15 @@ void check_together(const std::string& material, const std::vector<const InputCo
     for (Eigen::Index b = a + 1; b < inputs; ++b) {
       const double r = plain(a, b), s = of_ranks(a, b);
       if (std::max(std::abs(r), std::abs(s)) < t.together) continue;
+      told.insert({a, b});
+      if (!columns[a]->is_parameter && !columns[b]->is_parameter &&
+          readings_lie_on_line(study, material, {columns[a]->name, columns[b]->name}, u.col(a), u.col(b)))
+        continue;
       const std::string &first = columns[a]->name, &second = columns[b]->name;
       add(fmt::format("{} and {} move together in all {} runs{} (correlation {:.3f}, of ranks {:.3f}): the runs cannot "
                       "tell their effects apart",
                       first, second, runs, of, r, s),
           first);
-      told.insert({a, b});
     }
   if (runs < 2 * inputs + 4) return;
   const Eigen::LLT<Eigen::MatrixXd> factor(plain + 1e-12 * Eigen::MatrixXd::Identity(inputs, inputs));
@@ -178,7 +206,7 @@ std::vector<Finding> check_design(const data::Study& study, const data::RunTable
     if (varied.empty()) continue;
     Eigen::MatrixXd u(values.front().size(), static_cast<Eigen::Index>(values.size()));
     for (std::size_t k = 0; k < values.size(); ++k) u.col(k) = values[k];
-    check_together(material, varied, u, t, findings);
+    check_together(study, material, varied, u, t, findings);
   }
   return findings;
 }

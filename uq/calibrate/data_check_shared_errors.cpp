@@ -127,8 +127,9 @@ bool states_sharing(const data::ObservationSet& set, const data::ObservationSet&
 }
 
 /// Two sets whose readings at the same settings agree too well to be independent: a table and its copy with fewer digits.
+/// `one_case`: one case observes both; else one is predicted from the other.
 void check_agreement(const data::Study& study, const data::ObservationSet& set, const data::ObservationSet& other,
-                     const std::string& consequence, std::vector<Finding>& findings) {
+                     bool one_case, std::vector<Finding>& findings) {
   if (set.material != other.material) return;
   const auto pairs = data::points_at_same_settings(study, set, other);
   for (std::size_t column = 0; column < set.outputs.size(); ++column) {
@@ -144,12 +145,13 @@ void check_agreement(const data::Study& study, const data::ObservationSet& set, 
     }
     if (!agreement.too_good() || agreement.scatter() == 0.0)
       continue;  // copies to the last digit are refused elsewhere
-    Finding finding = data::about_rows(data::FindingKind::shared_errors, Severity::warning, {set.place, other.place});
+    Finding finding = data::about_rows(one_case ? data::FindingKind::counted_twice : data::FindingKind::shared_errors,
+                                       Severity::warning, {set.place, other.place});
     finding.what = fmt::format(
         "{} readings of {} in '{}' and '{}' differ {:.2g} times as much as their standard errors say: they are the same "
         "readings, or share an error{}",
         agreement.degrees(), study.outputs[set.outputs[column]].name, set.name, other.name, agreement.scatter(),
-        consequence);
+        one_case ? ", which counts twice" : "; to predict them says little");
     finding.remedy = "use one of the two, or state what they share: the meter, or [[observe.correlation]]";
     findings.push_back(std::move(finding));
   }
@@ -158,18 +160,17 @@ void check_agreement(const data::Study& study, const data::ObservationSet& set, 
 /// Sets that a case observes or that are predicted from it, each pair once.
 void check_pairs(const data::Study& study, std::vector<Finding>& findings) {
   std::set<std::pair<std::string, std::string>> seen;
-  const auto check = [&](const std::string& one, const std::string& two, const std::string& consequence) {
+  const auto check = [&](const std::string& one, const std::string& two, bool one_case) {
     if (one == two || !seen.insert(std::minmax(one, two)).second) return;
     check_agreement(study, study.observations[study.observation_index(one).value()],
-                    study.observations[study.observation_index(two).value()], consequence, findings);
+                    study.observations[study.observation_index(two).value()], one_case, findings);
   };
   for (const data::CalibrationCase& one : study.cases)
     for (const std::string& set : one.observe)
-      for (const std::string& other : one.observe) check(set, other, ", which counts twice");
+      for (const std::string& other : one.observe) check(set, other, true);
   for (const data::UnusedData& wanted : study.unused_data)
     for (const std::string& set : wanted.observe)
-      for (const std::string& other : study.cases[wanted.case_index].observe)
-        check(set, other, "; to predict them says little");
+      for (const std::string& other : study.cases[wanted.case_index].observe) check(set, other, false);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -20,7 +21,8 @@ std::vector<std::string> contradicted_places(const CaseModel& model, const std::
   for (const RowGroup& group : model.groups)
     for (const FittedSurrogate& one : surrogates)
       if (one.rows.material == group.emulator.material && one.rows.output == group.emulator.output)
-        for (const OutlyingRun& run : one.report.outlying) places.push_back(run.place);
+        for (const OutlyingRun& run : one.report.outlying)  // a run may be contradicted in several outputs
+          if (std::find(places.begin(), places.end(), run.place) == places.end()) places.push_back(run.place);
   return places;
 }
 

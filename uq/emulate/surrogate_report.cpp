@@ -101,11 +101,11 @@ void add_outlying(SurrogateReport& report, const FittedSurrogate& fitted, const 
                     one ? "it is" : "they are", one ? "it" : "them", leave_out_key(report.outlying)) +
         report.remedy;
   } else if (!report.outlying.empty()) {
-    report.remedy = fmt::format("Correct {} or leave {} out first: {}. ",
-                                report.outlying.size() == 1 ? "the run that all others contradict"
-                                                            : "the runs that all others contradict",
-                                report.outlying.size() == 1 ? "it" : "them", leave_out_key(report.outlying)) +
-                    report.remedy;
+    // How many runs are lacking is told by the others alone.
+    report.remedy = fmt::format(
+        "Correct {} or leave {} out, and fit again: {}.",
+        report.outlying.size() == 1 ? "the run that all others contradict" : "the runs that all others contradict",
+        report.outlying.size() == 1 ? "it" : "them", leave_out_key(report.outlying));
   }
   std::vector<double> relative;
   for (Eigen::Index i = 0; i < rows.set.y.size(); ++i)

@@ -85,7 +85,8 @@ std::string name_of(const Study& study, const Candidate& candidate, bool of_seve
     settings.push_back(fmt::format("{}{}{}", study.controls.size() > 1 ? study.controls[c].name + " " : "",
                                    fmt::join(texts, ", "), behind_number(unit.symbol)));
   }
-  std::string name = fmt::format("{} at {}", fmt::join(outputs, " and "), fmt::join(settings, ", "));
+  std::string name = fmt::format("{}", fmt::join(outputs, " and "));
+  if (!settings.empty()) name += fmt::format(" at {}", fmt::join(settings, ", "));
   if (of_several_materials) name += " of " + candidate.material;
   if (candidate.readings > 1) name += fmt::format(", {} readings", candidate.readings);
   return name;

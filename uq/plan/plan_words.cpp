@@ -60,6 +60,9 @@ std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
         "nats).",
         best.name, best.kind == CandidateKind::repeat ? " again" : "", report.about, width(gain, gain.sd_now),
         width(gain, gain.sd_after), gain.information);
+  else if (best.teaches && width(gain, gain.sd_now) == width(gain, gain.sd_after))
+    text += fmt::format("The best reading, {}, hardly narrows {} (+- {}, {:.2f} nats).", best.name, report.about,
+                        width(gain, gain.sd_now), gain.information);
   else if (best.teaches)
     text += fmt::format("Measure {}{} next: it is expected to narrow {} from +- {} to +- {} ({:.2f} nats).", best.name,
                         best.kind == CandidateKind::repeat ? " again" : "", report.about, width(gain, gain.sd_now),
