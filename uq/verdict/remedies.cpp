@@ -18,6 +18,7 @@ struct Remedy {
   std::string text;
 };
 using Remedies = std::vector<Remedy>;
+constexpr double behind_others = 0.999;  // of the same weight
 
 std::string sentence(std::string text) {
   if (!text.empty() && text.front() >= 'a' && text.front() <= 'z')
@@ -77,6 +78,13 @@ std::string partners(const CaseFacts& facts, const Names& names) {
   return together.empty() ? std::string() : listed(together);
 }
 
+/// Whether parameters of both kinds are traded against each other, so that what parts the one parts the other.
+bool of_one_tie(const CaseFacts& facts, const Names& some, const Names& others) {
+  if (some.empty() || others.empty()) return false;
+  const std::string together = partners(facts, some);
+  return !together.empty() && together == partners(facts, others);
+}
+
 Remedies part_values(const CaseFacts& facts, const SortedParameters& sorted) {
   if (sorted.several.empty()) return {};
   return {{static_cast<double>(sorted.several.size()),
@@ -118,8 +126,11 @@ Remedies sharpen_surrogate(const CaseFacts& facts, const SortedParameters& sorte
 }
 
 Remedies lower_noise(const CaseFacts& facts, const SortedParameters& sorted) {
-  if (sorted.practical.empty()) return {};
+  if (sorted.practical.empty() || of_one_tie(facts, sorted.structural, sorted.practical)) return {};
   const std::string together = partners(facts, sorted.practical);
+  if (of_one_tie(facts, sorted.traded, sorted.practical))  // part_traded says what parts them
+    return {{behind_others * sorted.of_measurement,
+             fmt::format("A smaller measurement error would do for {} alone.", listed(sorted.practical))}};
   return {{sorted.of_measurement,
            together.empty() ? "Reduce the measurement error, or measure at more settings."
                             : fmt::format("Measure a quantity that responds differently to {}, fix one of them by an "
@@ -135,7 +146,7 @@ Remedies find_common_error(const CaseFacts&, const SortedParameters& sorted) {
 
 Remedies part_traded(const CaseFacts& facts, const SortedParameters& sorted) {
   const Names& names = sorted.traded;
-  if (names.empty()) return {};
+  if (names.empty() || of_one_tie(facts, sorted.structural, names)) return {};
   const std::string together = partners(facts, names);
   const std::string one = together.empty() ? one_or(names, "it", "one of them") : "one of them";
   const std::string quantity = together.empty() ? "another kind of quantity, one that " + listed(names) + " alone " +

@@ -148,6 +148,15 @@ TEST_CASE("no combination of two parameters' facts has words that contradict eac
       const Words words = words_of({.parameters = {first, second}, .traded = {}, .parted_by = {}});
       INFO(words.finding << " | " << words.consequence << " | " << shown_remedy(words));
       check_words({first, second}, words);
+      // Of two that are traded it is said once what parts them, and nothing against it.
+      TradedPair pair;
+      pair.parameters = {"a", "b"};
+      const std::string of_pair =
+          shown_remedy(words_of({.parameters = {first, second}, .traded = {pair}, .parted_by = {}}));
+      INFO(of_pair);
+      const auto ways = has(of_pair, "whatever a smaller error") + has(of_pair, "or reduce the measurement error") +
+                        has(of_pair, "will not part them");
+      CHECK(ways <= 1);
     }
 }
 
