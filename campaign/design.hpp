@@ -40,7 +40,8 @@ struct PointColumn {
   std::string name;
   std::vector<std::string> values;  ///< one value a point
 };
-/// Writes points as CSV, with a line that says their units. `more`: further columns; `head`: lines of comment above the columns' names.
+/// Writes points as CSV, with a line that says their units. `more`: further columns; `head`: lines of comment above the
+/// columns' names.
 void write_points(const Workspace& workspace, const std::string& path, const std::vector<Point>& points,
                   const std::vector<PointColumn>& more = {}, const std::string& head = "");
 

@@ -39,8 +39,8 @@ double parse_value(const std::string& text, const data::Input& input, const std:
               fmt::format("use {}", input.unit.symbol.empty() ? "a bare number" : input.unit.symbol));
 }
 
-/// The middle of an input's range. Of speeds to either side of a standstill, at which nothing can be simulated, it is the
-/// middle of those forwards.
+/// The middle of an input's range. Of speeds to either side of a standstill, at which nothing can be simulated, it is
+/// the middle of those forwards.
 double amid(const data::Input& input) {
   const double middle = 0.5 * (input.axis.low + input.axis.high);
   const bool at_rest = std::abs(middle) < 1e-9 * input.axis.high && dem::target(input.target).name == "rig.rpm";

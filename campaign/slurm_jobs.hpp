@@ -19,8 +19,8 @@ struct ArrayJob {
 /// As few jobs as hold all runs when an index must be below `max_array_size`.
 std::vector<ArrayJob> split_runs(std::size_t runs, int runs_per_task, int max_array_size);
 
-/// As many runs as make about ten minutes when each takes `seconds`, so that Slurm's own time for a task does not count;
-/// but a few runs are spread over eight tasks, to be made at the same time.
+/// As many runs as make about ten minutes when each takes `seconds`, so that Slurm's own time for a task does not
+/// count; but a few runs are spread over eight tasks, to be made at the same time.
 int usual_runs_per_task(double seconds, std::size_t runs);
 
 /// The tasks of a job's list that a task makes.

@@ -43,8 +43,8 @@ void add_provenance(uq::CalibrationReport& report, const Workspace& workspace, c
 std::vector<std::string> changed_since(const uq::CalibrationReport& report, const Workspace& workspace,
                                        const StudyRows& rows);
 
-/// Takes the plans of OUT/report.json into a new report where nothing that they rest on has changed; else says what has.
-/// Says, too, where OUT/plan.json is of a plan that no report holds.
+/// Takes the plans of OUT/report.json into a new report where nothing that they rest on has changed; else says what
+/// has. Says, too, where OUT/plan.json is of a plan that no report holds.
 void keep_plans(const Common& common, const Workspace& workspace, const StudyRows& rows, uq::CalibrationReport& report);
 
 /// Writes report.json, and report.html with its figures, into OUT.

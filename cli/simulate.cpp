@@ -155,8 +155,8 @@ RunFiles files_of(const Workspace& workspace, const Point& point) {
   return {(fs::path(workspace.out) / ("run-" + name + ".h5")).string(), longest_run(workspace, point, workspace.out)};
 }
 
-/// frames, or, where that holds frames of another run or another number of them, frames-HASH: ParaView takes all files of
-/// a folder for one series.
+/// frames, or, where that holds frames of another run or another number of them, frames-HASH: ParaView takes all files
+/// of a folder for one series.
 std::string frames_folder_of(const Workspace& workspace, const Point& point, int count) {
   namespace fs = std::filesystem;
   const fs::path usual = fs::path(workspace.out) / "frames";

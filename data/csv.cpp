@@ -56,7 +56,8 @@ bool Csv::same_values(std::size_t one, std::size_t other) const {
 
 namespace {
 
-/// What a column that states another error than the standard error of a mean would take to be one; nothing where there is none.
+/// What a column that states another error than the standard error of a mean would take to be one; nothing where there
+/// is none.
 std::string other_error_column(const std::vector<std::string>& columns, std::string_view name) {
   const std::string output(name.substr(0, name.size() - 3));
   const std::array<std::pair<const char*, const char*>, 8> others{

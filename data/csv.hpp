@@ -50,7 +50,8 @@ struct Csv {
   double number(const CsvRow& row, std::size_t column) const;
   /// The number in a field of a column that need not hold any; NaN where it does not.
   double number_if_any(const CsvRow& row, std::size_t column) const;
-  /// The least and the largest number of a column. None where a field is neither a number nor missing, or all are missing.
+  /// The least and the largest number of a column. None where a field is neither a number nor missing, or all are
+  /// missing.
   std::optional<std::pair<double, double>> number_range(std::size_t column) const;
   std::string place(const CsvRow& row, std::size_t column) const;  ///< "bench.csv:3: speed"
   /// The unit of a column's numbers: the table's own where it gives one, else `wanted`. Throws InputError (65) where

@@ -219,8 +219,8 @@ Dialect find_dialect(std::string_view text) {
   for (const char separator : {',', ';', '\t', '|', ' '}) {
     const Fit fit = fit_of(lines, separator);
     if (fit.fields < 2) continue;
-    // Blanks stand in names and texts, too: they part columns only where nothing else does, of numbers, or below a heading
-    // of numbers and words (a run's name, a status).
+    // Blanks stand in names and texts, too: they part columns only where nothing else does, of numbers, or below a
+    // heading of numbers and words (a run's name, a status).
     const bool table = fit.share > 0.99 || (fit.has_heading && fit.numeric_columns > 1 && fit.of_a_kind > 0.97);
     // A separator that stands in a few remarks parts few lines.
     const double worth = separator == ' '  ? (!table || fit.lines <= 0.9 ? -1.0

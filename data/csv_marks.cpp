@@ -63,8 +63,8 @@ constexpr const char* plain_decimals = "write every number with a decimal point 
               plain_decimals);
 }
 
-/// Where no number of a table says what a point is, a column of whole numbers and of 1.012 may be one of thousands: 950,
-/// 1012. It is asked back where its numbers lie closer together so.
+/// Where no number of a table says what a point is, a column of whole numbers and of 1.012 may be one of thousands:
+/// 950, 1012. It is asked back where its numbers lie closer together so.
 void ask_for_thousands(const CsvTable& table, const MarkEvidence& found) {
   if (!found.maybe_point || found.point) return;
   struct Range {

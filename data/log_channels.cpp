@@ -113,9 +113,9 @@ std::string rows_without_time(const Csv& csv, const Stamps& stamps) {
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 
-/// For each row of the torque the row of another channel that was written last; `none` before its first. Rows are in the
-/// order of time. Channels with the same stamps were read together, one value beside the other. Else, where several values
-/// of the torque share a stamp and all lines are in the order of time, the lines say what was written before.
+/// For each row of the torque the row of another channel that was written last; `none` before its first. Rows are in
+/// the order of time. Channels with the same stamps were read together, one value beside the other. Else, where several
+/// values of the torque share a stamp and all lines are in the order of time, the lines say what was written before.
 std::vector<std::size_t> last_written(const std::vector<std::size_t>& of, const std::vector<std::size_t>& torque,
                                       const std::vector<double>& seconds) {
   const auto same = [&](std::size_t a, std::size_t b) { return seconds[a] == seconds[b]; };

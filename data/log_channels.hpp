@@ -19,13 +19,14 @@ struct ChannelColumns {
   std::size_t channel = 0, value = 0;
 };
 
-/// The two columns of such a log, by their usual headings, whose names and units are parted (part_headings); nothing where
-/// the table has a column of the torque.
+/// The two columns of such a log, by their usual headings, whose names and units are parted (part_headings); nothing
+/// where the table has a column of the torque.
 std::optional<ChannelColumns> find_channels(const Csv& csv, const LogColumns& columns);
 
-/// The log with a column for each channel. A channel "Mixer.Torque" is the column "Torque" where no other ends so. The rows
-/// are those of the torque, in the order of time; each holds of every other channel what was last written of it, since
-/// such systems write a value when it changes. `took` says so. Throws InputError (65) where no channel is the torque.
+/// The log with a column for each channel. A channel "Mixer.Torque" is the column "Torque" where no other ends so. The
+/// rows are those of the torque, in the order of time; each holds of every other channel what was last written of it,
+/// since such systems write a value when it changes. `took` says so. Throws InputError (65) where no channel is the
+/// torque.
 Csv with_channels_as_columns(const Csv& csv, const ChannelColumns& at, const LogColumns& columns,
                              std::vector<std::string>& took);
 

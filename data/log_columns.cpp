@@ -29,8 +29,8 @@ std::optional<double> multiple_of_rpm(const Unit& unit) {
   return std::strtod(unit.symbol.c_str(), nullptr);
 }
 
-/// Whether a column in this unit can only be the quantity of that dimension: a joule is an energy, and a hertz or "1/s" may
-/// be a shear rate or any other frequency.
+/// Whether a column in this unit can only be the quantity of that dimension: a joule is an energy, and a hertz or "1/s"
+/// may be a shear rate or any other frequency.
 bool tells_quantity(const std::string& unit, std::string_view dimension) {
   static constexpr std::array frequencies{"hz", "khz", "mhz", "1/s", "s-1", "s^-1", "/s"};
   if (unit.empty() || !unit_meant(unit, dimension)) return false;

@@ -22,9 +22,9 @@ struct LogQuantity {
 inline constexpr LogQuantity time_of_log{"time", "s", "time"}, torque_of_log{"torque", "N m", "torque"},
     speed_of_log{"rpm", "rpm", "speed"};
 
-/// The column of a quantity: by its name; where there is none, by one of the other names; where there is none either, by
-/// its unit, or of the time by a clock's times, if one column alone has such (`took` says so then). A column that the
-/// command line names is found by that name alone. Throws InputError (65) where there is none, or more than one.
+/// The column of a quantity: by its name; where there is none, by one of the other names; where there is none either,
+/// by its unit, or of the time by a clock's times, if one column alone has such (`took` says so then). A column that
+/// the command line names is found by that name alone. Throws InputError (65) where there is none, or more than one.
 std::size_t find_column(const Csv& csv, const LogColumn& wanted, const LogQuantity& quantity,
                         std::vector<std::string>& took);
 

@@ -207,9 +207,9 @@ std::string idle_in_words(const Used& used) {
       used.at, used.log.time[first + from], used.log.time[first + to - 1]);
 }
 
-/// A while in which the torque stays at one value amid samples that change: a sensor or a logger that was stuck. Runs of
-/// equal samples are about geometric in length where the logger is coarse or repeats its samples, of n runs of mean m the
-/// longest about m log n; one of m (log n + 10) comes of itself once in 20,000 logs.
+/// A while in which the torque stays at one value amid samples that change: a sensor or a logger that was stuck. Runs
+/// of equal samples are about geometric in length where the logger is coarse or repeats its samples, of n runs of mean
+/// m the longest about m log n; one of m (log n + 10) comes of itself once in 20,000 logs.
 std::string stuck_in_words(const Used& used) {
   std::size_t runs = 1, longest = 0, longest_at = 0, from = 0;
   const std::size_t count = used.values.size();

@@ -29,13 +29,13 @@ std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau,
 /// then the measurement, and the rest a sensor or a machine that failed. None where the plateau keeps its torque.
 std::optional<double> dies_at(const TorqueLog& log, const Plateau& plateau);
 
-/// What is doubtful in a plateau's torque, in words: clipped at a limit, stuck for a while, coarse steps of the resolution,
-/// spikes, a drift.
+/// What is doubtful in a plateau's torque, in words: clipped at a limit, stuck for a while, coarse steps of the
+/// resolution, spikes, a drift.
 std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& plateau);
 
-/// Why a log of which no observation can be made may be read wrongly: its speed is 0 throughout, or its columns of torque
-/// and speed are exchanged (the torque takes few values, as a set speed does, and the speed takes many). The remedy names
-/// the options of `demcal observe`. None where neither is so.
+/// Why a log of which no observation can be made may be read wrongly: its speed is 0 throughout, or its columns of
+/// torque and speed are exchanged (the torque takes few values, as a set speed does, and the speed takes many). The
+/// remedy names the options of `demcal observe`. None where neither is so.
 std::optional<Problem> doubted_columns(const TorqueLog& log);
 
 /// What was left out of a plateau, in words: spikes, and a start-up longer than `long_start_up` of it.

@@ -17,8 +17,8 @@ struct Stamps {
   std::vector<std::string> took;
 };
 
-/// Reads a column of stamps: numbers in a unit, times of day or dates with times, with the days of a column of dates beside
-/// it. Throws InputError (65) where they are not all alike, or can be read in two ways.
+/// Reads a column of stamps: numbers in a unit, times of day or dates with times, with the days of a column of dates
+/// beside it. Throws InputError (65) where they are not all alike, or can be read in two ways.
 Stamps read_stamps(const Csv& csv, std::size_t column, const LogColumn& wanted);
 
 }  // namespace data

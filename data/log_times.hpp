@@ -23,8 +23,8 @@ bool shares_stamps(const std::vector<double>& times);
 bool repeats_stamps(const std::vector<double>& times);
 
 /// Spreads the samples that share stamps: evenly over the whole log where that agrees with every stamp, else evenly
-/// within each. Returns in words how, "samples that share a stamp spread evenly, 0.1 s apart"; nothing where there are fewer than
-/// three stamps, which tell no interval.
+/// within each. Returns in words how, "samples that share a stamp spread evenly, 0.1 s apart"; nothing where there are
+/// fewer than three stamps, which tell no interval.
 std::string spread_stamps(std::vector<double>& times);
 
 }  // namespace data

@@ -21,9 +21,9 @@ inline constexpr std::array<std::string_view, 4> columns_of_observe = {"idle", "
 /// Indices into set.points of the points at which the output of this column (an index into set.outputs) was measured.
 std::vector<std::size_t> points_with(const ObservationSet& set, std::size_t column);
 
-/// Points of two sets at the same settings, each point once, the nearest first and then in the order of the files. Settings
-/// are the same where every control differs by at most same_setting of its range: those of two instruments, or of speeds as
-/// they were measured, never agree to the last digit.
+/// Points of two sets at the same settings, each point once, the nearest first and then in the order of the files.
+/// Settings are the same where every control differs by at most same_setting of its range: those of two instruments, or
+/// of speeds as they were measured, never agree to the last digit.
 inline constexpr double same_setting = 0.005;
 std::vector<std::pair<std::size_t, std::size_t>> points_at_same_settings(const Study& study, const ObservationSet& set,
                                                                          const ObservationSet& other);

@@ -28,8 +28,8 @@ struct Mean {
   std::size_t count = 0;
 };
 
-/// The mean of what the rows have of an output, weighted by the errors; its error is that of one reading where they share
-/// it, else that of independent ones.
+/// The mean of what the rows have of an output, weighted by the errors; its error is that of one reading where they
+/// share it, else that of independent ones.
 Mean mean_of(const ObservationSet& set, const std::vector<std::size_t>& rows, std::size_t column, bool shared) {
   Mean mean;
   double weight = 0.0, sum = 0.0, squares = 0.0;

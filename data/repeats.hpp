@@ -1,11 +1,12 @@
 #pragma once
 // Readings of one setting that agree far better than their standard errors say.
 //
-// Of n independent readings of standard error s at one setting, the squares about their mean, over s^2, have a chi-squared
-// law with n - 1 degrees of freedom; over all settings these add up. A sum far below it (threshold `unlikely`, and less than
-// half the scatter that the errors state) says that the readings share their error: a torque cell's zero of that hour, one
-// filling of the mixer read ten times, a table and its copy with fewer digits. Counted as independent, n of them would
-// lessen an error that no repetition lessens. They are therefore averaged, and the mean has the error of one reading.
+// Of n independent readings of standard error s at one setting, the squares about their mean, over s^2, have a
+// chi-squared law with n - 1 degrees of freedom; over all settings these add up. A sum far below it (threshold
+// `unlikely`, and less than half the scatter that the errors state) says that the readings share their error: a torque
+// cell's zero of that hour, one filling of the mixer read ten times, a table and its copy with fewer digits. Counted as
+// independent, n of them would lessen an error that no repetition lessens. They are therefore averaged, and the mean
+// has the error of one reading.
 #include <cstddef>
 
 #include "data/study.hpp"
@@ -32,9 +33,9 @@ class Agreement {
   std::size_t degrees_ = 0;
 };
 
-/// Averages the readings of each setting in the outputs in which they share their error, and notes it in set.repeats. Left
-/// alone are outputs whose errors a case estimates (noise), and rows without a partner. Other outputs of averaged rows have
-/// the mean and error of independent readings.
+/// Averages the readings of each setting in the outputs in which they share their error, and notes it in set.repeats.
+/// Left alone are outputs whose errors a case estimates (noise), and rows without a partner. Other outputs of averaged
+/// rows have the mean and error of independent readings.
 void average_shared_errors(ObservationSet& set, const Study& study, const RepeatThresholds& thresholds = {});
 
 }  // namespace data

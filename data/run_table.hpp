@@ -98,9 +98,9 @@ std::vector<std::string> drop_unreliable(RunTable& table, bool scatter_estimated
 /// named in `left_out`. Rows that say themselves that they are none keep their place in the table and are marked
 /// (RunRow::left_out): what [training] leave_out names, a status column with a word of failure, an output of exactly 0
 /// with a standard error of exactly 0 among others that have errors, and copies to the last digit. `findings` says so,
-/// and which columns nobody reads. A table of our own that lacks an output of the study has NaN there; outputs that the study
-/// has no longer are kept in `others`. Throws InputError: 66 missing file; 65 truncated, missing column, text for a
-/// number (file:line).
+/// and which columns nobody reads. A table of our own that lacks an output of the study has NaN there; outputs that the
+/// study has no longer are kept in `others`. Throws InputError: 66 missing file; 65 truncated, missing column, text for
+/// a number (file:line).
 struct TableRead {
   RunTable table;
   std::vector<std::string> left_out;

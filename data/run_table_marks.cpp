@@ -30,7 +30,8 @@ constexpr std::array use_columns{"use", "include", "keep"};
 constexpr std::array code_columns{"exit code",   "exitcode", "return code", "returncode",
                                   "exit status", "rc",       "error code",  "errorcode"};  // 0: it ended well
 
-/// A heading without capitals, with blanks between its words, and without the word for what has the status: "Run_Status".
+/// A heading without capitals, with blanks between its words, and without the word for what has the status:
+/// "Run_Status".
 std::string plain_heading(std::string_view name) {
   std::string plain = lower_case(trimmed(name));
   std::replace_if(
@@ -58,8 +59,8 @@ void leave_out_named(TableRead& read, const Study& study) {
   read.findings.push_back(std::move(finding));
 }
 
-/// Takes an output out of rows in which it is no result of a run, and says so. A row without any other result is left out.
-/// `others`: where the others lie; `kind`: what it is, and left out.
+/// Takes an output out of rows in which it is no result of a run, and says so. A row without any other result is left
+/// out. `others`: where the others lie; `kind`: what it is, and left out.
 void take_out(TableRead& read, std::size_t output, const std::vector<RunRow*>& rows, const char* because,
               const std::string& value, const std::string& others, const std::string& kind) {
   std::vector<std::string> places;
@@ -148,8 +149,8 @@ bool are_apart(const RunTable& table, const std::vector<RunRow*>& rows) {
   return false;
 }
 
-/// Runs that wrote one number in the place of a result: far beyond all others (1e30, 9999), or exactly 0 or of the other
-/// sign (-1) where all others lie well away from 0.
+/// Runs that wrote one number in the place of a result: far beyond all others (1e30, 9999), or exactly 0 or of the
+/// other sign (-1) where all others lie well away from 0.
 void leave_out_stand_ins(TableRead& read) {
   constexpr std::size_t several = 3;                       // equal to the last digit, at different inputs
   constexpr double far = 10.0, absurd = 1e6, away = 0.05;  // of the largest of the others

@@ -24,7 +24,8 @@ struct StudyKey {
 /// All keys, in the order of a study file.
 const std::vector<StudyKey>& study_keys();
 
-/// The words that a choice may be, such as the kinds of "rig.kind". Throws std::out_of_range where there is no such key.
+/// The words that a choice may be, such as the kinds of "rig.kind". Throws std::out_of_range where there is no such
+/// key.
 std::vector<std::string> words_of(std::string_view name);
 
 /// The entries that a user may mean by "friction", "contact.friction", "[observe]", "materials.sand.density" or

@@ -1,7 +1,7 @@
 #pragma once
-// The inside of the study reader, shared by section.cpp, study_value.cpp and study_file.cpp only. It notes for each table which keys
-// were asked for (known), which of these were there (used), and which tables were opened. A key that is there but not
-// used is an error.
+// The inside of the study reader, shared by section.cpp, study_value.cpp and study_file.cpp only. It notes for each
+// table which keys were asked for (known), which of these were there (used), and which tables were opened. A key that
+// is there but not used is an error.
 #include <fmt/format.h>
 #include <toml++/toml.h>
 

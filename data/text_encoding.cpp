@@ -71,8 +71,8 @@ std::string from_windows_1252(std::string_view bytes) {
   return text;
 }
 
-/// Whether all that is not ASCII is Shift-JIS, with kana or kanji of the first plane or wide brackets among it. Their first
-/// byte, 0x81 to 0x9f, is a control character in Latin-1.
+/// Whether all that is not ASCII is Shift-JIS, with kana or kanji of the first plane or wide brackets among it. Their
+/// first byte, 0x81 to 0x9f, is a control character in Latin-1.
 bool is_shift_jis(std::string_view bytes) {
   bool japanese = false;
   for (std::size_t at = 0; at < bytes.size(); ++at) {
@@ -87,8 +87,8 @@ bool is_shift_jis(std::string_view bytes) {
   return japanese;
 }
 
-/// Whether all that is not ASCII is pairs of bytes of the Chinese and Korean national standards (GB 2312, KS X 1001), most
-/// of them letters and not signs. Words of Latin-1 have single letters with an accent.
+/// Whether all that is not ASCII is pairs of bytes of the Chinese and Korean national standards (GB 2312, KS X 1001),
+/// most of them letters and not signs. Words of Latin-1 have single letters with an accent.
 bool is_gb_or_ks(std::string_view bytes) {
   std::size_t pairs = 0, letters = 0;
   for (std::size_t at = 0; at < bytes.size(); ++at) {

@@ -22,9 +22,9 @@ struct DecodedText {
 };
 
 /// Finds the encoding by the byte-order mark. Without a mark it is UTF-16 by the zeros of its ASCII characters, else
-/// UTF-8 where the bytes are valid; else Shift-JIS where all of them are and hold kana or kanji; else GBK or EUC-KR where
-/// all are pairs of these; else Windows-1251 where more units in brackets are known so; else Latin-1 (as Windows-1252
-/// extends it). Throws InputError (65) for UTF-32, for UTF-16 that is cut off within a character, and for
+/// UTF-8 where the bytes are valid; else Shift-JIS where all of them are and hold kana or kanji; else GBK or EUC-KR
+/// where all are pairs of these; else Windows-1251 where more units in brackets are known so; else Latin-1 (as
+/// Windows-1252 extends it). Throws InputError (65) for UTF-32, for UTF-16 that is cut off within a character, and for
 /// what is no text (`name` in the message).
 DecodedText decode_text(std::string_view bytes, const std::string& name);
 

@@ -8,8 +8,8 @@
 // errors, and they die away towards the rest or lie outside of its fluctuations: a slow fluctuation, of which the rest
 // has seen too little to know its errors, does neither. Or, for a start-up whose mean happens to agree, when their
 // variance is that of another process (over four times the rest's). In both cases most of them must be away, as medians
-// tell: rare bursts, of which the first batches have more by chance, are part of a stationary series. Otherwise everything
-// is kept.
+// tell: rare bursts, of which the first batches have more by chance, are part of a stationary series. Otherwise
+// everything is kept.
 //
 // Spikes. One sample S standard deviations away would have the batches before it dropped, as long as they are fewer
 // than S^2 / 3 samples, and hide a true start-up behind the variance that it adds. So the start is chosen in the series

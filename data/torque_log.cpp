@@ -233,8 +233,8 @@ bool swings_back(std::span<const double> series) {
 }
 
 /// Whether the slowest modes have clearly more power than the integrated time says that they have: Sokal's window has
-/// closed on fast noise. Their mean power over the stated one follows chi-square's law over its degrees of freedom where
-/// it has not; one in thirty series of white noise passes one of these limits, and fewer where it is correlated.
+/// closed on fast noise. Their mean power over the stated one follows chi-square's law over its degrees of freedom
+/// where it has not; one in thirty series of white noise passes one of these limits, and fewer where it is correlated.
 bool wanders(std::span<const double> series, const SeriesMean& stated) {
   struct Limit {
     std::size_t modes;

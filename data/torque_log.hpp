@@ -119,10 +119,10 @@ struct MeanTorque {
 /// (steadiness.hpp) in three cases.
 /// Of few independent samples the integrated time is hardly known: means of series with 20, 30 and 50 lie 1.35, 1.2 and
 /// 1.1 errors from the truth, and 1.2, 1.1 and 1.05 by modes. Where the torque hums, at the mains' or the blade's
-/// frequency, Sokal's window closes on the hum, and the error of what is slower is lost (a factor of 3 to 11). So it does
-/// on fast noise over a slow wander (a factor of 2 to 3: of 90 % intervals 45 to 73 hold, and 87 to 89 so): there
-/// the modes have clearly more power than the integrated time says. A wander so slow that the modes do not know it either
-/// leaves the mean not `reliable`.
+/// frequency, Sokal's window closes on the hum, and the error of what is slower is lost (a factor of 3 to 11). So it
+/// does on fast noise over a slow wander (a factor of 2 to 3: of 90 % intervals 45 to 73 hold, and 87 to 89 so): there
+/// the modes have clearly more power than the integrated time says. A wander so slow that the modes do not know it
+/// either leaves the mean not `reliable`.
 SeriesMean mean_of_hold(std::span<const double> torque, bool spikes_count = true);
 
 /// The idle torque at a speed, from the plateaus of a log of the empty machine: the mean, weighted by the errors, over

@@ -13,7 +13,8 @@
 namespace data {
 namespace {
 
-/// Units as Russian, Chinese, Japanese and Korean instruments write them, and ours; what holds another stands before it.
+/// Units as Russian, Chinese, Japanese and Korean instruments write them, and ours; what holds another stands before
+/// it.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 18> units_of_other_scripts{{{"об/мин", "r/min"},
                                                                                                 {"转/分钟", "r/min"},
                                                                                                 {"转/分", "r/min"},
@@ -70,8 +71,8 @@ std::string short_words(const std::string& text) {
   return small == lower_case(text) ? text : small;
 }
 
-/// What stands before the force in a text of a force and a length, in either order: "m" in "mNm". Empty where the text is
-/// no such pair, or has before the force what is no prefix of SI.
+/// What stands before the force in a text of a force and a length, in either order: "m" in "mNm". Empty where the text
+/// is no such pair, or has before the force what is no prefix of SI.
 std::optional<std::string_view> prefix_of_force(std::string_view text, std::string_view force,
                                                 std::string_view length) {
   static constexpr std::array<std::string_view, 9> prefixes{"", "u", "m", "c", "d", "da", "k", "n", "M"};

@@ -70,8 +70,8 @@ struct FitOptions {
   Eigen::VectorXd first_start;  ///< replaces the heuristic start, logs as in StartOutcome; empty: heuristic
 };
 
-/// The same options for a fit that only judges the data, such as whether a run is wrong: two starts, and the best setting
-/// alone.
+/// The same options for a fit that only judges the data, such as whether a run is wrong: two starts, and the best
+/// setting alone.
 FitOptions quick(FitOptions options);
 
 /// Fits a process. Throws data::InputError (65) for data that cannot train one; a fit that does not converge is in

@@ -86,8 +86,8 @@ Likelihood::Likelihood(const Standardised& data, Kernel kernel, MeanBasis mean, 
 /// Jitter that is tried, of the mean diagonal.
 constexpr std::array jitters = {0.0, 1e-12, 3e-11, 9e-10, 2.7e-8, 8.1e-7};
 
-/// K into matrix_ and its Cholesky factor over it; s^2 f into slope_ where wanted. Takes the least of `jitters` with which
-/// the factorisation succeeds.
+/// K into matrix_ and its Cholesky factor over it; s^2 f into slope_ where wanted. Takes the least of `jitters` with
+/// which the factorisation succeeds.
 bool Likelihood::build(const ScaledParameters& parameters, const Eigen::VectorXd& variance, bool slopes) {
   const Eigen::Index n = data_.points.rows(), d = data_.points.cols();
   scaled_.noalias() = data_.points * parameters.length_scales.cwiseInverse().asDiagonal();

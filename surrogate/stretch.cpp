@@ -60,8 +60,8 @@ const Trial& best_of(const std::vector<Trial>& trials) {
                            [](const Trial& a, const Trial& b) { return a.fit.objective < b.fit.objective; });
 }
 
-/// Whether little of the stretched range lies beyond the outermost of n runs. Where much does, the process claims less at
-/// the end than the runs tell.
+/// Whether little of the stretched range lies beyond the outermost of n runs. Where much does, the process claims less
+/// at the end than the runs tell.
 bool is_resolved(double ratio, double n) { return Stretch{std::max(ratio, 1.0 / ratio)}.place(1.0 / n) <= 0.15; }
 
 /// The gentlest trial of the best one's input and end that the likelihood hardly speaks against.

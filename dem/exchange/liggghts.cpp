@@ -264,8 +264,8 @@ std::string script(const Case& c, const Derived& d, const BuiltRig& rig, const T
   return text;
 }
 
-/// Columns of a file of `fix ave/time` after the step, without what some of them write at step 0. The steps follow each other
-/// evenly, or samples are lacking.
+/// Columns of a file of `fix ave/time` after the step, without what some of them write at step 0. The steps follow each
+/// other evenly, or samples are lacking.
 std::vector<std::vector<double>> averages(const std::string& path, std::size_t columns) {
   const std::string text = data::read_file(path);
   std::vector<std::vector<double>> found(columns);

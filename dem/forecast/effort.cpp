@@ -18,8 +18,9 @@ double thread_time() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Layers of spheres of the mean size, each of which overlaps its four neighbours by a hundredth, in a periodic box: those that nothing attracts would part in
-/// any other, and cost less than a bed does. They start at speeds up to that of a fall through one diameter.
+/// Layers of spheres of the mean size, each of which overlaps its four neighbours by a hundredth, in a periodic box:
+/// those that nothing attracts would part in any other, and cost less than a bed does. They start at speeds up to that
+/// of a fall through one diameter.
 Setup lattice(const Case& c, const Derived& d) {
   constexpr int side = 12;
   const double size = d.diameter, step = size * (1.0 - 1e-2), up = 1.05 * size;

@@ -3,9 +3,9 @@
 // periodic cubic lattice, each touching four neighbours, move a little under the case's own laws and time step. A bed
 // has walls besides: runs of slice and machine took 1.0 to 1.6 times as long.
 //
-// The meshes of an STL rig are measured, too, where they are fine: their surfaces are made as a run makes them, and it is
-// timed how long it takes to find what a sphere at the wall may touch. A run does so at each rebuild of its lists, for
-// half of the spheres, or for as many as half of the surface has room for.
+// The meshes of an STL rig are measured, too, where they are fine: their surfaces are made as a run makes them, and it
+// is timed how long it takes to find what a sphere at the wall may touch. A run does so at each rebuild of its lists,
+// for half of the spheres, or for as many as half of the surface has room for.
 #include "dem/bed/derived.hpp"
 
 namespace dem {

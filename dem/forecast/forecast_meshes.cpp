@@ -143,8 +143,8 @@ bool within(const TriangleMesh& mesh, Vec3 p, Vec3 down) {
   return inside >= 2;
 }
 
-/// Whether a mesh lies inside another's box: inside in two directions, and beside it along at least half of itself in the
-/// third, as a shaft through a wall does.
+/// Whether a mesh lies inside another's box: inside in two directions, and beside it along at least half of itself in
+/// the third, as a shaft through a wall does.
 bool lies_in(const Extent& own, const Extent& other) {
   int inside = 0;
   bool beside = true;
@@ -156,8 +156,8 @@ bool lies_in(const Extent& own, const Extent& other) {
   return inside >= 2 && beside;
 }
 
-/// Spheres on both sides of a mesh's surface, between which no powder can pass: those inside are in a tool's material. A
-/// vessel that stands in a casing has all of them, or those above its rim can come in.
+/// Spheres on both sides of a mesh's surface, between which no powder can pass: those inside are in a tool's material.
+/// A vessel that stands in a casing has all of them, or those above its rim can come in.
 void check_inside(const Case& c, const BuiltRig& rig, const Room& room, Forecast& f) {
   const std::vector<RigMesh>& meshes = c.rig.stl->meshes;
   const std::size_t every = rig.position.size() / 40 + 1;

@@ -55,8 +55,8 @@ struct Poured {
 /// Pours a bed of `volume` [m3] at a cell.
 Poured pour(const Room& room, std::size_t start, double volume);
 /// Pours a bed of `volume` [m3] in equal parts at several cells. Parts that come to rest in different chambers stay
-/// there, until one of them runs over into the next. The surface is the mean over the bed; what the vessel holds is that
-/// of a bed poured at the first cell.
+/// there, until one of them runs over into the next. The surface is the mean over the bed; what the vessel holds is
+/// that of a bed poured at the first cell.
 Poured pour(const Room& room, const std::vector<std::size_t>& starts, double volume);
 
 /// Per cell, whether powder could come there from a cell, whatever its weight.

@@ -16,8 +16,8 @@ struct SetValue {
   double si = 0.0;
 };
 
-/// Reads the case. Problems are recorded in the study; `material` "" reads a study without [materials]. The rig is judged
-/// at the values of `set`, which the runs give it, and not at those of keys that no run has.
+/// Reads the case. Problems are recorded in the study; `material` "" reads a study without [materials]. The rig is
+/// judged at the values of `set`, which the runs give it, and not at those of keys that no run has.
 Case read_case(const data::StudyFile& study, std::string_view material, const std::vector<SetValue>& set = {});
 
 }  // namespace dem

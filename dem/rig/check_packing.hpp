@@ -15,8 +15,8 @@ struct GivenPacking {
   double radius(std::size_t sphere) const { return radii[radii.size() == 1 ? 0 : sphere]; }
 };
 
-/// Given positions must lie in the box, clear of the meshes and of each other, and given diameters be those of the bed that the
-/// materials make. Throws data::InputError (78) for the
+/// Given positions must lie in the box, clear of the meshes and of each other, and given diameters be those of the bed
+/// that the materials make. Throws data::InputError (78) for the
 /// first that does not.
 void check_packing(const StlRig& rig, const GivenPacking& given);
 

@@ -9,8 +9,9 @@
 //               (linear between, constant beyond); and [[rig.mesh.oscillation]] along or about = [0, 0, 1], amplitude,
 //               frequency, phase. Motions begin when the settling ends.
 // [rig]         torque_of (name of the mesh whose torque is the output, or a list of names whose torques are summed;
-//               default: the first that moves), down = [0, 0, -1] (direction of gravity), rpm, fill, packing (CSV with columns x, y, z; if wanted vx, vy, vz
-//               in m/s, unless a heading has a unit of its own, and frozen, 1 for spheres that never move), packing_unit ("m")
+//               default: the first that moves), down = [0, 0, -1] (direction of gravity), rpm, fill, packing (CSV with
+//               columns x, y, z; if wanted vx, vy, vz in m/s, unless a heading has a unit of its own, and frozen, 1 for
+//               spheres that never move), packing_unit ("m")
 // [rig.box]     low, high (corners), periodic = ["x"]
 // [rig.region]  where the centres start: low, high of a box (default: the rig's box), or from, to (ends of the axis),
 //               radius, inner_radius of a cylinder

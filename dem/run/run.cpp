@@ -25,8 +25,8 @@ namespace {
 constexpr double check_interval = 0.05;  // s of simulated time between looks at the standard error
 
 // About so many pictures are averaged over a window, fewer where it has not as many samples. Of 20 ms they are 1.6 ms
-// apart, in which what flows moves by a fraction of a sphere. The number that is taken is made odd (`make_plan`), so that
-// no cell is covered in just half of them.
+// apart, in which what flows moves by a fraction of a sphere. The number that is taken is made odd (`make_plan`), so
+// that no cell is covered in just half of them.
 constexpr std::uint64_t pictures_in_window = 12;
 
 double cpu_time(int threads) {

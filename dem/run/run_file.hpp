@@ -5,8 +5,8 @@
 //              rule (look_rule_version), cpu_seconds, ...; warnings
 // /series      time and one dataset per sampled output, each with a `unit`
 // /summary     per output: mean, standard_error, sd, integrated_time, effective_samples, dropped, reliable, drifts
-//              (columns), `names`, `units`; attributes state ("steady", "drifting" or "short"), why, ordering, measured_from_s, turns;
-//              drift_p of torque, coordination and kinetic energy
+//              (columns), `names`, `units`; attributes state ("steady", "drifting" or "short"), why, ordering,
+//              measured_from_s, turns; drift_p of torque, coordination and kinetic energy
 // /diagnostics attributes, SI
 // /checkpoint  the state, to go on from; bytes as they are in memory, so only for the same build
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
-// The checkpoint of a run in its file (dem/run/run_file.hpp): the rows of the state as bytes, as they are in memory, and
-// the sample under way.
+// The checkpoint of a run in its file (dem/run/run_file.hpp): the rows of the state as bytes, as they are in memory,
+// and the sample under way.
 #include "data/hdf5.hpp"
 #include "dem/run/run.hpp"
 

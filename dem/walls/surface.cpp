@@ -13,8 +13,8 @@ constexpr double border = 1e-9;
 // Directions closer than this to opposite are one plane or one line.
 constexpr double straight = 1e-6;
 // A grid of large meshes is coarser than half the reach: of no more cells than this, or than 128 along its longest
-// axis. One of many features, each of which stands in all cells within its reach, has cells as wide as the reach: some 30
-// entries for each instead of 100.
+// axis. One of many features, each of which stands in all cells within its reach, has cells as wide as the reach: some
+// 30 entries for each instead of 100.
 constexpr double many_cells = 1 << 17;
 constexpr std::size_t many_features = 50000;
 

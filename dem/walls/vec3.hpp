@@ -1,6 +1,6 @@
 #pragma once
-// Three-component vectors as plain data, of numbers or of lanes (dem/contact/lanes.hpp). Products are written out so that every
-// build rounds them alike.
+// Three-component vectors as plain data, of numbers or of lanes (dem/contact/lanes.hpp). Products are written out so
+// that every build rounds them alike.
 #include <cmath>
 #include <type_traits>
 

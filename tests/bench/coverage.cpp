@@ -1,6 +1,6 @@
 // Do the posteriors hold the truth as often as they say, where the truth is no draw from the surrogate?
-//   bench_coverage ridge [--sets N] [--first N] [--runs N] [--kernel K] [--mean M] [--scale S] [--integrated|--plugged-in]
-//   bench_coverage levels [--sets N] [--first N] [--trusted]
+//   bench_coverage ridge [--sets N] [--first N] [--runs N] [--kernel K] [--mean M] [--scale S]
+//   [--integrated|--plugged-in] bench_coverage levels [--sets N] [--first N] [--trusted]
 //   bench_coverage check
 //   bench_coverage faults [--sets N]
 //   bench_coverage few|two_levels [--sets N] [--first N]

@@ -1,10 +1,10 @@
 // Do predictions hold at the ends of a range where the function bends?
 //   bench_ends [--runs N] [--designs N] [--noise SHARE]
-// Thirteen functions of two inputs: poles, powers, saturations and exponentials that bend at one end, and others that bend alike all over
-// or not at all. Each design is a scrambled Sobol one with runs of 1 % (--noise), learnt on the inputs' own scales and on
-// those that choose_stretches chooses. Printed, own -> chosen: the share of 90 % intervals that hold at 200 points with b
-// below 0.15, above 0.85 and anywhere, the mean square of the deviations in predicted sds, and the root of the mean squared
-// error over that on the own scales.
+// Thirteen functions of two inputs: poles, powers, saturations and exponentials that bend at one end, and others that
+// bend alike all over or not at all. Each design is a scrambled Sobol one with runs of 1 % (--noise), learnt on the
+// inputs' own scales and on those that choose_stretches chooses. Printed, own -> chosen: the share of 90 % intervals
+// that hold at 200 points with b below 0.15, above 0.85 and anywhere, the mean square of the deviations in predicted
+// sds, and the root of the mean squared error over that on the own scales.
 #include <fmt/core.h>
 
 #include <array>

@@ -4,8 +4,8 @@
 //   width    mean posterior sd after the reading over the mean forecast
 //   words    mean forecast probability of "identified", and how often it came; Brier score beside that of the base rate
 //   redone   the same probability by REDONE calibrations of readings drawn from the posterior, instead of the forecast:
-//            its mean, its sd over the loops (what there is to forecast), and the rms difference of the forecast from it,
-//            both without the sampling error of REDONE
+//            its mean, its sd over the loops (what there is to forecast), and the rms difference of the forecast from
+//            it, both without the sampling error of REDONE
 //   choice   mean sd after each of the three readings, over that before
 // Usage: plan_loops [LOOPS] [FIRST SEED] [REDONE] [STUDY]
 #include <fmt/core.h>

@@ -1,4 +1,5 @@
-// A campaign around the posterior, with results that are made up: what it asks for, when it ends, what it leaves behind.
+// A campaign around the posterior, with results that are made up: what it asks for, when it ends, what it leaves
+// behind.
 #include "campaign/posterior_campaign.hpp"
 #include "campaign/out_files.hpp"
 

@@ -1,5 +1,5 @@
-// The studies of drums: what another group's table determines, what another's model cannot reproduce, and one on pictures
-// of a real powder.
+// The studies of drums: what another group's table determines, what another's model cannot reproduce, and one on
+// pictures of a real powder.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>

@@ -143,8 +143,8 @@ TEST_CASE("another rig is a candidate as another material with runs of its own, 
       // The drum's torque hangs on friction almost alone; the slice's on a product with cohesion that is known already.
       const bool drum = candidate["name"] == "drum";
       CHECK((parameter["information"].get<double>() > 0.5) == drum);
-      // Near a cohesion of 0 or 10 mJ/m2 its range ends what friction can be, until many readings narrow that. Drum readings
-      // drawn from the closed form (runs.csv), each calibrated: 17 of 30 call friction identified.
+      // Near a cohesion of 0 or 10 mJ/m2 its range ends what friction can be, until many readings narrow that. Drum
+      // readings drawn from the closed form (runs.csv), each calibrated: 17 of 30 call friction identified.
       double identified = 0.0;
       for (const auto& word : parameter["words"])
         if (word["verdict"] == "identified") identified = word["probability"];

@@ -149,7 +149,8 @@ TEST_CASE(
                        "out" + stretch, "--json", "--quiet", "--no-scan", "--set", "surrogate.stretch=" + stretch});
     return nlohmann::json::parse(outcome.out)["cases"][0]["parameters"][1];
   };
-  // On the stretched scale the surrogate knows the steep end, where the posterior lies, to several of the data's errors.
+  // On the stretched scale the surrogate knows the steep end, where the posterior lies, to several of the data's
+  // errors.
   const nlohmann::json hidden = cohesion_with("true");
   CHECK(hidden["reason"] == "surrogate");
   CHECK_THAT(hidden["sentence"].get<std::string>(), Contains("the surrogate could miss one of"));

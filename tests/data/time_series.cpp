@@ -86,8 +86,8 @@ TEST_CASE("a short start-up does not cost a large part of the series") {
 }
 
 TEST_CASE("a slow fluctuation at the beginning is seldom taken for a start-up") {
-  // Fast, slower and slow parts of equal power, as of a bed that packs and loosens: 600 samples of which the slowest part
-  // remembers 100. Its mean over the rest alone is farther off than that over all.
+  // Fast, slower and slow parts of equal power, as of a bed that packs and loosens: 600 samples of which the slowest
+  // part remembers 100. Its mean over the rest alone is farther off than that over all.
   int truncated = 0;
   double of_found = 0.0, of_all = 0.0;
   const int series = 400;
@@ -128,7 +128,8 @@ TEST_CASE("a spike does not decide where a series begins, nor hides where it doe
 }
 
 TEST_CASE("rare bursts of which the beginning has more by chance are no start-up") {
-  // Bursts of eight samples that die away, of exponential size, upon noise: as of a lump that the blade breaks now and then.
+  // Bursts of eight samples that die away, of exponential size, upon noise: as of a lump that the blade breaks now and
+  // then.
   const int series = 200;
   int truncated = 0;
   double of_found = 0.0, of_all = 0.0;

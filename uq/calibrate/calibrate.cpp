@@ -45,7 +45,8 @@ void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& 
     }
 }
 
-/// Where nothing fits and a surrogate is in doubt, the misfit may be the surrogate's: runs come before the look at the bench.
+/// Where nothing fits and a surrogate is in doubt, the misfit may be the surrogate's: runs come before the look at the
+/// bench.
 void put_doubted_surrogate_first(CaseReport& report, const CaseModel& model,
                                  const std::vector<FittedSurrogate>& surrogates) {
   if (report.fits || report.unusable) return;

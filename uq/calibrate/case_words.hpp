@@ -16,14 +16,15 @@
 
 namespace uq {
 
-/// Makes it the finding that the runs, the draws or the case's source cannot carry a verdict; what is printed beside it is then no result.
+/// Makes it the finding that the runs, the draws or the case's source cannot carry a verdict; what is printed beside it
+/// is then no result.
 void say_doubt(CaseReport& report, DoubtOf of, Words& words, const data::Study& study);
 
 /// Words for a fit that is not refused, but which data drawn from the model itself would seldom give.
 void say_poor_fit(Words& words, const FitCheck& check);
 
-/// Words for readings that lie closer to the model than their stated errors let expect: the errors are stated too large,
-/// or are shared. Values stay, with intervals wider than need be.
+/// Words for readings that lie closer to the model than their stated errors let expect: the errors are stated too
+/// large, or are shared. Values stay, with intervals wider than need be.
 void say_close_fit(Words& words, const FitCheck& check);
 
 /// Words for a model that does not fit: where it is farthest off, which sets contradict each other, and units that

@@ -1,5 +1,5 @@
-// Bayes factors between a case and itself with some parameters held (uq/posterior/held.hpp): the same data on both sides, those
-// of linked cases included.
+// Bayes factors between a case and itself with some parameters held (uq/posterior/held.hpp): the same data on both
+// sides, those of linked cases included.
 //
 // Words by R. E. Kass, A. E. Raftery, "Bayes factors", J. Am. Stat. Assoc. 90 (1995) 773, section 3.2: 2 ln B below 2
 // is not worth more than a bare mention, 2 to 6 positive, 6 to 10 strong, above 10 very strong.

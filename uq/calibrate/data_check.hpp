@@ -8,8 +8,8 @@
 //             parameter fixed where no run is; one file observed twice in a case; two columns exchanged; a column in
 //             another unit
 //   warned    copies, rows outside the ranges, standard errors of 0 among others, an output that no run changes, inputs
-//             that move together, a column that nothing reads and that moves an output, ranges that the runs do not cover, magnitudes that suggest another unit, standard
-//             errors that suggest a percentage
+//             that move together, a column that nothing reads and that moves an output, ranges that the runs do not
+//             cover, magnitudes that suggest another unit, standard errors that suggest a percentage
 //   noted     a parameter over decades whose prior, uniform in its value, nobody stated
 // A factor between units is suspected in two cases: where the values fill their range, or meet the runs, only when
 // multiplied by the factor, and where some rows or readings of one output differ by such a factor from the others.

@@ -1,5 +1,5 @@
-// Checks of a measurement beside the runs: columns that look exchanged, outputs of another magnitude than all runs have, controls
-// that would meet the runs in another unit.
+// Checks of a measurement beside the runs: columns that look exchanged, outputs of another magnitude than all runs
+// have, controls that would meet the runs in another unit.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -50,8 +50,9 @@ Eigen::MatrixXd correlations(Eigen::MatrixXd columns) {
   return columns.transpose() * columns;
 }
 
-/// Whether all readings of a material lie where the runs do, of two controls (unit interval) that move together in the runs:
-/// then nobody asks for their effects apart. About the runs' straight line, with a little beyond their own scatter.
+/// Whether all readings of a material lie where the runs do, of two controls (unit interval) that move together in the
+/// runs: then nobody asks for their effects apart. About the runs' straight line, with a little beyond their own
+/// scatter.
 bool readings_lie_on_line(const data::Study& study, const std::string& material,
                           const std::pair<std::string, std::string>& controls, const Eigen::VectorXd& first,
                           const Eigen::VectorXd& second) {

@@ -1,6 +1,6 @@
-// Checks of the observations by themselves: copies, standard errors that cannot be meant; beside the runs they are looked at in
-// data_check_beside_runs.cpp, and for what their errors share in data_check_shared_errors.cpp. And what building the cases
-// would refuse.
+// Checks of the observations by themselves: copies, standard errors that cannot be meant; beside the runs they are
+// looked at in data_check_beside_runs.cpp, and for what their errors share in data_check_shared_errors.cpp. And what
+// building the cases would refuse.
 //
 // Errors in percent: readings along one control are smooth, so their scatter about a simple curve in it says how large
 // their errors can be. With residuals r_i, errors s_i and as many degrees of freedom as the curve leaves,
@@ -158,8 +158,8 @@ bool one_spoils_all(const data::Study& study, const data::ObservationSet& set, s
   return false;
 }
 
-/// Readings whose standard error is far smaller than the others', as it stands and as a share of the value: a slipped digit
-/// or another unit. Such a reading outweighs all others.
+/// Readings whose standard error is far smaller than the others', as it stands and as a share of the value: a slipped
+/// digit or another unit. Such a reading outweighs all others.
 void check_outweighing(const data::Study& study, const data::ObservationSet& set, std::vector<Finding>& findings) {
   constexpr double far_smaller = 50.0;
   constexpr std::size_t least = 4;  // readings, for the others to have a size

@@ -56,7 +56,8 @@ std::optional<Finding> other_unit(const InputColumn& column) {
   return {};
 }
 
-/// The unit in which some rows of a column were written, when all of them lie outside its range and fill it in that one.
+/// The unit in which some rows of a column were written, when all of them lie outside its range and fill it in that
+/// one.
 std::optional<UnitFactor> unit_of_some(const InputColumn& column, const std::vector<double>& outside) {
   constexpr std::size_t fewest = 3;
   if (outside.size() < fewest) return {};
@@ -68,8 +69,8 @@ std::optional<UnitFactor> unit_of_some(const InputColumn& column, const std::vec
   return {};
 }
 
-/// Rows of a column that fill its range in another unit, where the others lie in it as they stand: values too small by that
-/// factor, far below all others, and more than an even design has there.
+/// Rows of a column that fill its range in another unit, where the others lie in it as they stand: values too small by
+/// that factor, far below all others, and more than an even design has there.
 std::optional<Finding> some_in_other_unit(const InputColumn& column) {
   constexpr std::size_t fewest = 3;
   constexpr double apart = 3.0;  // the smallest of the others, over the largest of these
@@ -226,8 +227,8 @@ RowsOutside find_outside(const data::Study& study, data::RunTable& table, const 
   return found;
 }
 
-/// The rows of a column that lie outside its range, in words. Those far outside, and all of them where they lie in the range
-/// in another unit, are left out.
+/// The rows of a column that lie outside its range, in words. Those far outside, and all of them where they lie in the
+/// range in another unit, are left out.
 std::optional<Finding> rows_outside(const data::Study& study, data::RunTable& table, const InputColumn& column,
                                     const DataCheckThresholds& t) {
   const data::Axis axis = column.is_parameter ? study.parameters[*study.parameter_index(column.name)].axis()

@@ -1,5 +1,5 @@
-// Checks of what the errors of readings share: of repeats, of outputs at one setting, of sets that one meter read. Errors that
-// are shared and counted as independent make widths too small.
+// Checks of what the errors of readings share: of repeats, of outputs at one setting, of sets that one meter read.
+// Errors that are shared and counted as independent make widths too small.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -126,8 +126,8 @@ bool states_sharing(const data::ObservationSet& set, const data::ObservationSet&
   return (!set.meter.empty() && set.meter == other.meter) || names(set, other) || names(other, set);
 }
 
-/// Two sets whose readings at the same settings agree too well to be independent: a table and its copy with fewer digits.
-/// `one_case`: one case observes both; else one is predicted from the other.
+/// Two sets whose readings at the same settings agree too well to be independent: a table and its copy with fewer
+/// digits. `one_case`: one case observes both; else one is predicted from the other.
 void check_agreement(const data::Study& study, const data::ObservationSet& set, const data::ObservationSet& other,
                      bool one_case, std::vector<Finding>& findings) {
   if (set.material != other.material) return;

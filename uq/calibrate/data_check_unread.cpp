@@ -1,12 +1,14 @@
-// A column of the runs that nothing reads, and that is an input of theirs. A surrogate takes its influence for scatter of the
-// runs. But the real powder has one value of it, which no posterior knows of: posteriors come out too narrow.
+// A column of the runs that nothing reads, and that is an input of theirs. A surrogate takes its influence for scatter
+// of the runs. But the real powder has one value of it, which no posterior knows of: posteriors come out too narrow.
 //
-// Whether it is one is asked by two regressions on the inputs with their squares and products, as far as the runs allow:
+// Whether it is one is asked by two regressions on the inputs with their squares and products, as far as the runs
+// allow:
 //   of the column   R^2, adjusted for the number of terms: an output follows from the inputs, an input is chosen apart
 //   of an output    without the column and with it and its square, by the F test of nested models (N. R. Draper, H.
 //                   Smith, Applied Regression Analysis (1998), chapter 6)
-// An output above 0 is taken as its logarithm, since influences most often multiply. Where several columns are inputs, outputs follow
-// from all of them: the column that follows least from the inputs is named first, and is an input of all later regressions.
+// An output above 0 is taken as its logarithm, since influences most often multiply. Where several columns are inputs,
+// outputs follow from all of them: the column that follows least from the inputs is named first, and is an input of all
+// later regressions.
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
 

@@ -1,7 +1,7 @@
 #pragma once
-// What keeps a case from carrying a verdict: its surrogates, its runs, its draws, a prior that the data contradict, or a
-// case whose posterior it takes without feedback. Such a posterior is believed as it comes, so that what is wrong with
-// its case is wrong with this one too.
+// What keeps a case from carrying a verdict: its surrogates, its runs, its draws, a prior that the data contradict, or
+// a case whose posterior it takes without feedback. Such a posterior is believed as it comes, so that what is wrong
+// with its case is wrong with this one too.
 #include <string>
 #include <vector>
 

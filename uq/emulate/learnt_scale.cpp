@@ -16,8 +16,8 @@ using surrogate::PredictionGradient;
 using Predict = std::function<Prediction(const MatrixXd& points)>;
 using PredictWithGradient = std::function<PredictionGradient(const MatrixXd& points, std::span<const int> coordinates)>;
 
-/// The derivative along one coordinate of rows that stand at different places of it, so that each has a slope of its own:
-/// central differences.
+/// The derivative along one coordinate of rows that stand at different places of it, so that each has a slope of its
+/// own: central differences.
 std::pair<Eigen::VectorXd, MatrixXd> difference(const Predict& predict, const std::vector<EmulatorInput>& inputs,
                                                 const MatrixXd& points, int coordinate) {
   constexpr double step = 1e-4;  // unit cube

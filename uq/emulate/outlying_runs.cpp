@@ -16,8 +16,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Errors over their predicted sd, of the runs kept and of those put aside, on the process's own scale. `sd` of those put
-/// aside is that of the process alone: the error that a wrong run states is as wrong as the run.
+/// Errors over their predicted sd, of the runs kept and of those put aside, on the process's own scale. `sd` of those
+/// put aside is that of the process alone: the error that a wrong run states is as wrong as the run.
 struct Errors {
   VectorXd standardised, sd, expected;
 };

@@ -47,7 +47,8 @@ double spread_about(std::vector<double> values, double centre) {
 
 double spread_of(const VectorXd& residual) { return spread_about({residual.begin(), residual.end()}, 0.0); }
 
-/// The residuals' second heap, above 0: fewer than half of them, farther off than the others scatter and close together.
+/// The residuals' second heap, above 0: fewer than half of them, farther off than the others scatter and close
+/// together.
 std::vector<int> second_heap(const VectorXd& residual) {
   constexpr double apart = 6.0, tight = 0.25;  // in spreads of all; the heap's spread over its distance
   const double least = std::max(apart * spread_of(residual), 0.5 * residual.maxCoeff());

@@ -267,8 +267,9 @@ std::string points_in_words(const data::Study& study, const TrainingRows& rows, 
   return text + ".";
 }
 
-/// Names a scale on which the left-out errors would be smaller, if there is one. A response that bends at one end of an input's
-/// range has no one length scale there: however good the intervals are on average, at that end they are too narrow.
+/// Names a scale on which the left-out errors would be smaller, if there is one. A response that bends at one end of an
+/// input's range has no one length scale there: however good the intervals are on average, at that end they are too
+/// narrow.
 void add_better_scale(SurrogateReport& report, const data::Study& study, const FittedSurrogate& fitted,
                       const surrogate::FitOptions& options) {
   constexpr double better = 0.7;       // of the error on the study's scales

@@ -90,9 +90,9 @@ FittedSurrogate fit_rows(const data::Study& study, TrainingRows rows, const Surr
   return fitted;
 }
 
-/// The surrogate of the rows. A cheaper level that says nothing of the other spoils what the dear runs know. It is left out
-/// where it does not vary, and where rho cannot be told from 0 and the dear runs predict each other clearly better alone, by
-/// their squared leave-one-out errors.
+/// The surrogate of the rows. A cheaper level that says nothing of the other spoils what the dear runs know. It is left
+/// out where it does not vary, and where rho cannot be told from 0 and the dear runs predict each other clearly better
+/// alone, by their squared leave-one-out errors.
 FittedSurrogate fit_one(const data::Study& study, const TrainingRows& rows, const SurrogateOptions& options) {
   constexpr double clearly = 1.5;
   if (!rows.low || rows.set.y.size() < std::ssize(rows.inputs) + 2) return fit_rows(study, rows, options);

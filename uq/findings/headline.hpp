@@ -1,6 +1,6 @@
 #pragma once
-// A case in one sentence, for a reader who reads nothing else: what the measurement fixes, what it leaves open, and what
-// to do next.
+// A case in one sentence, for a reader who reads nothing else: what the measurement fixes, what it leaves open, and
+// what to do next.
 #include <string>
 
 #include "uq/findings/case_results.hpp"

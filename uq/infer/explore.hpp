@@ -12,8 +12,8 @@
 // 3. From each start uphill, by a trust region with a BFGS model so that no step jumps into another basin. It ends
 //    where p is as high as in the bulk of the draws and q knows the place, p(x) <= level q(x), or at a maximum.
 // 4. The mass of an unknown maximum is first Laplace's (laplace.hpp). Where that would matter, draws of this normal law
-//    tell how much mass lies inside the support where q does not know it: in a corner of a flat density Laplace's is too
-//    large by 2 for each face.
+//    tell how much mass lies inside the support where q does not know it: in a corner of a flat density Laplace's is
+//    too large by 2 for each face.
 #include <array>
 #include <cstdint>
 #include <vector>

@@ -4,8 +4,8 @@
 //   p(x + s) ~ p(x) exp(-s' H s / 2),   mass  p(x) (2 pi)^(d/2) |H|^(-1/2)
 //
 // H comes from differences over steps along which the log density falls by about a half, one conditional standard
-// deviation each. No direction is flatter than the width given. Each axis of the ellipsoid is shortened to where p still
-// is of the maximum's order, so that on a curved ridge the mass is that of a straight piece.
+// deviation each. No direction is flatter than the width given. Each axis of the ellipsoid is shortened to where p
+// still is of the maximum's order, so that on a curved ridge the mass is that of a straight piece.
 #include <Eigen/Dense>
 
 #include "uq/infer/log_density.hpp"

@@ -112,8 +112,8 @@ struct Sorted {
   std::vector<Cell> settled, open;
 };
 
-/// Cells whose integral is settled, and others. A guided cell whose points span a wide range of densities has not seen what
-/// the guide saw. Another is settled when nothing is in it, or when the last split no longer changed it.
+/// Cells whose integral is settled, and others. A guided cell whose points span a wide range of densities has not seen
+/// what the guide saw. Another is settled when nothing is in it, or when the last split no longer changed it.
 Sorted sort_cells(const Grid& grid, std::vector<Cell> cells, double tolerance) {
   const double top = highest(cells);
   double total = 0.0;
@@ -130,8 +130,8 @@ Sorted sort_cells(const Grid& grid, std::vector<Cell> cells, double tolerance) {
   return sorted;
 }
 
-/// The settled cells, then the halves of the others (quarters in two dimensions), evaluated, each with what its parent's split
-/// has changed.
+/// The settled cells, then the halves of the others (quarters in two dimensions), evaluated, each with what its
+/// parent's split has changed.
 std::vector<Cell> halve_open(const Grid& grid, Sorted sorted, const QuadratureOptions& options) {
   std::vector<Cell> cells = std::move(sorted.settled);
   const std::size_t first = cells.size(), parts = std::size_t{1} << grid.dimension;

@@ -30,8 +30,8 @@ double log_spread(const std::vector<double>& values) {
   return std::sqrt(std::max(squares / n - std::pow(sum / n, 2), 0.0));
 }
 
-/// The error of the case's readings of an output: their median, in the output's unit or as a share of the value, whichever
-/// differs less from reading to reading. None where the case reads none.
+/// The error of the case's readings of an output: their median, in the output's unit or as a share of the value,
+/// whichever differs less from reading to reading. None where the case reads none.
 std::optional<data::Spread> stated_error(const Study& study, const std::vector<std::size_t>& sets, std::size_t output) {
   std::vector<double> errors, shares;
   for (const std::size_t index : sets) {

@@ -352,7 +352,8 @@ Information combined(const std::vector<Information>& repeats) {
     }
     for (const Information& one : repeats) squares += std::pow(member(one).value + member(one).remainder - sum / n, 2);
     const double error = std::hypot(factor * std::sqrt(squares / (n - 1.0) / n), remainder);
-    // Where the next order is no small term either, repeats share more than it tells: then a single estimate's error holds.
+    // Where the next order is no small term either, repeats share more than it tells: then a single estimate's error
+    // holds.
     return Estimate{sum / n, std::abs(remainder) > correction_most ? std::max(error, single) : error};
   };
   Information found;

@@ -36,8 +36,8 @@ bool comparable(const Study& study, const std::vector<Emulator>& emulators, cons
   });
 }
 
-/// What the surrogates say of a candidate's readings, means and variances at each draw, draws x readings; and the variance
-/// of each reading's own error.
+/// What the surrogates say of a candidate's readings, means and variances at each draw, draws x readings; and the
+/// variance of each reading's own error.
 struct Readings {
   MatrixXd mean, variance;
   VectorXd noise;

@@ -69,8 +69,8 @@ PlanCandidate describe(const PlanBasis& basis, std::size_t i) {
   return one;
 }
 
-/// Where nobody stated a parameter and nothing teaches of the one that is known least, the question is the least known of
-/// those that a candidate teaches of. Says whom it left out.
+/// Where nobody stated a parameter and nothing teaches of the one that is known least, the question is the least known
+/// of those that a candidate teaches of. Says whom it left out.
 std::string choose_question(PlanBasis& basis, const std::vector<PlanCandidate>& all) {
   const auto taught = [&](int k) {
     return std::any_of(all.begin(), all.end(), [k](const PlanCandidate& one) {

@@ -49,8 +49,8 @@ struct PlanBasis {
   std::optional<Identification> found;  ///< none before a measurement
   bool stated = false;                  ///< somebody stated the parameter to learn of
   int about = 0;                        ///< the parameter asked for; where none is stated the one that is known least
-  /// The parameter has separate values, and something parts them. A reading may narrow each value and leave both open, which is
-  /// information; only what parts them takes down the width over all.
+  /// The parameter has separate values, and something parts them. A reading may narrow each value and leave both open,
+  /// which is information; only what parts them takes down the width over all.
   bool by_width = false;
   std::vector<Candidate> candidates;
   ExtendedCase extended;

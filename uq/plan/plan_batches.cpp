@@ -44,7 +44,8 @@ double quick_worth(const PlanBasis& basis, const std::vector<std::size_t>& membe
   return basis.worth(about.information.value, sd_now, about.sd_after.value);
 }
 
-/// What one set is preferred to another by: the worth of its readings where a budget bounds them, else the worth per cost.
+/// What one set is preferred to another by: the worth of its readings where a budget bounds them, else the worth per
+/// cost.
 double merit(const PlanBasis& basis, const std::vector<std::size_t>& members, double worth) {
   return basis.options.budget ? worth : worth / cost_of(basis, members);
 }

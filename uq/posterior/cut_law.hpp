@@ -2,9 +2,9 @@
 // The law of an unknown that was cut from another case, as a profile needs it: a density with a slope, in place of the
 // other case's data.
 //
-// A normal law of that posterior's mean and sd is enough where the posterior has one hill. Where it has several, such as two
-// frictions that give the same torque, the normal law is likeliest between them, where no draw lies. The law is then the
-// mixture of one component for each hill (uq/infer/student_mixture.hpp, without its wide component).
+// A normal law of that posterior's mean and sd is enough where the posterior has one hill. Where it has several, such
+// as two frictions that give the same torque, the normal law is likeliest between them, where no draw lies. The law is
+// then the mixture of one component for each hill (uq/infer/student_mixture.hpp, without its wide component).
 #include <Eigen/Core>
 
 #include "uq/infer/student_mixture.hpp"

@@ -27,8 +27,9 @@ struct Conflict {
   double z = 0.0, told = 0.0;
 };
 
-/// z by the slope and the curvature of the likelihood at u: with J what the data tell of the prior's normal score beside
-/// all other unknowns, they want s* = s + slope / J there, and z = s* sqrt(J / (J + 1)). Nothing where they tell nothing.
+/// z by the slope and the curvature of the likelihood at u: with J what the data tell of the prior's normal score
+/// beside all other unknowns, they want s* = s + slope / J there, and z = s* sqrt(J / (J + 1)). Nothing where they tell
+/// nothing.
 Conflict conflict_at(const CaseModel& model, const Eigen::VectorXd& u, Eigen::Index k) {
   const std::optional<Eigen::MatrixXd> all = curvature(model, u, KnownBeside::all);
   if (!all) return {};

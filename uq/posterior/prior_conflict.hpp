@@ -7,9 +7,9 @@
 //   z = mean of s / sqrt(1 - v)
 // is standard normal where prior and data agree: the check of M. Evans, H. Moshonov, Bayesian Anal. 1:893 (2006), on
 // the posterior mean as the sufficient statistic. Exact for normal laws; the score makes it hold for skew and cut
-// priors, too. Where a prior is so narrow that the data hardly move it, 1 - v is small beside the draws' own scatter of v.
-// z is then worked out from the likelihood's slope and curvature at the posterior's mean, which over a narrow law hardly
-// change, where the draws' mean score is the one that this leads to.
+// priors, too. Where a prior is so narrow that the data hardly move it, 1 - v is small beside the draws' own scatter of
+// v. z is then worked out from the likelihood's slope and curvature at the posterior's mean, which over a narrow law
+// hardly change, where the draws' mean score is the one that this leads to.
 #include <Eigen/Dense>
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
-// The runs of an emulator as the draws of a posterior meet them: along each input, in each plane of two inputs, and about
-// each point. support.hpp says when a point is not supported by them.
+// The runs of an emulator as the draws of a posterior meet them: along each input, in each plane of two inputs, and
+// about each point. support.hpp says when a point is not supported by them.
 #include <Eigen/Dense>
 #include <optional>
 #include <string>

@@ -23,7 +23,8 @@ struct SurrogateShare {
   std::vector<double> moved;   ///< for each: |a - b| / sqrt(V); where it is large, few draws lie where v is asked for
   double effective_draws = 0.0;
 
-  /// Whether the draws tell what an exact surrogate would leave of parameter k: there are enough of them where it would be.
+  /// Whether the draws tell what an exact surrogate would leave of parameter k: there are enough of them where it would
+  /// be.
   bool tells(std::size_t k) const;
 };
 

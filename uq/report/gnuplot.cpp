@@ -78,8 +78,8 @@ std::string draw(const Figure& figure, const std::string& folder, const GnuplotO
   data::write_atomically(base + ".dat", figure.data);
   data::write_atomically(base + ".gp", script);
 
-  // The picture comes through a pipe, which no full disk cuts off. "-d" keeps the user's and the system's start-up files
-  // out of the figures.
+  // The picture comes through a pipe, which no full disk cuts off. "-d" keeps the user's and the system's start-up
+  // files out of the figures.
   const data::ProgramEnd result =
       data::run_program({.words = {options.program, "-d", "-e", "to_stdout=1", figure.stem + ".gp"}, .folder = folder});
   if (result.start_error != 0) {

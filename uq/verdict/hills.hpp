@@ -1,6 +1,7 @@
 #pragma once
-// Separate hills of a likelihood along a profile. A value may be excluded by the 95 % interval, and a hill about it still hold
-// several per cent of the posterior: then "one value, known well" would be wrong of what the data leave open.
+// Separate hills of a likelihood along a profile. A value may be excluded by the 95 % interval, and a hill about it
+// still hold several per cent of the posterior: then "one value, known well" would be wrong of what the data leave
+// open.
 #include <Eigen/Core>
 #include <vector>
 
@@ -13,8 +14,8 @@ struct Hill {
   double mass = 0.0;  ///< share of prior x exp(-deviance / 2) over the path, both along straight lines between points
 };
 
-/// Hills from left to right; what rises by less than `prominence` on a side is no hill of its own. `u`: rising; `log_prior`: at
-/// each point, up to a constant.
+/// Hills from left to right; what rises by less than `prominence` on a side is no hill of its own. `u`: rising;
+/// `log_prior`: at each point, up to a constant.
 std::vector<Hill> find_hills(const Eigen::VectorXd& u, const Eigen::VectorXd& deviance,
                              const Eigen::VectorXd& log_prior, double prominence = 1.0);
 

@@ -38,8 +38,8 @@ bool acts_on_emulators(const CaseModel& model, int unknown) {
                      [&](const RowGroup& group) { return (group.unknown.array() == unknown).any(); });
 }
 
-/// What an unknown changes over its range, and what of that the surrogate leaves in doubt: sums over rows, levels of the
-/// unknown and the points about which it moves, in squares of the data's errors.
+/// What an unknown changes over its range, and what of that the surrogate leaves in doubt: sums over rows, levels of
+/// the unknown and the points about which it moves, in squares of the data's errors.
 class Effects {
  public:
   /// Counts the rows of a group in. `at`: their predictions, level below level.

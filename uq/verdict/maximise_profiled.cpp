@@ -1,6 +1,6 @@
 // Gauss-Newton steps within a box, damped as by Levenberg and Marquardt (J. Nocedal, S. J. Wright, "Numerical
-// Optimization", 2006, section 10.3): with g the gradient, J the slopes of the data's means, S their covariance and P the
-// precision of what is known of the nuisances,
+// Optimization", 2006, section 10.3): with g the gradient, J the slopes of the data's means, S their covariance and P
+// the precision of what is known of the nuisances,
 //   (J' S^-1 J + P + damping diag) step = g,      promised gain = g' step / 2.
 // Unknowns at an end of their range that g would push beyond it stay there.
 #include <algorithm>

@@ -115,8 +115,8 @@ double ignorance(const CaseModel& model, const CaseModel& exact, const Eigen::Ve
   return 2.0 * (with.matrixLLT().diagonal().array().log().sum() - without.matrixLLT().diagonal().array().log().sum());
 }
 
-/// Opens the sides beyond which only the surrogate's ignorance speaks against every value. `inside`: the outermost points of
-/// the interval.
+/// Opens the sides beyond which only the surrogate's ignorance speaks against every value. `inside`: the outermost
+/// points of the interval.
 void open_to_ignorance(const CaseModel& model, const Eigen::VectorXd& best,
                        std::pair<Eigen::Index, Eigen::Index> inside, Profile& profile) {
   const CaseModel exact = without_surrogate_error(model);
@@ -174,8 +174,8 @@ std::vector<PointsInside> points_below(const Profile& profile) {
   return runs;
 }
 
-/// Whether a hill above the drop is a value of its own: it holds a share of the posterior, by the draws or by the profile, and no
-/// error of the surrogate would join it to its neighbours.
+/// Whether a hill above the drop is a value of its own: it holds a share of the posterior, by the draws or by the
+/// profile, and no error of the surrogate would join it to its neighbours.
 bool is_minor_value(const CaseModel& model, const Yardstick& yardstick, const Profile& profile, const Hill& hill,
                     const Eigen::MatrixXd& draws, double least_mass) {
   const double least = profile.deviance[hill.best];
@@ -191,8 +191,8 @@ bool is_minor_value(const CaseModel& model, const Yardstick& yardstick, const Pr
   return !doubtful(hill.first) && !doubtful(hill.last);
 }
 
-/// The parts of the interval from left to right. Each reaches as far as the deviance has risen by the drop from its own least, at
-/// most to the peaks beside it: what is known of a value where it is the right one.
+/// The parts of the interval from left to right. Each reaches as far as the deviance has risen by the drop from its own
+/// least, at most to the peaks beside it: what is known of a value where it is the right one.
 std::vector<PointsInside> points_inside(const CaseModel& model, const Yardstick& yardstick, const Profile& profile,
                                         const Eigen::MatrixXd& draws, double least_mass) {
   const ScaledPrior& prior = model.unknowns[profile.unknown].prior;

@@ -2,8 +2,8 @@
 // What an unknown's value owes to the end of another unknown's range.
 //
 // At the most likely point an unknown may sit at the end of its range while the likelihood still rises outwards. The
-// others are then estimated with it held there. Where the range was chosen by the user, and is no bound of nature, their
-// values and errors hold for that choice only.
+// others are then estimated with it held there. Where the range was chosen by the user, and is no bound of nature,
+// their values and errors hold for that choice only.
 // To second order the most likely point beyond the end is u* + F^-1 g. g is the gradient at u*, of that unknown alone.
 // F = J' S^-1 J is the information in the data, with 1/sd^2 of each prior. Unknowns that sit at other ends stay there.
 // Where the prior of the unknown at the end is no more than its range, that range is what is in question: its own width

@@ -30,8 +30,8 @@ std::string in_words(const CommonError& error) {
   return "the discrepancy";
 }
 
-/// Whether the posterior ends well inside the range on the side that the data leave open: a stated prior ends it there, and
-/// not the range.
+/// Whether the posterior ends well inside the range on the side that the data leave open: a stated prior ends it there,
+/// and not the range.
 bool ended_by_prior(const ParameterEvidence& evidence) {
   const double room = evidence.facts.open_high ? evidence.found.prior_high - evidence.found.mean
                                                : evidence.found.mean - evidence.found.prior_low;

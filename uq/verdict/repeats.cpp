@@ -101,8 +101,9 @@ PathWords::PathWords(const std::vector<PathPoint>& points, const std::vector<Eig
 }
 
 std::pair<bool, bool> PathWords::ends_by_another(const Eigen::VectorXd& deviance, double drop) const {
-  // The other comes to its end somewhere between the outermost point inside and the next one, where its course from the points
-  // further in leads. It ends the interval where the deviance, going on as it does inside, has not reached the drop there.
+  // The other comes to its end somewhere between the outermost point inside and the next one, where its course from the
+  // points further in leads. It ends the interval where the deviance, going on as it does inside, has not reached the
+  // drop there.
   const auto ended_between = [&](int inside, int outside, int further_in) {
     const Local &in = points_[inside], &out = points_[outside];
     const int other = out.at_end.value();
@@ -115,7 +116,8 @@ std::pair<bool, bool> PathWords::ends_by_another(const Eigen::VectorXd& deviance
       rise = (std::sqrt(deviance[inside]) - std::sqrt(deviance[further_in])) / std::abs(in.u - before.u);
     }
     const double within = std::min(std::abs(at - in.u), std::abs(out.u - in.u));
-    // The least deviance lies between: it rises outwards as inwards, and no faster than to the next point, where the end bends it up.
+    // The least deviance lies between: it rises outwards as inwards, and no faster than to the next point, where the
+    // end bends it up.
     const double straight = (std::sqrt(deviance[outside]) - std::sqrt(deviance[inside])) / std::abs(out.u - in.u);
     if (rise <= 0.0) rise = std::min(straight, further_in < 0 ? straight : -rise);
     return std::sqrt(deviance[inside]) + rise * within < std::sqrt(drop);
@@ -148,8 +150,8 @@ Eigen::VectorXd PathWords::deviances(const Eigen::VectorXd& y) const {
   return deviance;
 }
 
-/// Variance of u under prior x exp(-deviance / 2), both logarithms between points along straight lines; parts apart when
-/// asked.
+/// Variance of u under prior x exp(-deviance / 2), both logarithms between points along straight lines; parts apart
+/// when asked.
 double PathWords::variance(const Eigen::VectorXd& deviance, const Parts& parts, bool within) const {
   constexpr int cells = 12;
   const auto count = static_cast<std::size_t>(std::max(parts.count, 1));

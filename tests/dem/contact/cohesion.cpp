@@ -64,7 +64,8 @@ TEST_CASE("H* = l^3 H: the simulation's constant is given, or follows from the o
 }
 
 TEST_CASE("the power of l decides what enlarged grains keep: at 1 the pull-off force goes with their area") {
-  // With L the diameter of the simulated sphere, the force is H* L / (24 h^2): l^(n + 1) times that of the original grain.
+  // With L the diameter of the simulated sphere, the force is H* L / (24 h^2): l^(n + 1) times that of the original
+  // grain.
   dem::Case original, enlarged;
   for (dem::Case* c : {&original, &enlarged}) {
     c->contact.hamaker = 4e-21;

@@ -1,5 +1,5 @@
-// The pair integrated by CVODE (dem/contact/collision.hpp) against closed forms, and the simulation against the pair. Closed
-// forms: duration pi / (w0 sqrt(1 - zeta^2)) of the linear spring-dashpot; Hertz as in impact.cpp; clamped
+// The pair integrated by CVODE (dem/contact/collision.hpp) against closed forms, and the simulation against the pair.
+// Closed forms: duration pi / (w0 sqrt(1 - zeta^2)) of the linear spring-dashpot; Hertz as in impact.cpp; clamped
 // restitutions and sticking speeds f(e) F / sqrt(m* k) of the project's verification sheet, derived there.
 #include "tests/dem/shot.hpp"
 

@@ -34,8 +34,8 @@ TEST_CASE("a JKR contact that tears gives up 7.09 (w^5 R*^4 / E*^2)^(1/3)") {
 }
 
 TEST_CASE("Mindlin's spring, sheared, unloaded, sheared back and loaded again, gives no energy") {
-  // C. Thornton, S. Cummins, P. Cleary, Powder Technol. 233:30 (2013): the force is scaled with the contact radius as it
-  // shrinks; left alone, the way back takes out (k_1 - k_2) s^2 / 2 more than the way out put in.
+  // C. Thornton, S. Cummins, P. Cleary, Powder Technol. 233:30 (2013): the force is scaled with the contact radius as
+  // it shrinks; left alone, the way back takes out (k_1 - k_2) s^2 / 2 more than the way out put in.
   using Law = dem::ContactLaw<dem::HertzNormal, dem::MindlinTangential, dem::NoResistance, dem::NoAttraction>;
   Law law;
   law.normal.modulus = 2e7;

@@ -8,8 +8,8 @@ using dem::Room;
 
 namespace {
 
-/// A box one cell deep, five wide and six high, open at its top, with a wall three high between the second and the third
-/// column.
+/// A box one cell deep, five wide and six high, open at its top, with a wall three high between the second and the
+/// third column.
 Room two_chambers() {
   Room room{.low = {0.0, 0.0, 0.0}, .cell = {1.0, 1.0, 1.0}, .n = {1, 5, 6}, .down = {0.0, 0.0, -1.0}};
   room.walled.assign(30, 0);

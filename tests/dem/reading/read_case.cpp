@@ -1,5 +1,5 @@
-// The study's keys of rig, materials, contact laws, pairs, sizes, mixtures and runs: each reaches the case, changes the settings, and is
-// refused by name where it cannot be.
+// The study's keys of rig, materials, contact laws, pairs, sizes, mixtures and runs: each reaches the case, changes the
+// settings, and is refused by name where it cannot be.
 #include <catch2/catch.hpp>
 
 #include "data/error.hpp"

@@ -48,7 +48,8 @@ bool in_vessel(const dem::Rig& rig, dem::Vec3 p) {
   return open ? p.z > m.sill : p.z > m.partition_height;
 }
 
-/// Mass that crosses planes across the partition, forward less backward, a time and a plane; the first stream's sign turned.
+/// Mass that crosses planes across the partition, forward less backward, a time and a plane; the first stream's sign
+/// turned.
 class Crossings {
  public:
   Crossings(const dem::Rig& rig, std::size_t spheres) : at_(spheres) {

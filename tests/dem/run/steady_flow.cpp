@@ -129,8 +129,8 @@ TEST_CASE("five parts in a hundred more torque at the end than at the start of a
 }
 
 TEST_CASE("two turns of a slow cohesive bed know their error: their means scatter by it") {
-  // Outside the estimate: thirty turns of two seeds say how far means of two turns scatter. The bed's torque has motions
-  // slower than a turn, which an error made of faster ones does not see (1.39 with sixteen modes).
+  // Outside the estimate: thirty turns of two seeds say how far means of two turns scatter. The bed's torque has
+  // motions slower than a turn, which an error made of faster ones does not see (1.39 with sixteen modes).
   const data::Csv csv = data::read_csv(DEMCAL_SOURCE_DIR "/tests/dem/series/slow.csv");
   constexpr std::size_t two_turns = 200;
   double squares = 0.0;

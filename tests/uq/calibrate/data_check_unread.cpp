@@ -1,4 +1,5 @@
-// Columns that nothing reads: named where they move an output and are chosen apart, and not where they follow from the inputs.
+// Columns that nothing reads: named where they move an output and are chosen apart, and not where they follow from the
+// inputs.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>

@@ -1,6 +1,6 @@
 // What a case takes without feedback from another, it takes with the other's faults. The torque is
-// 1 + 2 |friction - 0.5| friction + (cohesion - friction / 2) speed, so that up to three frictions give the same torque at
-// speed 0, each with a cohesion of its own at speed 1.
+// 1 + 2 |friction - 0.5| friction + (cohesion - friction / 2) speed, so that up to three frictions give the same torque
+// at speed 0, each with a cohesion of its own at speed 1.
 #include "uq/calibrate/doubt.hpp"
 
 #include <catch2/catch.hpp>

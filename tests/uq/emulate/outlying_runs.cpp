@@ -76,7 +76,8 @@ TEST_CASE("the run is told with what the others say there, and how far it is off
 }
 
 TEST_CASE("accused runs that lie together at an end of an input are told from those that lie anywhere", "[uq]") {
-  // 60 runs; in the first column run i has rank i + 1, in the second they come in an order that has nothing to do with it.
+  // 60 runs; in the first column run i has rank i + 1, in the second they come in an order that has nothing to do with
+  // it.
   Eigen::MatrixXd x(60, 2);
   for (int i = 0; i < 60; ++i) x.row(i) << i / 60.0, (37 * i % 60) / 60.0;
   const auto low = at_one_end(x, {0, 1, 2, 3});

@@ -1,4 +1,5 @@
-// A part of the runs in another unit: found with its factor, wherever it lies and whatever the response; none in clean tables.
+// A part of the runs in another unit: found with its factor, wherever it lies and whatever the response; none in clean
+// tables.
 #include "uq/emulate/scaled_runs.hpp"
 
 #include <algorithm>

@@ -120,8 +120,9 @@ TEST_CASE("the unknown mass about a corner of a flat density is what lies inside
   const Target target = adversaries::on_box(Flat{}, Eigen::VectorXd::Zero(4), Eigen::VectorXd::Ones(4));
   const Peak corner = laplace(target, Eigen::VectorXd::Zero(4), Eigen::VectorXd::Constant(4, 0.25));
   std::int64_t evaluations = 0;
-  // The proposal is a normal law of sd 1/4 about the middle, and knows what lies nearer to it than 0.7. Counted by 200,000
-  // uniform draws, 0.154 of the box lies farther away: 0.0096 about each of the 16 corners. Laplace's mass of one is 0.154.
+  // The proposal is a normal law of sd 1/4 about the middle, and knows what lies nearer to it than 0.7. Counted by
+  // 200,000 uniform draws, 0.154 of the box lies farther away: 0.0096 about each of the 16 corners. Laplace's mass of
+  // one is 0.154.
   const Mixture middle = knowing(Eigen::VectorXd::Constant(4, 0.5), 0.25);
   const double level = -middle.log_density(Eigen::Vector4d(0.15, 0.15, 0.15, 0.15));
   const double mass =

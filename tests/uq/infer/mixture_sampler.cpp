@@ -125,7 +125,8 @@ TEST_CASE("draws of eight parameters on a box, of which one sum is known, stay i
 
 namespace {
 
-/// A thin ridge in the unit cube and, with 3 % of the mass, a wide background that rises and falls, as where a surrogate knows little.
+/// A thin ridge in the unit cube and, with 3 % of the mass, a wide background that rises and falls, as where a
+/// surrogate knows little.
 struct RidgeOnBackground {
   static constexpr double width = 0.02, background = 0.03;
   int dimension() const { return 4; }

@@ -1,5 +1,5 @@
-// The proposal of the sampler: its densities integrate to one, its draws have its moments, its fit finds what the points were
-// drawn from.
+// The proposal of the sampler: its densities integrate to one, its draws have its moments, its fit finds what the
+// points were drawn from.
 #include "uq/infer/student_mixture.hpp"
 
 #include <catch2/catch.hpp>

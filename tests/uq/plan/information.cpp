@@ -104,7 +104,8 @@ TEST_CASE("the stated error of the information about one unknown holds the truth
 }
 
 TEST_CASE("where draws are few for a sharp reading, what they are biased by is in the stated error", "[plan]") {
-  // Of 256 draws some fifteen lie within the noise of a reading; the bias that repeats share is as large as their scatter.
+  // Of 256 draws some fifteen lie within the noise of a reading; the bias that repeats share is as large as their
+  // scatter.
   const std::vector<known::Problem> problems = known::problems();
   const auto sharp = std::find_if(problems.begin(), problems.end(),
                                   [](const known::Problem& problem) { return problem.name == "scalar, noise 0.02"; });

@@ -344,8 +344,9 @@ TEST_CASE("widths and words that a plan forecasts come true", "[plan][slow]") {
 
 namespace {
 
-/// Dakota's regression test of its Bayesian experimental design (test/dakota_bayes_expdesign, its second set of settings): a quadratic A x^2 + B x + C
-/// stands in for a heated rod, of which two temperatures are known; where to take the third?
+/// Dakota's regression test of its Bayesian experimental design (test/dakota_bayes_expdesign, its second set of
+/// settings): a quadratic A x^2 + B x + C stands in for a heated rod, of which two temperatures are known; where to
+/// take the third?
 constexpr double rod_x[] = {10.581408334, 68.993623252}, rod_y[] = {94.604886616, 25.878269041};
 
 data::Study heated_rod(double sd) {
@@ -393,8 +394,8 @@ std::vector<uq::Emulator> quadratic() {
   return {one};
 }
 
-/// Information of a reading at x, with errors of `sd`: given A, the two temperatures fix B and C but for their errors, so
-/// that A is uniform and the reading the sum of a uniform and a normal number. By quadrature of its entropy.
+/// Information of a reading at x, with errors of `sd`: given A, the two temperatures fix B and C but for their errors,
+/// so that A is uniform and the reading the sum of a uniform and a normal number. By quadrature of its entropy.
 double rod_information(double x, double sd) {
   const double w = (x - rod_x[0]) / (rod_x[1] - rod_x[0]);
   const double width = 0.06 * std::abs((x - rod_x[0]) * (x - rod_x[1]));

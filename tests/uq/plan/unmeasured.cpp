@@ -55,7 +55,8 @@ TEST_CASE("a plan without data is the plan that ignores them", "[plan]") {
 }
 
 TEST_CASE("without data a reading of one unknown teaches what the closed form says", "[plan]") {
-  // y = 10 + 5 a + 4 b + 0.3 x (a - b) at x = 0 with b fixed: the information is that of a normal law, ln(1 + s^2/e^2)/2.
+  // y = 10 + 5 a + 4 b + 0.3 x (a - b) at x = 0 with b fixed: the information is that of a normal law, ln(1 +
+  // s^2/e^2)/2.
   data::Study study = uq::plan::with_cases(without_data());
   study.cases[0].free = {"a"};
   study.cases[0].fixed = {{"b", 0.5}};

@@ -1,6 +1,6 @@
-// What errors common to all readings hold of a width, where it is known in closed form: n readings of a, prior N(0, 1), with
-// errors of sd s each and one error of sd c that they share. The posterior's variance is 1 / (1 + 1 / (c^2 + s^2 / n)), and
-// 1 / (1 + n / s^2) once the shared error is known.
+// What errors common to all readings hold of a width, where it is known in closed form: n readings of a, prior N(0, 1),
+// with errors of sd s each and one error of sd c that they share. The posterior's variance is 1 / (1 + 1 / (c^2 + s^2 /
+// n)), and 1 / (1 + n / s^2) once the shared error is known.
 #include "uq/posterior/common_share.hpp"
 
 #include <catch2/catch.hpp>
@@ -87,7 +87,8 @@ TEST_CASE("a setting's share: known to an error that moves all readings alike", 
   CHECK(found.share == Approx(1.0 - without / with).epsilon(1e-4));
   REQUIRE(found.errors.size() == 1);
   CHECK(found.errors[0].kind == uq::CommonErrorKind::setting);
-  // Set anew for each reading it averages out; repeats at these settings still share it, and smaller own errors leave it.
+  // Set anew for each reading it averages out; repeats at these settings still share it, and smaller own errors leave
+  // it.
   set.settings[0].level = Eigen::Vector4d(1.0, 2.0, 3.0, 4.0);
   const double anew = 1.0 / (1.0 + readings / (shared * shared + own * own));
   CHECK(share_of(model).share == Approx(1.0 - without / anew).epsilon(1e-4));

@@ -1,6 +1,6 @@
-// Outputs read at one setting share its error. Torque a + 2 x and angle a + 3 x are linear in the setting x, so that readings at
-// x known to +- e are normal: their covariance is that of their own errors and e^2 k k', k = 2 of a torque and 3 of an
-// angle, over all readings where the error is one of all, and over those at each setting where it is not.
+// Outputs read at one setting share its error. Torque a + 2 x and angle a + 3 x are linear in the setting x, so that
+// readings at x known to +- e are normal: their covariance is that of their own errors and e^2 k k', k = 2 of a torque
+// and 3 of an angle, over all readings where the error is one of all, and over those at each setting where it is not.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

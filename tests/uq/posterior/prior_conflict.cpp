@@ -1,5 +1,5 @@
-// Prior and data that contradict each other. A reading y of a, with an error of sd t and a prior N(m, s) of a, comes from
-// N(m, sqrt(s^2 + t^2)), so that z = (y - m) / sqrt(s^2 + t^2), whatever the posterior is worked out by.
+// Prior and data that contradict each other. A reading y of a, with an error of sd t and a prior N(m, s) of a, comes
+// from N(m, sqrt(s^2 + t^2)), so that z = (y - m) / sqrt(s^2 + t^2), whatever the posterior is worked out by.
 #include "uq/posterior/prior_conflict.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The surrogate's share of a width where it is known in closed form: y = theta, seen with variance e, by a surrogate whose
-// error has variance s. The posterior's variance is s + e with that error and e without it.
+// The surrogate's share of a width where it is known in closed form: y = theta, seen with variance e, by a surrogate
+// whose error has variance s. The posterior's variance is s + e with that error and e without it.
 #include "uq/posterior/surrogate_share.hpp"
 
 #include <catch2/catch.hpp>

@@ -235,8 +235,8 @@ TEST_CASE("an interval that ends where no run was made is open there, and says w
 }
 
 TEST_CASE("what only the surrogate's ignorance speaks against is not excluded", "[uq]") {
-  // One reading of x +- 1 at 2, in a range of -10 to 10: 0 to 4 at a drop of 4. A surrogate of sd s adds log(1 + s^2) to
-  // the deviance: beyond 4 for s above 7.4, though such a prediction excludes nothing.
+  // One reading of x +- 1 at 2, in a range of -10 to 10: 0 to 4 at a drop of 4. A surrogate of sd s adds log(1 + s^2)
+  // to the deviance: beyond 4 for s above 7.4, though such a prediction excludes nothing.
   const auto with_sd = [](const std::function<double(double)>& sd) {
     uq::CaseModel model = sum_of_squares({{"x", -10.0, 10.0}}, {[](const Eigen::VectorXd& p) { return p[0]; }},
                                          Eigen::VectorXd::Constant(1, 2.0));
