@@ -3,10 +3,10 @@
 // torque logs and positions. It finds out how a table is written and says so in `took`; what could be read in two ways
 // is refused, never guessed.
 //
-//   text       UTF-8, UTF-16, Latin-1, Shift-JIS; any line ends; zeros behind the end, as of a logger that lost power
+//   text       UTF-8, UTF-16 and older encodings (text_encoding.hpp); any line ends; zeros behind the end, as of a logger that lost power
 //   columns    parted by commas, semicolons, tabs, bars or blanks; "sep=;"; quotes; separators behind the last column
 //   numbers    decimal point or comma, thousands, exponents of Fortran: in `fields` as plain decimals
-//   missing    empty, nan, N/A, -, ---.--, #N/A, #####, ?, NULL, 1.#QNAN, ****
+//   missing    empty, nan, N/A and other words (is_missing of number_text.hpp)
 //   heading    behind any preamble, or in a comment; a unit in it, in a row below it, or in a line "# units: a [m]"
 //   blocks     the heading again, as where a logger appended to its file: joined, units converted to the first one's
 //   comments   lines that begin with '#', '%' or "//"

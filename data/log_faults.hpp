@@ -38,8 +38,10 @@ std::vector<std::string> plateau_faults(const TorqueLog& log, const Plateau& pla
 /// remedy names the options of `demcal observe`. None where neither is so.
 std::optional<Problem> doubted_columns(const TorqueLog& log);
 
-/// What was left out of a plateau, in words: spikes, and a start-up longer than `long_start_up` of it.
+/// The share of a plateau from which a start-up that was left out is named.
 inline constexpr double long_start_up = 0.2;
+
+/// What was left out of a plateau, in words: spikes, and a long start-up.
 std::vector<std::string> plateau_notes(const TorqueLog& log, const Plateau& plateau);
 
 }  // namespace data

@@ -23,7 +23,8 @@ struct NumberWithUnit {
 /// None where the text begins with no number that a double can hold.
 std::optional<NumberWithUnit> number_with_unit(std::string_view text);
 
-/// Whether the text says that there is no value: empty, nan, N/A, -, ---.--, #N/A, #####, ?, NULL, 1.#QNAN, ****.
+/// Whether the text says that there is no value: empty, nan, N/A, -, ---.--, #N/A, #####, ?, NULL, 1.#QNAN, ****, and
+/// what historians write in its place (Bad, No Data, I/O Timeout): docs/files.md has all.
 bool is_missing(std::string_view text);
 
 /// Whether the text says that a meter was beyond its range: OL, OVL, Over, +++++, inf.

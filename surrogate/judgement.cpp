@@ -41,7 +41,7 @@ bool too_wide(const Validation& v) {
     distance += fold.mahalanobis;
     degrees += fold.degrees;
   }
-  return v.coverage_held_out.observed[2] >= 0.95 && distance < degrees && !v.noise.understated();
+  return v.coverage_held_out.at95() >= 0.95 && distance < degrees && !v.noise.understated();
 }
 
 /// Whether no run is missed by an error, and none predicted with one, that any measurement would feel.
@@ -126,7 +126,7 @@ std::vector<std::string> fit_notes(const FitDiagnostics& d) {
 SurrogateVerdict judge(const Validation& v, int predicted, const FitDiagnostics& diagnostics,
                        const ValidationThresholds& t) {
   if (predicted < v.runs) return SurrogateVerdict::unusable;  // too few runs to hold any out
-  const double coverage95 = v.coverage_held_out.observed[2];
+  const double coverage95 = v.coverage_held_out.at95();
   if (coverage95 < t.coverage95_unusable) return SurrogateVerdict::unusable;
   if (noise_dominated(v, t)) return SurrogateVerdict::caution;
   if (v.q2_function < t.q2_unusable) return SurrogateVerdict::unusable;
@@ -158,7 +158,7 @@ struct Doubts {
 Doubts doubts_of(const Validation& v, const ValidationThresholds& t) {
   const auto levels =
       std::find_if(v.levels.begin(), v.levels.end(), [&](const LevelCheck& check) { return doubtful(check, t); });
-  return {.coverage = coverage_probability(v.coverage_held_out.observed[2] * v.runs, v.runs) < t.coverage_probability,
+  return {.coverage = coverage_probability(v.coverage_held_out.at95() * v.runs, v.runs) < t.coverage_probability,
           .distance = v.mahalanobis_probability < t.mahalanobis_probability,
           .noise = noise_doubtful(v),
           .dominated = noise_dominated(v, t),
@@ -170,7 +170,7 @@ std::string finding_of(const Validation& v, const Doubts& doubts) {
   std::string finding = fmt::format(
       "Held-out runs are predicted with Q2 {:.3f}, their own noise taken off; {:.0f} % of them lie in the 95 % "
       "interval",
-      v.q2_function, 100.0 * v.coverage_held_out.observed[2]);
+      v.q2_function, 100.0 * v.coverage_held_out.at95());
   if (doubts.dominated)
     finding += fmt::format("; {:.0f} % of the runs' variance is their own noise", (1.0 - v.q2_attainable) * 100.0);
   if (doubts.distance)
@@ -190,7 +190,7 @@ const char* consequence_of(const Validation& v, const Doubts& doubts, const Vali
     return "The surrogate's own uncertainty describes its error and enters the likelihood.";
   if (v.verdict == SurrogateVerdict::unusable)
     return "It does not stand for the model: no verdict that rests on it means anything.";
-  if (doubts.dominated && v.coverage_held_out.observed[2] >= t.coverage95_unusable)
+  if (doubts.dominated && v.coverage_held_out.at95() >= t.coverage95_unusable)
     return "The runs hardly tell the inputs apart: this output will identify little.";
   if (doubts.of_intervals())
     return too_wide(v) ? "Its intervals are wider than its errors: posteriors that rest on it are wider than need be."

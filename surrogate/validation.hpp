@@ -49,6 +49,7 @@ enum class SurrogateVerdict { good, caution, unusable };
 struct Coverage {
   static constexpr std::array<double, 3> levels{0.50, 0.90, 0.95};
   std::array<double, 3> observed{};
+  double at95() const { return observed[2]; }
 };
 
 /// One fold that was predicted by the others.

@@ -292,17 +292,20 @@ Poured pour(const Room& room, const std::vector<std::size_t>& starts, double vol
   if (pools.size() == 1) return whole;
   // Pools that run over into another one's chamber are one with it.
   std::vector<Poured> beds;
-  for (std::size_t k = 0; k < pools.size(); ++k) {
+  for (std::size_t k = 0; k < pools.size();) {
     beds.resize(k);
     beds.push_back(pour(room, pools[k].bottom, pools[k].volume));
     const auto met = std::find_if(pools.begin(), pools.end(), [&](const Pool& other) {
       return &other != &pools[k] && overlap(beds[k].wet, other.chamber);
     });
-    if (met == pools.end()) continue;
+    if (met == pools.end()) {
+      ++k;
+      continue;
+    }
     const std::size_t other = static_cast<std::size_t>(met - pools.begin()), kept = std::min(k, other);
     pools[kept].volume += pools[std::max(k, other)].volume;
     pools.erase(pools.begin() + static_cast<std::ptrdiff_t>(std::max(k, other)));
-    k = kept - 1;  // and from there on again
+    k = kept;  // and from there on again
   }
   whole.wet.assign(room.total(), 0);
   whole.surface = 0.0;

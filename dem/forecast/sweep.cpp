@@ -37,13 +37,15 @@ std::vector<Mark> marks_of(const TriangleMesh& mesh, std::size_t count) {
     for (std::size_t k = 0; k < 3 && mesh.triangles.size() <= 20000; ++k)
       normals[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back(unit(across));
   }
-  // Points inside a triangle follow the golden ratio's sequence, which has a low discrepancy.
+  // Points inside a triangle follow the additive recurrence of the plastic number rho, (1 / rho, 1 / rho^2), which has a
+  // low discrepancy: M. Roberts, "The unreasonable effectiveness of quasirandom sequences" (2018).
+  constexpr double step_u = 0.7548776662466927, step_v = 0.5698402909980532;
   const std::size_t on_faces = count / 2;
   for (std::size_t k = 0, t = 0; k < on_faces; ++k) {
     const double wanted = all * (static_cast<double>(k) + 0.5) / static_cast<double>(on_faces);
     while (t + 1 < area.size() && area[t] < wanted) ++t;
-    double u = std::fmod(0.7548776662466927 * static_cast<double>(k + 1), 1.0);
-    double v = std::fmod(0.5698402909980532 * static_cast<double>(k + 1), 1.0);
+    double u = std::fmod(step_u * static_cast<double>(k + 1), 1.0);
+    double v = std::fmod(step_v * static_cast<double>(k + 1), 1.0);
     if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
     const Vec3 one = corner(t, 1) - corner(t, 0), other = corner(t, 2) - corner(t, 0);
     marks.push_back({corner(t, 0) + u * one + v * other, unit(cross(one, other)), Mark::On::face});

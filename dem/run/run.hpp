@@ -110,7 +110,7 @@ struct Summary {
   double cpu_seconds = 0.0;
   bool reached_target = false;                         ///< the standard error of torque is the wanted one or smaller
   data::FlowState state = data::FlowState::too_short;  ///< whether the means are those of the steady flow
-  std::string why;                                     ///< why it is not steady: what drifts or lacks, and the remedy
+  std::string why;                                     ///< why it is not steady: what drifts or lacks
   double measured_from = 0.0;                          ///< s of turning, the start of what is measured
   double turns = 0.0;                                  ///< turns that were measured
   std::vector<double> drift_p;                         ///< of torque, coordination, kinetic energy (dem/run/looks.hpp)

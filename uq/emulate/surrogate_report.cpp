@@ -196,7 +196,7 @@ void add_validation(SurrogateReport& report, const surrogate::Validation& found,
   report.runs = found.runs;
   report.q2 = found.q2_leave_one_out;
   report.q2_held_out = found.q2_held_out;
-  report.coverage95 = found.coverage_leave_one_out.observed[2];
+  report.coverage95 = found.coverage_leave_one_out.at95();
   report.coverage_left_out.assign(found.coverage_leave_one_out.observed.begin(),
                                   found.coverage_leave_one_out.observed.end());
   report.coverage_held_out.assign(found.coverage_held_out.observed.begin(), found.coverage_held_out.observed.end());

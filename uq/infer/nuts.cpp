@@ -35,6 +35,8 @@ struct Phase {
 struct Metric {
   MatrixXd covariance, factor;
   explicit Metric(Eigen::Index d) : covariance(MatrixXd::Identity(d, d)), factor(MatrixXd::Identity(d, d)) {}
+  /// Keeps what there is where `wanted` has no factor, as the covariance of draws that hardly move: any metric is
+  /// valid, and a worse one only costs steps.
   void set(const MatrixXd& wanted) {
     const Eigen::LLT<MatrixXd> llt(wanted);
     if (llt.info() != Eigen::Success) return;
