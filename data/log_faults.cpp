@@ -91,14 +91,6 @@ std::pair<std::size_t, std::size_t> idle_part(const std::vector<double>& values)
 
 }  // namespace
 
-MedianSpread spread_of(const std::vector<double>& values) {
-  MedianSpread spread{median_of(values), 0.0};
-  std::vector<double> away;
-  for (const double value : values) away.push_back(std::abs(value - spread.median));
-  spread.sd = 1.4826 * median_of(std::move(away));
-  return spread;
-}
-
 std::optional<double> saturated_at(const TorqueLog& log, const Plateau& plateau, double most) {
   const std::vector<double> values = used_torques(log, plateau);
   if (values.size() < 10) return {};

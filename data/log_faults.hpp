@@ -5,15 +5,10 @@
 #include <vector>
 
 #include "data/error.hpp"
+#include "data/time_series.hpp"
 #include "data/torque_log.hpp"
 
 namespace data {
-
-struct MedianSpread {
-  double median = 0.0, sd = 0.0;
-};
-/// Median, and the median absolute deviation times 1.4826, which is a normal distribution's sd.
-MedianSpread spread_of(const std::vector<double>& values);
 
 /// Takes out samples that are no measurement: codes for "no value" (9999, -999, 32767 and their like) far from all
 /// others, in torque or speed, and single torques of exactly zero amid others of a turning machine. Returns what it

@@ -45,7 +45,6 @@ constexpr double outside_fluctuations = 3.0;  // standard deviations of a sample
 constexpr double dying_away = 2.0;            // the deviation of the first third over that of the last one
 constexpr double no_bursts = 0.2;             // of the head's deviation, that of its median; less is a few bursts'
 constexpr double spike_distance = 8.0;        // robust standard deviations
-constexpr double to_sd = 1.4826;              // of a median absolute deviation, of a normal distribution
 
 double mean_of(std::span<const double> x) {
   double sum = 0.0;
@@ -191,7 +190,7 @@ bool is_start_up(std::span<const double> series, std::size_t d, const SeriesMean
   const double away = std::abs(mean_of(head) - rest.mean);
   const double typical = std::abs(median_of({head.begin(), head.end()}) - middle);
   const double of_median =
-      1.2533 * to_sd * median_distance(tail, middle) / std::sqrt(independent);  // of a normal one's
+      1.2533 * sd_of_median_deviation * median_distance(tail, middle) / std::sqrt(independent);  // of a normal one's
   if (away > start_up_significance * error && typical > std::max(no_bursts * away, 2.0 * of_median) &&
       (away > outside_fluctuations * rest.sd || dies_away(head, rest.mean)))
     return true;
@@ -203,7 +202,7 @@ bool is_start_up(std::span<const double> series, std::size_t d, const SeriesMean
 
 /// The least scale of a spike's neighbourhood, from the distances of all samples from their medians.
 double least_scale(const std::vector<double>& away) {
-  if (const double usual = median_of(away); usual > 0.0) return to_sd * usual;
+  if (const double usual = median_of(away); usual > 0.0) return sd_of_median_deviation * usual;
   std::vector<double> steps;
   std::copy_if(away.begin(), away.end(), std::back_inserter(steps), [](double one) { return one > 0.0; });
   return 100 * steps.size() < away.size() ? 0.0 : median_of(steps);  // a constant but for single samples, or coarse
@@ -218,7 +217,7 @@ Despiked without_spikes(std::span<const double> series) {
   std::vector<double> median(series.size()), scale(series.size()), away(series.size());
   sorted_windows(series, half, [&](std::size_t i, const std::vector<double>& window) {
     median[i] = window[window.size() / 2];
-    scale[i] = to_sd * median_deviation(window);
+    scale[i] = sd_of_median_deviation * median_deviation(window);
     away[i] = std::abs(series[i] - median[i]);
   });
   const double least = least_scale(away);
@@ -235,6 +234,16 @@ double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+double spread_about(std::vector<double> values, double centre) {
+  for (double& value : values) value = std::abs(value - centre);
+  return sd_of_median_deviation * median_of(std::move(values));
+}
+
+MedianSpread spread_of(const std::vector<double>& values) {
+  const double median = median_of(values);
+  return {median, spread_about(values, median)};
 }
 
 SeriesMean mean_with_error(std::span<const double> series, const SeriesOptions& options) {

@@ -28,6 +28,17 @@ struct SeriesMean {
 /// The median (of an even number of values the upper one of the middle two); NaN where there is no value.
 double median_of(std::vector<double> values);
 
+/// The standard deviation of a normal distribution over its median absolute deviation.
+inline constexpr double sd_of_median_deviation = 1.4826;
+
+/// What an outlier does not move: the median, and the median absolute deviation as a normal distribution's sd.
+struct MedianSpread {
+  double median = 0.0, sd = 0.0;
+};
+MedianSpread spread_of(const std::vector<double>& values);
+/// The same sd about a centre that is known.
+double spread_about(std::vector<double> values, double centre);
+
 /// A series in which each spike is replaced by the median of its neighbours.
 struct Despiked {
   std::vector<double> series;

@@ -12,6 +12,7 @@
 
 #include "data/cosine_modes.hpp"
 #include "data/steadiness.hpp"
+#include "data/time_series.hpp"
 
 namespace data {
 namespace {
@@ -285,7 +286,7 @@ double standstill_speed(const TorqueLog& log) {
   for (std::size_t i = 1; i < log.speed.size(); ++i)
     if (std::max(std::abs(log.speed[i]), std::abs(log.speed[i - 1])) <= 0.01 * fastest)
       steps.push_back(std::abs(log.speed[i] - log.speed[i - 1]));
-  const double scatter = steps.empty() ? 0.0 : 1.4826 / std::sqrt(2.0) * median_of(std::move(steps));
+  const double scatter = steps.empty() ? 0.0 : sd_of_median_deviation / std::sqrt(2.0) * median_of(std::move(steps));
   return std::clamp(5.0 * scatter, 0.002 * fastest, 0.01 * fastest);
 }
 

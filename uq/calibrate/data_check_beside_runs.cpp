@@ -166,11 +166,10 @@ void check_sign(const data::Study& study, const data::RunTable& table, const dat
   }
 }
 
-/// Whether readings times a factor lie where the runs do, or a fifth of their reach beyond.
+/// Whether readings times a factor lie where the runs do, or a fifth of their reach beyond. The factor is above 0.
 bool meets(const Extent& seen, const Extent& runs, double factor) {
   const double beyond = 0.2 * (runs.high - runs.low);
-  const auto [low, high] = std::minmax(factor * seen.low, factor * seen.high);
-  return low >= runs.low - beyond && high <= runs.high + beyond;
+  return factor * seen.low >= runs.low - beyond && factor * seen.high <= runs.high + beyond;
 }
 
 /// Observed outputs beside those of all runs of the material.

@@ -55,17 +55,10 @@ Errors errors_of(const surrogate::TrainingSet& training, const std::vector<int>&
   return found;
 }
 
-struct RobustScale {
-  double centre = 0.0, spread = 1.0;
-};
-
-RobustScale robust_scale(const VectorXd& standardised, const std::vector<int>& kept) {
+data::MedianSpread spread_of_kept(const VectorXd& standardised, const std::vector<int>& kept) {
   std::vector<double> values;
   for (const int i : kept) values.push_back(standardised[i]);
-  if (values.empty()) return {0.0, 0.0};
-  const double centre = data::median_of(values);
-  for (double& value : values) value = std::abs(value - centre);
-  return {centre, 1.4826 * data::median_of(values)};
+  return values.empty() ? data::MedianSpread{} : data::spread_of(values);
 }
 
 /// Runs at different points whose output is one and the same number, three or more of them: what a program writes that
@@ -96,15 +89,15 @@ std::optional<surrogate::GaussianProcess> fitted_to(const surrogate::TrainingSet
 }
 
 /// How suspicious the error of a run is, in robust standard deviations. `floor`: least spread that counts.
-double standing_out(const Errors& errors, const RobustScale& scale, int run, double floor) {
-  return std::abs(errors.standardised[run] - scale.centre) / std::max(scale.spread, floor);
+double standing_out(const Errors& errors, const data::MedianSpread& scale, int run, double floor) {
+  return std::abs(errors.standardised[run] - scale.median) / std::max(scale.sd, floor);
 }
 
 /// A state of the search: what is kept and what is put aside, with the errors of all against the process of those kept.
 struct Sorted {
   std::vector<int> kept, aside;
   Errors errors;
-  RobustScale scale;
+  data::MedianSpread scale;
   std::vector<bool> came_back;  ///< runs that were put aside and did not stand out then: they stay
 };
 
@@ -135,7 +128,7 @@ OutlyingRuns far_off(const surrogate::TrainingSet& training, const Sorted& last,
   const VectorXd y = training.y(last.kept);
   const double spread = std::sqrt((y.array() - y.mean()).square().mean());
   const auto z = [&](int i) {
-    return (last.errors.standardised[i] - last.scale.centre) / std::max(last.scale.spread, 1.0);
+    return (last.errors.standardised[i] - last.scale.median) / std::max(last.scale.sd, 1.0);
   };
   std::vector<int> outlying;
   for (const int i : last.aside)
@@ -170,7 +163,7 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
              .came_back = std::vector<bool>(static_cast<std::size_t>(n), false)};
   std::iota(now.kept.begin(), now.kept.end(), 0);
   now.errors = errors_of(training, now.kept, now.aside, process);
-  now.scale = robust_scale(now.errors.standardised, now.kept);
+  now.scale = spread_of_kept(now.errors.standardised, now.kept);
   const VectorXd with_all = now.errors.expected;
 
   // Round by round the suspects are put aside, and those that the others then expect come back.
@@ -198,7 +191,7 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
     const std::optional<surrogate::GaussianProcess> others = fitted_to(training, now.kept, fit);
     if (!others) return {};
     now.errors = errors_of(training, now.kept, now.aside, *others);
-    now.scale = robust_scale(now.errors.standardised, now.kept);
+    now.scale = spread_of_kept(now.errors.standardised, now.kept);
   }
 
   // Runs that harm what is expected of the others, and are far off.
@@ -206,7 +199,7 @@ OutlyingRuns find_outlying(const surrogate::TrainingSet& training, const surroga
       rms_error(training, now.kept, with_all) / std::max(rms_error(training, now.kept, now.errors.expected), 1e-300);
   OutlyingRuns found;
   if (!(harm < options.harm)) found = far_off(training, now, options);
-  found.scatter = now.scale.spread;
+  found.scatter = now.scale.sd;
   found.harm = harm;
   return found;
 }

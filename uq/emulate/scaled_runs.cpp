@@ -39,13 +39,7 @@ VectorXd least_absolute_residuals(const MatrixXd& basis, const VectorXd& z) {
   return residual;
 }
 
-/// Half-width of the middle of these values, as a normal law's standard deviation.
-double spread_about(std::vector<double> values, double centre) {
-  for (double& value : values) value = std::abs(value - centre);
-  return 1.4826 * data::median_of(std::move(values));
-}
-
-double spread_of(const VectorXd& residual) { return spread_about({residual.begin(), residual.end()}, 0.0); }
+double spread_of(const VectorXd& residual) { return data::spread_about({residual.begin(), residual.end()}, 0.0); }
 
 /// The residuals' second heap, above 0: fewer than half of them, farther off than the others scatter and close
 /// together.
@@ -62,7 +56,7 @@ std::vector<int> second_heap(const VectorXd& residual) {
   const int size = static_cast<int>(heap.size());
   if (size < scaled_least || 2 * size >= residual.size()) return {};
   const double middle = data::median_of(distance);
-  return spread_about(std::move(distance), middle) < tight * middle ? heap : std::vector<int>{};
+  return data::spread_about(std::move(distance), middle) < tight * middle ? heap : std::vector<int>{};
 }
 
 }  // namespace
