@@ -34,9 +34,8 @@ std::string before_remedy(const std::string& first, const std::string& remedy) {
 void put_suspicions_first(CaseReport& report, const std::vector<data::Finding>& findings) {
   using enum data::FindingKind;
   for (const data::Finding& finding : findings)
-    if (finding.severity == data::Severity::warning &&
-        (finding.kind == unit || (finding.kind == standard_errors && report.lone_reading.empty()) ||
-         finding.kind == no_response || finding.kind == counted_twice)) {
+    if (finding.severity == data::Severity::warning && (finding.kind == unit || finding.kind == standard_errors ||
+                                                        finding.kind == no_response || finding.kind == counted_twice)) {
       report.consequence = "That holds only if the data are right as they stand. " + report.consequence;
       report.remedy = before_remedy(
           fmt::format("First settle what is said of the data ({}: {}).", to_text(finding.kind), finding.place),

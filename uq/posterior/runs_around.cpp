@@ -19,12 +19,10 @@ bool in_gap(const std::pair<double, double>& gap, double value, double slack) {
   return value > gap.first + margin && value < gap.second - margin;
 }
 
-std::vector<Plane> planes_of(const RunCloud& runs, const std::vector<EmulatorInput>& inputs,
-                             const std::vector<InputLine>& lines) {
+std::vector<Plane> planes_of(const RunCloud& runs, const std::vector<InputLine>& lines) {
   std::vector<Plane> planes;
   for (Index a = 0; a < runs.points.cols(); ++a)
     for (Index b = a + 1; b < runs.points.cols(); ++b) {
-      if (inputs[a].kind == InputKind::control && inputs[b].kind == InputKind::control) continue;
       std::set<std::pair<double, double>> distinct;
       for (Index i = 0; i < runs.points.rows(); ++i) distinct.emplace(runs.points(i, a), runs.points(i, b));
       Plane plane{.first = a,
@@ -116,7 +114,7 @@ Ground ground_of(const RowGroup& group, const SupportThresholds& t) {
                 .scaled = scaled(group.emulator, group.emulator.runs->points)};
   for (Index k = 0; k < group.emulator.runs->points.cols(); ++k)
     ground.lines.push_back(line_of(group.emulator.runs->points.col(k), t));
-  ground.planes = planes_of(*group.emulator.runs, group.emulator.inputs, ground.lines);
+  ground.planes = planes_of(*group.emulator.runs, ground.lines);
   constexpr Index most = 8;
   const Index rows = group.base.rows();
   for (Index i = 0; i < std::min(rows, most); ++i)

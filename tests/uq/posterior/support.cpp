@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -183,6 +184,32 @@ TEST_CASE("a posterior in a corner that the runs leave empty is not supported", 
   line.col(1) = line.col(0);
   CHECK(support_of(scene_of(line), 0.5, 0.5).supported);
   CHECK_FALSE(support_of(scene_of(line), 0.3, 0.7).supported);
+}
+
+TEST_CASE("readings at pairs of controls that no run has are not supported, amid those of the runs they are", "[uq]") {
+  // The second parameter becomes a control, the fill, which every run raises with its speed.
+  Eigen::MatrixXd linked = surrogate::scrambled_sobol(80, 3, 5, 0);
+  linked.col(1) = linked.col(2);
+  const auto measured_at = [](const Eigen::MatrixXd& runs, const std::function<double(double)>& fill_at) {
+    Scene scene = scene_of(runs);
+    scene.study.controls.push_back({.name = "fill", .target = "fill", .low = 0.0, .high = 1.0});
+    RowGroup& group = scene.model.groups[0];
+    group.emulator.inputs[1] = {InputKind::control, 1};
+    for (Eigen::Index row = 0; row < group.base.rows(); ++row) {
+      group.unknown(row, 1) = -1;
+      group.base(row, 1) = fill_at(group.base(row, 2));
+    }
+    return support_of(scene, 0.5, 0.5);
+  };
+  CHECK(measured_at(linked, [](double speed) { return speed; }).supported);
+  const SupportReport beside = measured_at(linked, [](double speed) { return speed < 0.5 ? 0.9 : 0.1; });
+  CHECK_FALSE(beside.supported);
+  CHECK_THAT(beside.sentence, Contains("fill and speed"));
+  // Three speeds at three fills, measured between them.
+  Eigen::MatrixXd grid = surrogate::scrambled_sobol(90, 3, 5, 0);
+  for (Eigen::Index i = 0; i < grid.rows(); ++i)
+    grid.row(i).tail(2) << 0.1 + 0.4 * static_cast<double>(i % 3), 0.1 + 0.4 * static_cast<double>(i / 3 % 3);
+  CHECK(measured_at(grid, [](double) { return 0.3; }).supported);
 }
 
 TEST_CASE("a surrogate that knows no more than without runs supports nothing", "[uq]") {
