@@ -106,7 +106,8 @@ const std::vector<StudyKey>& study_keys() {
        "or rig.fill_mass",
        "\"4 g\""},
       {"rig.scale", "number or table", "", "above 0", "",
-       "what the machine's torque is to the slice's: a number, or a prior with the keys of parameters.NAME.prior",
+       "what the machine's torque is to the slice's, the same at every setting: a number, or a prior with the keys of "
+       "parameters.NAME.prior",
        "{ mean = 12, sd = 0.5 }"},
       {"rig.down", "list of quantities", "", "", "", "direction of gravity", "[0, 0, -1]"},
       {"rig.packing", "text", "", "", "none",

@@ -62,13 +62,16 @@ void put_doubted_surrogate_first(CaseReport& report, const CaseModel& model,
 }
 
 /// Values that fail a prediction are no values to be used there, however well they are known.
-void put_failed_prediction_first(CaseReport& report, const std::string& name) {
+void put_failed_prediction_first(CaseReport& report, const PredictionReport& prediction) {
+  const std::string& name = prediction.name;
   report.consequence =
       fmt::format("The values describe the data that they come from, and not {}. {}", name, report.consequence);
   report.remedy = before_remedy(
-      fmt::format("First find out what differs at {}: calibrate with it, too; where nothing fits both, the "
-                  "model lacks what acts there.",
-                  name),
+      prediction.unsupported > 0
+          ? fmt::format("First make training runs at the settings of {}, where none speaks.", name)
+          : fmt::format("First find out what differs at {}: calibrate with it, too; where nothing fits both, the "
+                        "model lacks what acts there.",
+                        name),
       report.remedy);
 }
 
@@ -99,9 +102,9 @@ void add_predictions(CaseReport& made, const Basis& basis, const SampledCase& sa
     made.predictions.push_back(
         predict_unused(basis.study, basis.emulators, wanted, *sampled.model, sampled.draws.pooled()));
     const PredictionReport& prediction = made.predictions.back();
-    if (prediction.predicts) continue;
-    made.warnings.push_back(fmt::format("case {}: {}", made.name, prediction.sentence));
-    put_failed_prediction_first(made, prediction.name);
+    if (!prediction.predicts || prediction.unsupported > 0)
+      made.warnings.push_back(fmt::format("case {}: {}", made.name, prediction.sentence));
+    if (!prediction.predicts) put_failed_prediction_first(made, prediction);
   }
 }
 

@@ -72,8 +72,10 @@ std::string next_step(const CaseReport& result, const Standing& found) {
   if (!result.plan || result.plan->candidates.empty()) return " Next: demcal plan says what to measure.";
   const PlanCandidate& first = result.plan->candidates.front();
   if (!first.teaches) return " No candidate of the plan would teach more of " + result.plan->about + ".";
-  const std::string next =
-      " Next: measure " + first.name + (first.model_only ? ", if it means the same in the real powder" : "");
+  const std::string next = " Next: measure " + first.name +
+                           (first.no_runs      ? ", once training runs are made there"
+                            : first.model_only ? ", if it means the same in the real powder"
+                                               : "");
   const auto asked = std::find_if(first.parameters.begin(), first.parameters.end(),
                                   [&](const PlannedParameter& one) { return one.name == result.plan->about; });
   const bool floored = asked != first.parameters.end() && !asked->repeats_needed && !asked->floor.empty();

@@ -36,6 +36,7 @@ void visit_fields(Visit&& visit, T& c) {
   visit("settings", c.settings);
   visit("cost", c.cost);
   visit("model_only", c.model_only);
+  visit("no_runs", c.no_runs);
   visit("levels", c.levels);
   visit("assumed_error", c.assumed_error);
   visit("error", c.error);

@@ -39,12 +39,16 @@ struct PlanCandidate {
   std::vector<std::map<std::string, double>> settings;  ///< controls of each of its points, in their units
   double cost = 1.0;
   bool model_only = false;                            ///< the output need not mean the same in the real powder
+  bool no_runs = false;                               ///< no run speaks there
   std::vector<PlanLevel> levels;                      ///< the powder's other levels of coarse graining
   bool assumed_error = false;                         ///< nobody stated an error of this output
   std::string error;                                  ///< "2 %"
   double information = 0.0, information_error = 0.0;  ///< about all parameters together, nats
   std::vector<PlannedParameter> parameters;
   bool teaches = true;  ///< whether it teaches about the parameter asked for
+
+  /// Whether what is forecast of it need not hold, so that others come first.
+  bool doubtful() const { return model_only || no_runs; }
 };
 
 /// Several candidates together.

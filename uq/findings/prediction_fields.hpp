@@ -56,6 +56,7 @@ void visit_fields(Visit&& visit, T& p) {
   visit("name", p.name);
   visit("observe", p.observed_sets);
   visit("inside90", p.inside);
+  visit("unsupported", p.unsupported);
   visit("chi2", p.chi2);
   visit("p", p.p);
   visit("predicts", p.predicts);

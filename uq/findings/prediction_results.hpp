@@ -38,6 +38,7 @@ struct PredictionReport {
   std::vector<std::string> observed_sets;
   std::vector<PredictedPoint> points;
   int inside = 0;        ///< points inside their 90 % intervals
+  int unsupported = 0;   ///< points where no run speaks
   double chi2 = 0.0;     ///< chi-squared of all points together
   double p = 1.0;        ///< probability that a prediction is as far off
   bool predicts = true;  ///< p is above its threshold

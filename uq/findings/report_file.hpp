@@ -17,7 +17,7 @@ namespace uq {
 constexpr int report_format = 1;
 /// The edition of the list of fields. A page is made again only from a report of this edition: another one lacks part
 /// of it.
-constexpr int report_edition = 6;
+constexpr int report_edition = 7;
 
 /// "format", "edition" and the fields of a report.
 nlohmann::ordered_json report_json(const CalibrationReport& report);

@@ -27,9 +27,12 @@ struct Candidate {
   bool stated_error = false;                  ///< the plan states its error
   bool assumed_error = false;                 ///< nobody stated one
   bool model_only = false;                    ///< the output need not mean the same in the real powder
+  bool no_runs = false;                       ///< no run speaks there (plan_basis.cpp)
   std::vector<PlanLevel> levels = {};         ///< other levels of the powder's coarse graining (levels.hpp)
   int readings = 1;
   double cost = 1.0;
+
+  bool doubtful() const { return model_only || no_runs; }
 };
 
 struct CandidateOptions {

@@ -36,6 +36,7 @@ PlanCandidate describe(const PlanBasis& basis, std::size_t i) {
                     .settings = {},
                     .cost = candidate.cost,
                     .model_only = candidate.model_only,
+                    .no_runs = candidate.no_runs,
                     .levels = candidate.levels,
                     .assumed_error = candidate.assumed_error,
                     .error = error_text(basis.study, candidate),
@@ -74,7 +75,7 @@ PlanCandidate describe(const PlanBasis& basis, std::size_t i) {
 std::string choose_question(PlanBasis& basis, const std::vector<PlanCandidate>& all) {
   const auto taught = [&](int k) {
     return std::any_of(all.begin(), all.end(), [k](const PlanCandidate& one) {
-      return !one.model_only && teaches(one, static_cast<std::size_t>(k));
+      return !one.doubtful() && teaches(one, static_cast<std::size_t>(k));
     });
   };
   if (basis.stated || taught(basis.about)) return {};
@@ -102,8 +103,7 @@ bool is_parted(const PlanBasis& basis, const std::vector<PlanCandidate>& all) {
          });
 }
 
-/// The candidates ranked by what they are worth to the question, per cost. Candidates whose output need not mean
-/// the same in the powder come last.
+/// The candidates ranked by what they are worth to the question, per cost. Those whose forecast need not hold come last.
 std::vector<std::size_t> ranked(const PlanBasis& basis, const std::vector<PlanCandidate>& all) {
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -112,7 +112,7 @@ std::vector<std::size_t> ranked(const PlanBasis& basis, const std::vector<PlanCa
     return basis.worth(gain.information, gain.sd_now, gain.sd_after) / all[i].cost;
   };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (all[a].model_only != all[b].model_only) return all[b].model_only;
+    if (all[a].doubtful() != all[b].doubtful()) return all[b].doubtful();
     return worth(a) > worth(b);
   });
   return order;

@@ -9,6 +9,7 @@
 #include "data/error.hpp"
 #include "data/random.hpp"
 #include "uq/plan/levels.hpp"
+#include "uq/posterior/support.hpp"
 
 namespace uq::plan {
 namespace {
@@ -75,6 +76,15 @@ void refuse_cut(const Study& study, std::size_t case_index, const CaseModel& mod
                        unknown.label)});
 }
 
+/// Marks the candidates with a reading where no run speaks. The prior reaches into corners that no run has, whatever is
+/// measured: there it has to be so at half of the draws.
+void mark_unsupported(const ExtendedCase& extended, const MatrixXd& draws, bool of_prior,
+                      std::vector<Candidate>& candidates) {
+  const double most = of_prior ? 0.5 : SupportThresholds{}.share;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    candidates[i].no_runs = (unsupported_at(extended.model, extended.planned[i], draws).array() > most).any();
+}
+
 VectorXd prior_means(const CaseModel& model) {
   VectorXd means(model.dimension());
   for (Index s = 0; s < means.size(); ++s) means[s] = model.unknowns[s].prior.mean();
@@ -115,6 +125,7 @@ PlanBasis::PlanBasis(const Study& of_study, const std::vector<Emulator>& emulato
   const MatrixXd likely = options.prior ? prior_draws(model, 400, 1, options.seed).u : draws;
   compare_levels(study, emulators, case_index, model, options.candidates, likely, centre, candidates);
   extended = extend(study, emulators, case_index, model, candidates, centre);
+  mark_unsupported(extended, likely, options.prior, candidates);
   look_out();
 }
 

@@ -57,7 +57,7 @@ std::optional<std::size_t> best_at(const PlanBasis& basis, std::vector<std::size
   for_each_index(static_cast<int>(basis.candidates.size()), basis.options.threads, [&](int i) {
     std::vector<std::size_t> tried = members;
     tried[position] = static_cast<std::size_t>(i);
-    if (!basis.candidates[tried[position]].model_only && affordable(basis, tried, left))
+    if (!basis.candidates[tried[position]].doubtful() && affordable(basis, tried, left))
       value[i] = merit(basis, tried, quick_worth(basis, tried));
   });
   const auto best = std::max_element(value.begin(), value.end());
@@ -70,7 +70,7 @@ std::optional<std::size_t> best_at(const PlanBasis& basis, std::vector<std::size
 std::optional<std::vector<std::size_t>> greedily(const PlanBasis& basis, std::vector<std::size_t> members, int size) {
   double cheapest = HUGE_VAL;
   for (const Candidate& one : basis.candidates)
-    if (!one.model_only) cheapest = std::min(cheapest, one.cost);
+    if (!one.doubtful()) cheapest = std::min(cheapest, one.cost);
   while (std::ssize(members) < size) {
     const auto more = static_cast<double>(size - 1 - std::ssize(members));
     members.push_back(0);

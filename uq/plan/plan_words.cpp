@@ -34,7 +34,7 @@ std::string what_else(const PlanReport& report, std::size_t asked) {
   std::size_t most = asked;
   for (const PlanCandidate& one : report.candidates)
     for (std::size_t k = 0; k < one.parameters.size(); ++k) {
-      if (k == asked || one.model_only || !teaches(one, k)) continue;
+      if (k == asked || one.doubtful() || !teaches(one, k)) continue;
       if (best && one.parameters[k].information <= best->parameters[most].information) continue;
       best = &one;
       most = k;
@@ -71,6 +71,7 @@ std::string sentence_of(const PlanBasis& basis, const PlanReport& report) {
     text += fmt::format("No candidate teaches anything of {}: the best, {}, gives {:.2f} nats.{}", report.about,
                         best.name, gain.information, what_else(report, k));
   if (best.teaches && !identified) text += chance_of_identified(report.about, gain);
+  if (best.no_runs) text += " Make training runs there first: none speaks there, nor at any other candidate.";
   const auto set = std::find_if(report.candidates.begin(), report.candidates.end(), [&](const PlanCandidate& one) {
     return one.settings.size() > 1 && one.parameters[k].repeats_needed;
   });
@@ -186,6 +187,10 @@ std::vector<std::string> notes_of(const PlanBasis& basis, const PlanReport& repo
     notes.push_back(
         "Outputs marked 'model only' come from enlarged grains: they need not mean the same in the real powder, "
         "and are ranked last.");
+  if (some(&PlanCandidate::no_runs))
+    notes.push_back(
+        "No run speaks where candidates are marked 'no runs there': what is forecast of them is the surrogate's "
+        "extrapolation, and they are ranked last. Make training runs at those settings first.");
   for (std::string& note : level_notes(report)) notes.push_back(std::move(note));
   for (const RowGroup& group : basis.sampled.model->groups)
     if (!group.emulator.doubt.empty())

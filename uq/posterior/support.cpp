@@ -152,6 +152,29 @@ SupportReport find_support(const data::Study& study, const CaseModel& model, con
   return report;
 }
 
+VectorXd unsupported_at(const CaseModel& model, const std::vector<Index>& rows, const MatrixXd& draws,
+                        const SupportThresholds& t) {
+  constexpr int asked = 100;
+  const MatrixXd some = thinned(draws, std::min(asked, t.draws));
+  const double each = 1.0 / static_cast<double>(std::max<Index>(some.rows(), 1));
+  VectorXd shares = VectorXd::Zero(static_cast<Index>(rows.size()));
+  Index first = 0;
+  for (const RowGroup& group : model.groups) {
+    const Index count = group.base.rows();
+    if (group.emulator.runs && group.emulator.runs->points.rows() > 0 && count > 0) {
+      Ground ground = ground_of(group, t);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (rows[i] < first || rows[i] >= first + count) continue;
+        ground.rows = {rows[i] - first};
+        for (Index d = 0; d < some.rows(); ++d)
+          if (runs_around(ground, some.row(d).transpose(), t).unsupported) shares[static_cast<Index>(i)] += each;
+      }
+    }
+    first += count;
+  }
+  return shares;
+}
+
 std::string doubt_of(const CaseModel& model) {
   for (const RowGroup& group : model.groups)
     if (!group.emulator.doubt.empty()) return group.emulator.doubt;

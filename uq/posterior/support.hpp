@@ -17,6 +17,9 @@
 //
 // Runs to make next are chosen by farthest_runs.hpp; runs_around.hpp has the tests, support_words.hpp the sentence.
 #include <Eigen/Dense>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "uq/findings/support_results.hpp"
 #include "uq/posterior/case_model.hpp"
@@ -36,6 +39,11 @@ struct SupportThresholds {
 /// `draws`: rows in u, of all unknowns.
 SupportReport find_support(const data::Study& study, const CaseModel& model, const Eigen::MatrixXd& draws,
                            const SupportThresholds& thresholds = {});
+
+/// Share of the draws, for each of these rows of the stacked model, at which the runs of its emulator do not support it;
+/// 0 where an emulator is learnt from no runs. For readings beside those that a case was sampled with.
+Eigen::VectorXd unsupported_at(const CaseModel& model, const std::vector<Eigen::Index>& rows,
+                               const Eigen::MatrixXd& draws, const SupportThresholds& thresholds = {});
 
 /// The part of an unknown's support that runs cover, in u. Within a slack of an end of the support they reach it.
 struct RunsReach {

@@ -13,6 +13,7 @@
 #include "uq/posterior/more_data.hpp"
 #include "uq/posterior/posterior.hpp"
 #include "uq/posterior/predictive.hpp"
+#include "uq/posterior/support.hpp"
 
 namespace uq {
 namespace {
@@ -90,6 +91,9 @@ std::string sentence_of(const PredictionReport& report) {
       "{}: {} of {} measured values that the case has not used lie inside their 90 % intervals; chi-squared {:.3g} of "
       "{} (p {:.2g}). The calibration {} them.",
       report.name, report.inside, n, report.chi2, n, report.p, report.predicts ? "predicts" : "does not predict");
+  if (report.unsupported > 0)
+    text +=
+        fmt::format(" No run speaks at {} of them, where this is the surrogate's extrapolation.", report.unsupported);
   if (report.predicts || n == 0) return text;
   const auto farthest =
       std::max_element(report.points.begin(), report.points.end(),
@@ -136,6 +140,8 @@ PredictionReport predict_unused(const data::Study& study, const std::vector<Emul
   report.chi2 = away.dot(all.covariance.ldlt().solve(away));
   report.p = away.size() > 0 ? tail_of(all, report.chi2) : 1.0;
   report.predicts = report.p >= VerdictThresholds{}.predictive_p;
+  report.unsupported =
+      static_cast<int>((unsupported_at(model, rows, draws).array() > SupportThresholds{}.share).count());
   report.sentence = sentence_of(report);
   return report;
 }

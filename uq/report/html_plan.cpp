@@ -24,7 +24,8 @@ Table candidate_table(const PlanReport& plan) {
       return holds ? " " + tag::span.is("soft")(words) : Markup();
     };
     table.rows.push_back({one.name + mark(one.kind == CandidateKind::repeat, "(measured already)") +
-                              mark(one.model_only, "(model only)") + mark(!one.teaches, "(teaches nothing)"),
+                              mark(one.model_only, "(model only)") + mark(one.no_runs, "(no runs there)") +
+                              mark(!one.teaches, "(teaches nothing)"),
                           one.error + (one.assumed_error ? " assumed" : ""),
                           nats(about.information, about.information_error), digits(about.sd_after, 2),
                           words_text(about), readings_text(about), fmt::format("{:g}", one.cost)});

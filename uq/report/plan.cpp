@@ -51,6 +51,7 @@ std::string marks(const PlanCandidate& one) {
   if (!one.teaches) found.emplace_back("teaches nothing");
   if (one.kind == CandidateKind::repeat) found.emplace_back("measured already");
   if (one.model_only) found.emplace_back("model only");
+  if (one.no_runs) found.emplace_back("no runs there");
   if (one.assumed_error) found.push_back("error of " + one.error + " assumed");
   return fmt::format("{}", fmt::join(found, ", "));
 }

@@ -190,7 +190,7 @@ TEST_CASE("any number comes back to the last bit, an infinity with its sign") {
 TEST_CASE("a field that an older file lacks keeps its default") {
   const TemporaryFolder folder;
   std::ofstream(folder.path("report.json"))
-      << R"({"format": 1, "edition": 6, "study": "old", "cases": [{"name": "c"}]})";
+      << R"({"format": 1, "edition": 7, "study": "old", "cases": [{"name": "c"}]})";
   const CalibrationReport report = load_report(folder.path("report.json"));
   CHECK(report.study_name == "old");
   CHECK(report.cases.at(0).fits);
@@ -200,15 +200,15 @@ TEST_CASE("missing, damaged and foreign reports are told apart with their place"
   const TemporaryFolder folder;
   std::string message;
   CHECK(status_of_loading(folder.path("none.json"), message) == data::ExitStatus::missing_input);
-  std::ofstream(folder.path("cut.json")) << R"({"format": 1, "edition": 6, "stud)";
+  std::ofstream(folder.path("cut.json")) << R"({"format": 1, "edition": 7, "stud)";
   CHECK(status_of_loading(folder.path("cut.json"), message) == data::ExitStatus::bad_data);
   CHECK(message.find("cut.json") != std::string::npos);
-  std::ofstream(folder.path("later.json")) << R"({"format": 9, "edition": 6, "cases": []})";
+  std::ofstream(folder.path("later.json")) << R"({"format": 9, "edition": 7, "cases": []})";
   CHECK(status_of_loading(folder.path("later.json"), message) == data::ExitStatus::bad_data);
   std::ofstream(folder.path("list.json")) << "[]";
   CHECK(status_of_loading(folder.path("list.json"), message) == data::ExitStatus::bad_data);
   std::ofstream(folder.path("kind.json"))
-      << R"({"format": 1, "edition": 6, "cases": [{"parameters": [{"mean": "much"}]}]})";
+      << R"({"format": 1, "edition": 7, "cases": [{"parameters": [{"mean": "much"}]}]})";
   CHECK(status_of_loading(folder.path("kind.json"), message) == data::ExitStatus::bad_data);
   CHECK(message.find("kind.json: cases[0].parameters[0].mean") != std::string::npos);
 }

@@ -1,6 +1,9 @@
 // Candidates that a plan makes itself.
 #include "uq/plan/candidates.hpp"
 
+#include <memory>
+
+#include "surrogate/design.hpp"
 #include "tests/uq/plan/plans.hpp"
 
 using namespace plans;
@@ -27,4 +30,26 @@ TEST_CASE("a planned reading has the measured ones' error: of a fixed size, or a
   CHECK(error_of_repeat(20.0, {0.146, 0.125, 0.104}) == "1 %");
   // 14.6, 0 and -14.6: a value near zero has an error of a size, and no share.
   CHECK(error_of_repeat(14.6 / 0.105, {0.2, 0.2, 0.2}) == "0.2");
+}
+
+TEST_CASE("a candidate where no run speaks comes last, and is no part of a batch", "[plan]") {
+  auto emulators = formula::emulators(0.0);
+  auto cloud = std::make_shared<uq::RunCloud>();
+  cloud->points = surrogate::scrambled_sobol(80, 3, 1, 0);
+  for (double& speed : cloud->points.col(2)) speed = speed < 0.6 ? speed : 0.9 + 0.25 * (speed - 0.6);
+  cloud->length_scales = Eigen::Vector3d::Ones();
+  cloud->prior_variance = 100.0;
+  for (uq::Emulator& one : emulators) one.runs = cloud;
+  for (const bool prior : {false, true}) {
+    const PlanReport plan =
+        plan_of(measured(0.4, 0.6, 0.1, 1), emulators, {}, {.about = "a", .batch = 2, .prior = prior});
+    CHECK(named(plan, "torque at 0.75").no_runs);  // amid the gap from 0.6 to 0.9
+    CHECK_FALSE(named(plan, "torque at 0.25").no_runs);
+    CHECK(std::is_partitioned(plan.candidates.begin(), plan.candidates.end(),
+                              [](const PlanCandidate& one) { return !one.doubtful(); }));
+    for (const uq::PlanBatch& batch : plan.batches)
+      for (const std::string& name : batch.candidates) CHECK_FALSE(named(plan, name).no_runs);
+    CHECK(std::any_of(plan.notes.begin(), plan.notes.end(),
+                      [](const std::string& note) { return note.starts_with("No run speaks"); }));
+  }
 }

@@ -212,6 +212,17 @@ TEST_CASE("readings at pairs of controls that no run has are not supported, amid
   CHECK(measured_at(grid, [](double) { return 0.3; }).supported);
 }
 
+TEST_CASE("each further reading is asked for its own runs", "[uq]") {
+  Eigen::MatrixXd runs = surrogate::scrambled_sobol(80, 3, 5, 0);
+  runs.col(2) *= 0.5;  // no run is faster
+  const Scene scene = scene_of(runs);
+  const Eigen::VectorXd found = unsupported_at(scene.model, {5, 0, 4, 2}, draws_about(0.5, 0.5));
+  CHECK(found[0] == Approx(1.0));  // speeds of 0.9, 0.1, 0.74 and 0.42
+  CHECK(found[1] == 0.0);
+  CHECK(found[2] == Approx(1.0));
+  CHECK(found[3] == 0.0);
+}
+
 TEST_CASE("a surrogate that knows no more than without runs supports nothing", "[uq]") {
   const Eigen::MatrixXd runs = surrogate::scrambled_sobol(60, 3, 5, 0);
   CHECK(support_of(scene_of(runs, 0.05), 0.5, 0.5).supported);

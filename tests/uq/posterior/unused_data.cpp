@@ -4,8 +4,10 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
 
 #include "data/random.hpp"
+#include "surrogate/design.hpp"
 #include "tests/uq/formula_study.hpp"
 
 using namespace uq;
@@ -188,4 +190,21 @@ TEST_CASE("where the noise is unknown, a prediction is judged by the tails of it
     INFO(off << ": " << found.p << " for " << exact);
     CHECK(found.p == Approx(exact).margin(4.0 * std::sqrt(exact * (1.0 - exact) / 10000.0)));
   }
+}
+
+TEST_CASE("readings where no run speaks are counted, and said to be extrapolated") {
+  data::RandomStream random(5, data::Purpose::test, 3);
+  const data::Study study = made(0.4, 0.55, 0.1, random);
+  auto emulators = formula::emulators(0.1);
+  auto cloud = std::make_shared<RunCloud>();
+  cloud->points = surrogate::scrambled_sobol(60, 3, 1, 0);
+  cloud->points.col(2) *= 0.7;  // of the unused speeds 1.0 lies beyond
+  cloud->length_scales = Eigen::Vector3d::Ones();
+  cloud->prior_variance = 100.0;
+  for (Emulator& one : emulators) one.runs = cloud;
+  const PredictionReport found = predict_unused(study, emulators, study.unused_data.front(),
+                                                build_case(study, emulators, 0), posterior(study, 0.1, 400));
+  CHECK(found.unsupported == 1);
+  CHECK_THAT(found.sentence, Catch::Contains("No run speaks at 1 of them"));
+  CHECK(predicted(study, 0.1).unsupported == 0);
 }
