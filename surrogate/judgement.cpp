@@ -57,16 +57,17 @@ std::string named_pairs(const std::vector<ApartPair>& pairs) {
 }
 
 /// What to do about intervals that are off.
-std::string remedy_of_intervals(const Validation& v, const TrainingSet& training) {
+std::string remedy_of_intervals(const Validation& v) {
   if (!too_wide(v))
     return fmt::format(
         "Look at the standardised errors above 2 (runs with a wrong standard error?); else add about {} runs, or try "
         "the log scale of the output (surrogate.log_outputs) or another kernel (surrogate.kernel).",
         v.more_runs);
-  if (training.noise_variance.maxCoeff() > 0.0)
+  if (v.noise.overstated())
     return "State the runs' standard errors as small as they are (0 of an exact code), or leave the column out: their "
            "scatter is estimated then.";
-  return "A smoother kernel may be nearer to the runs (surrogate.kernel).";
+  return "Nothing need be done. A smoother kernel may be nearer to the runs (surrogate.kernel), or the log scale of an "
+         "output whose small values are known better than its large ones (surrogate.log_outputs).";
 }
 
 /// Mean squared held-out error when only about half of the runs train, for the learning curve; negative: not possible.
@@ -235,7 +236,7 @@ void explain(Validation& v, const TrainingSet& training, const HeldOutModel& mod
     v.remedy = fmt::format("Add about {} runs, the first of them where the surrogate knows least.", v.more_runs);
   } else if (doubts.of_intervals()) {
     v.more_runs = too_wide(v) ? 0 : quarter;
-    v.remedy = remedy_of_intervals(v, training);
+    v.remedy = remedy_of_intervals(v);
   } else {
     v.more_runs = quarter;
     v.remedy = fmt::format("Use more starts, or add about {} runs.", v.more_runs);

@@ -107,6 +107,24 @@ TEST_CASE("standard errors that are too large make intervals that are too wide, 
   CHECK(v.more_runs == 0);
 }
 
+TEST_CASE("standard errors that are right are not blamed for intervals that are wide where the response is small") {
+  const auto product = [](const VectorXd& x) { return (0.1 + x[0]) * (0.1 + x[1]) * (0.2 + x[2]) * (1.0 + x[3]); };
+  int careful = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    TrainingSet training = runs_of(product, 80, 4, 0.0, seed);
+    data::RandomStream random(seed, data::Purpose::test);
+    for (Eigen::Index i = 0; i < training.y.size(); ++i) {
+      training.noise_variance[i] = std::pow(0.005 * training.y[i], 2);
+      training.y[i] *= 1.0 + 0.005 * random.normal();
+    }
+    const Validation v = validate(training, {}, fit(training));
+    CAPTURE(seed, v.finding, v.remedy);
+    CHECK(v.remedy.find("standard errors as small") == std::string::npos);
+    careful += v.consequence.find("wider than its errors") != std::string::npos;
+  }
+  CHECK(careful > 0);
+}
+
 TEST_CASE("an exact code of a smooth response makes a good surrogate, however careful its tiny intervals are") {
   const auto parabola = [](const VectorXd& x) { return 1.0 + x[0] * x[0] + 0.3 * x[1] + 0.2 * x[0] * x[1]; };
   const auto wave = [](const VectorXd& x) { return std::sin(9.0 * x[0]) + x[1]; };

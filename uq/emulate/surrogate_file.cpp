@@ -13,8 +13,8 @@
 namespace uq {
 namespace {
 
-/// The edition of how surrogates are chosen and fitted: those that another one fitted are fitted again.
-constexpr int fit_edition = 4;
+/// The edition of how surrogates are chosen, fitted and judged in words: those of another one are fitted again.
+constexpr int fit_edition = 5;
 
 surrogate::SurrogateKey key_of(const data::Study& study, const data::RunTable& table, const SurrogateOptions& options) {
   std::string text = fmt::format("{} {} {}\n", data::program_version(), report_edition, fit_edition);

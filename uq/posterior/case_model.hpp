@@ -54,6 +54,12 @@ struct RowGroup {
   Measurement measurement = {};
   std::vector<Eigen::Index> distinct_row = {};  ///< of each row, place in the model of distinct rows; empty: itself
   std::vector<Repeats> repeats = {};            ///< in the model of distinct rows: the readings that were averaged
+
+  /// Input k of the emulator in a row, unit cube: the unknown's value in u where one sets it.
+  double input(Eigen::Index row, Eigen::Index k, const Eigen::VectorXd& u) const {
+    const int s = unknown(row, k);
+    return s < 0 ? base(row, k) : u[s];
+  }
 };
 
 /// Two measured numbers whose own errors are correlated (observe.correlation).

@@ -16,10 +16,7 @@ constexpr Eigen::Index points_at_once = 32;  // predicted together
 /// Writes the rows of a group at u into `points`, from row `first` on.
 void place_rows(const RowGroup& group, const Eigen::VectorXd& u, Eigen::MatrixXd& points, Eigen::Index first) {
   for (Eigen::Index k = 0; k < group.base.cols(); ++k)
-    for (Eigen::Index i = 0; i < group.base.rows(); ++i) {
-      const int s = group.unknown(i, k);
-      points(first + i, k) = s < 0 ? group.base(i, k) : u[s];
-    }
+    for (Eigen::Index i = 0; i < group.base.rows(); ++i) points(first + i, k) = group.input(i, k, u);
   if (group.measurement.shifts() > 0) place_shifts(group.measurement, points, first, group.base.rows());
 }
 

@@ -126,11 +126,7 @@ MatrixXd points_at(const Ground& ground, const VectorXd& u) {
   const RowGroup& group = *ground.group;
   MatrixXd points(static_cast<Index>(ground.rows.size()), group.base.cols());
   for (Index i = 0; i < points.rows(); ++i)
-    for (Index k = 0; k < points.cols(); ++k) {
-      const Index row = ground.rows[i];
-      const int unknown = group.unknown(row, k);
-      points(i, k) = unknown < 0 ? group.base(row, k) : u[unknown];
-    }
+    for (Index k = 0; k < points.cols(); ++k) points(i, k) = group.input(ground.rows[i], k, u);
   return points;
 }
 

@@ -24,10 +24,9 @@ double log_add(double a, double b) {
 
 /// The emulator's inputs of a group's rows at u, without the shifted copies.
 Eigen::MatrixXd unshifted_rows(const RowGroup& group, const Eigen::VectorXd& u) {
-  Eigen::MatrixXd points = group.base;
+  Eigen::MatrixXd points(group.base.rows(), group.base.cols());
   for (Index k = 0; k < points.cols(); ++k)
-    for (Index i = 0; i < points.rows(); ++i)
-      if (group.unknown(i, k) >= 0) points(i, k) = u[group.unknown(i, k)];
+    for (Index i = 0; i < points.rows(); ++i) points(i, k) = group.input(i, k, u);
   return points;
 }
 

@@ -144,9 +144,7 @@ RunPoint run_at(const RowGroup& group, Index row, const Eigen::VectorXd& u) {
   RunPoint point{group.emulator.material, Eigen::VectorXd::Zero(parameters), Eigen::VectorXd::Zero(controls)};
   for (std::size_t k = 0; k < group.emulator.inputs.size(); ++k) {
     const EmulatorInput& input = group.emulator.inputs[k];
-    const int unknown = group.unknown(row, k);
-    const double value = unknown < 0 ? group.base(row, k) : u[unknown];
-    (input.kind == InputKind::parameter ? point.parameters : point.controls)[input.index] = value;
+    (input.kind == InputKind::parameter ? point.parameters : point.controls)[input.index] = group.input(row, k, u);
   }
   return point;
 }

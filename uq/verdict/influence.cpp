@@ -19,11 +19,7 @@ constexpr std::array<double, 7> shares = {0.0, 0.13, 0.31, 0.5, 0.69, 0.87, 1.0}
 Eigen::MatrixXd inputs_at(const RowGroup& group, const Yardstick::Group& looked, const Eigen::VectorXd& u) {
   Eigen::MatrixXd points(static_cast<Eigen::Index>(looked.rows.size()), group.base.cols());
   for (Eigen::Index i = 0; i < points.rows(); ++i)
-    for (Eigen::Index k = 0; k < points.cols(); ++k) {
-      const Eigen::Index row = looked.rows[i];
-      const int s = group.unknown(row, k);
-      points(i, k) = s < 0 ? group.base(row, k) : u[s];
-    }
+    for (Eigen::Index k = 0; k < points.cols(); ++k) points(i, k) = group.input(looked.rows[i], k, u);
   return points;
 }
 
