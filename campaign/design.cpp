@@ -38,6 +38,11 @@ bool cannot_do_better(const Workspace& workspace, const data::RunRow& row) {
 
 constexpr const char* seed_column = "seed";
 
+/// Number of parameters and controls that a material's runs vary.
+int varied_inputs(const data::Study& study, const std::string& material) {
+  return static_cast<int>(study.parameters.size() - study.material(material).fixed.size() + study.controls.size());
+}
+
 std::string made_again(const std::string& path) {
   return fmt::format("correct the line, or remove {}: it is made again",
                      std::filesystem::path(path).filename().string());
@@ -48,9 +53,11 @@ std::string made_again(const std::string& path) {
 std::vector<Point> training_design(const Workspace& workspace, const std::string& material, int first, int runs) {
   const data::Study& study = workspace.study;
   const data::Material& rows = study.material(material);
-  const int dimension = static_cast<int>(study.parameters.size() - rows.fixed.size() + study.controls.size());
+  const int dimension = varied_inputs(study, material);
+  if (dimension == 0) runs = first == 0 ? std::min(runs, 1) : 0;  // one point is all there is
   const std::uint64_t seed = number_from(fmt::format("{} {}", study.seed, material));
-  const Eigen::MatrixXd cube = surrogate::scrambled_sobol(runs, dimension, seed, first);
+  const Eigen::MatrixXd cube =
+      dimension > 0 ? surrogate::scrambled_sobol(runs, dimension, seed, first) : Eigen::MatrixXd(runs, 0);
   std::vector<Point> points;
   for (int run = 0; run < runs; ++run) {
     Point point{material, {}};
@@ -106,8 +113,12 @@ Campaign plan_campaign(const Workspace& workspace, const data::RunTable& table, 
     for (const data::Material& material : workspace.study.materials) next[material.name] = rows_of[material.name];
   }
   // Further points go to the materials in turn, each continuing its own sequence past what is known already.
-  for (std::size_t turn = 0; !campaign.continues && static_cast<int>(campaign.points.size()) < runs; ++turn) {
-    const std::string& material = workspace.study.materials[turn % workspace.study.materials.size()].name;
+  std::vector<std::string> varied;
+  for (const data::Material& material : workspace.study.materials)
+    if (varied_inputs(workspace.study, material.name) > 0) varied.push_back(material.name);
+  const bool further = !campaign.continues && !varied.empty();
+  for (std::size_t turn = 0; further && static_cast<int>(campaign.points.size()) < runs; ++turn) {
+    const std::string& material = varied[turn % varied.size()];
     for (std::size_t before = campaign.points.size(); campaign.points.size() == before;)
       add_missing(training_design(workspace, material, next[material]++, 1));
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "campaign/design.hpp"
 #include "data/progress.hpp"
 #include "data/provenance.hpp"
 #include "dem/reading/prepare.hpp"
@@ -122,13 +123,33 @@ std::string wrong_with_rig(const Workspace& workspace, const Point& point) {
   }
 }
 
+/// What a speed's range that reaches 0 means: turns near a standstill take long, as the design's own points tell.
+std::vector<std::string> problems_at_standstill(const Workspace& workspace, const std::string& material,
+                                                bool short_amid) {
+  std::vector<std::string> found;
+  for (const data::Input& input : data::inputs_of(workspace.study)) {
+    const data::Axis& axis = input.axis;
+    if (dem::target(input.target).name != "rig.rpm" || axis.low > 0.0 || axis.high < 0.0) continue;
+    if (axis.low < 0.0 && axis.high > 0.0)
+      found.push_back(fmt::format(
+          "{} goes from {} to {}: the rig turns either way, and outputs may bend or change their sign at a standstill; "
+          "a range on one side of 0 is learnt better",
+          input.name, with_unit(axis.low, input.unit), with_unit(axis.high, input.unit)));
+    const int runs = workspace.study.material(material).runs.value_or(workspace.study.training.runs);
+    if (std::string short_of = too_short(workspace, training_design(workspace, material, 0, runs));
+        !short_amid && !short_of.empty())
+      found.push_back(std::move(short_of));
+  }
+  return found;
+}
+
 }  // namespace
 
 std::vector<std::string> problems_at_ends(const Workspace& workspace, const Point& middle) {
-  std::vector<std::string> found;
   const std::vector<data::Input> inputs = data::inputs_of(workspace.study);
   const auto& fixed = workspace.study.material(middle.material).fixed;
   const bool short_amid = !too_short(workspace, {middle}).empty();  // then `foretell` says so once
+  std::vector<std::string> found = problems_at_standstill(workspace, middle.material, short_amid);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     if (fixed.count(inputs[i].name) > 0) continue;
     for (const double end : {inputs[i].axis.low, inputs[i].axis.high}) {

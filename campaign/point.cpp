@@ -74,7 +74,8 @@ Point parse_point(const Workspace& workspace, const std::string& material, const
         std::find_if(inputs.begin(), inputs.end(), [&](const data::Input& input) { return input.name == name; });
     if (equals == std::string::npos || found == inputs.end())
       throw usage("--at", fmt::format("'{}' sets no parameter or control", assignment),
-                  fmt::format("write NAME=VALUE with one of: {}", names_of(inputs)));
+                  inputs.empty() ? "the study has none: set a key of it by --set, like --set rig.rpm=\"100 rpm\""
+                                 : fmt::format("write NAME=VALUE with one of: {}", names_of(inputs)));
     const std::string place = "--at " + name;
     if (std::find(set.begin(), set.end(), name) != set.end())
       throw usage(place, fmt::format("is set twice, the second time by '{}'", assignment), "keep one of them");

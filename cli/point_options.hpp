@@ -19,7 +19,8 @@ inline void add_point_options(CLI::App& command, PointOptions& options) {
       .add_option("--at", options.at,
                   "NAME=VALUE of parameters and controls, separated by commas; the others take the material's fixed "
                   "value or the middle of their range")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
 }
 
 /// Throws data::InputError (64) for a material, name or value that the study has not.

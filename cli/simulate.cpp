@@ -137,6 +137,7 @@ std::string summary(const Workspace& workspace, const Point& point, const dem::P
 struct RunFiles {
   std::string path;       ///< run.h5, or, where that holds another run or is no run of ours, run-HASH.h5
   std::string from = {};  ///< a file of the same run with another length: the course that it holds is not made again
+  bool damaged = false;   ///< run.h5 cannot be read
 };
 
 /// What is there is never replaced, and nothing that is there is computed again.
@@ -146,13 +147,16 @@ RunFiles files_of(const Workspace& workspace, const Point& point) {
   if (!fs::exists(usual)) return {usual.string()};
   const std::string settings = dem::settings_text(case_at(workspace, point));
   const std::uint64_t seed = run_seed(workspace, point);
+  bool damaged = false;
   try {
     const dem::SavedRun saved = dem::read_run(usual.string());
     if (saved.settings == settings && saved.result.seed == seed) return {usual.string()};
   } catch (const data::InputError&) {  // not to be read: it stays as it is
+    damaged = true;
   }
   const std::string name = data::hash_text(fmt::format("{} {}", settings, seed)).substr(0, 12);
-  return {(fs::path(workspace.out) / ("run-" + name + ".h5")).string(), longest_run(workspace, point, workspace.out)};
+  return {(fs::path(workspace.out) / ("run-" + name + ".h5")).string(), longest_run(workspace, point, workspace.out),
+          damaged};
 }
 
 /// frames, or, where that holds frames of another run or another number of them, frames-HASH: ParaView takes all files
@@ -208,7 +212,9 @@ data::ExitStatus simulate(const SimulateOptions& options) {
     notes.push_back(fmt::format("{} holds this run with another length and is kept; this one goes on from it, in {}",
                                 name_of(files.from), name_of(path)));
   else if (path != out / "run.h5")
-    notes.push_back(fmt::format("run.h5 holds another run and is kept; this one is in {}", name_of(path)));
+    notes.push_back(fmt::format("run.h5 {} and is kept; this one is in {}",
+                                files.damaged ? "cannot be read (damaged, or no run of demcal)" : "holds another run",
+                                name_of(path)));
   std::string frames_folder;
   if (options.frames > 0) {
     frames_folder = frames_folder_of(workspace, point, options.frames);
@@ -222,9 +228,10 @@ data::ExitStatus simulate(const SimulateOptions& options) {
     for (const dem::NamedMesh& mesh : dem::rig_meshes(told.prepared.given()))
       dem::write_stl(mesh.mesh, (out / (data::file_name(mesh.name) + ".stl")).string());
   }
+  const std::string inputs = describe(workspace.study, point);
   const std::string at =
-      fmt::format("{}{}{}", point.material, point.material.empty() ? "" : ": ", describe(workspace.study, point));
-  say(common, at);
+      fmt::format("{}{}{}", point.material, point.material.empty() || inputs.empty() ? "" : ": ", inputs);
+  if (!at.empty()) say(common, at);
   for (const std::string& note : notes) say(common, "note: " + note);
   const dem::RunResult result = run_with_progress(options, workspace, point, files, frames_folder, interrupt.token());
   if (result.status == dem::RunStatus::interrupted) {

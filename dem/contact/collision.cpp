@@ -129,6 +129,8 @@ int right_hand_side(double, N_Vector state, N_Vector rate, void* data) {
 
 /// Touch, release of a held contact, the attraction's end, and the turn of the normal velocity.
 enum Root { touch, release, leave, turn, roots };
+/// Rising or falling: a pair that comes near passes the others the other way round, which tells nothing.
+constexpr std::array<int, roots> root_directions{1, -1, -1, -1};
 int root_functions(double, N_Vector state, double* root, void* data) {
   const Impact& p = *static_cast<const Impact*>(data);
   const Geometry g = geometry(p, N_VGetArrayPointer(state));
@@ -154,6 +156,8 @@ class Solver {
     check(CVodeSetUserData(cvode_, &impact), "CVodeSetUserData");
     check(CVodeSetLinearSolver(cvode_, linear_, matrix_), "CVodeSetLinearSolver");
     check(CVodeRootInit(cvode_, roots, root_functions), "CVodeRootInit");
+    std::array<int, roots> directions = root_directions;
+    check(CVodeSetRootDirection(cvode_, directions.data()), "CVodeSetRootDirection");
     check(CVodeSetMaxNumSteps(cvode_, 200000), "CVodeSetMaxNumSteps");
     check(CVodeSetMaxStep(cvode_, 0.05), "CVodeSetMaxStep");
   }
@@ -274,6 +278,10 @@ Collision collide(const ForcePass& laws, const Encounter& e) {
       solver.restart();
     } else if (p.phase == Phase::apart && crossed[leave] < 0) {
       over = true;
+    } else if (std::any_of(crossed.begin(), crossed.end(), [](int way) { return way != 0; })) {
+      // CVODE gives up where a root function is zero at a root and right behind it, as a difference of distances may
+      // be. Starting anew it waits until the function has left zero.
+      solver.restart();
     }
     if (!over && ((touched && crossed[turn] < 0) || solver.time() >= patience)) {
       c.end = CollisionEnd::sticks;

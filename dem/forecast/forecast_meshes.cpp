@@ -293,7 +293,8 @@ void check_reach(const Case& c, const BuiltRig& rig, const Room& room, Forecast&
     const std::string what =
         fmt::format("never touches the powder: it reaches down to {} mm, and the bed's surface will lie at {} mm ({})",
                     mm(lowest_point), mm(*f.surface), f.up);
-    if (measured)
+    // Spheres that the user has placed may lie on a mesh; where the bed is poured, its surface is foretold.
+    if (measured && c.rig.stl->packing.empty())
       f.problems.push_back({"rig.mesh." + meshes[k].name, what + ", so its torque would be 0",
                             "raise the fill, lower the mesh, fill the chamber that it is in, or measure another mesh "
                             "(rig.torque_of)"});

@@ -255,6 +255,13 @@ void sort_out_pairs(const Section& root, Case& c) {
             "pair", fmt::format("names '{}', which is no material, mesh or mesh's material", name),
             fmt::format("choose two of: {}, {}", fmt::join(grains, ", "), fmt::join(bodies, ", ")));
     }
+    const auto is_grain = [&](const std::string& name) {
+      return in(grains, name) || root.child("materials").has(name);
+    };
+    if (in(bodies, p.first) && in(bodies, p.second) && !is_grain(p.first) && !is_grain(p.second))
+      root.child("contact").problem(
+          "pair", fmt::format("is between '{}' and '{}', and meshes never touch each other", p.first, p.second),
+          fmt::format("choose a material of the bed for one of them: {}", fmt::join(grains, ", ")));
     return !((in(grains, p.first) && (in(grains, p.second) || in(bodies, p.second))) ||
              (in(bodies, p.first) && in(grains, p.second)));
   });

@@ -221,10 +221,14 @@ std::vector<data::Problem> problems_of(const Case& c) {
   for (std::size_t a = 0; a < 3; ++a) {
     const double size = high[a] - low[a], least = rig.periodic[a] ? 4.0 * (1.0 + c.run.skin) * bed.largest : 0.0;
     if (!(size > least)) {
-      found.push_back({"rig.box",
-                       fmt::format("is {:g} m long along {}, but must be longer than {:g} m{}", size, axis_names[a],
-                                   least, rig.periodic[a] ? " (four spheres, as it is periodic)" : ""),
-                       "correct rig.box"});
+      found.push_back(
+          {"rig.box",
+           fmt::format("is {:g} m long along {}, but must be longer than {:g} m{}", size, axis_names[a], least,
+                       rig.periodic[a] ? fmt::format(" (as it is periodic, four of the largest sphere, "
+                                                     "each with run.skin, {:g} of it)",
+                                                     c.run.skin)
+                                       : ""),
+           "correct rig.box"});
     }
   }
   if (rig.meshes.size() > max_bodies) {

@@ -148,7 +148,10 @@ std::vector<data::Problem> problems_of(const Case& c) {
   if (!(drum.length >= least))
     found.push_back({"rig.drum_length",
                      fmt::format("is {:.3g} m, but must be at least {:.3g} m, {}", drum.length, least,
-                                 open ? "four spheres, as the drum repeats along its axis" : "one and a half spheres"),
+                                 open ? fmt::format("as the drum repeats along its axis, four of the largest sphere, "
+                                                    "each with run.skin, {:g} of it",
+                                                    c.run.skin)
+                                      : "one and a half spheres"),
                      "make the drum longer, or the spheres smaller"});
   if (c.rig.angular_velocity == 0.0)
     found.push_back({"rig.rpm", "is zero: a drum at rest has no torque to measure", "give a speed"});

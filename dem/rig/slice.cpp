@@ -139,9 +139,13 @@ std::vector<data::Problem> problems_of(const Case& c) {
   std::vector<data::Problem> found = auger_problems(c);
   const Rig& rig = c.rig;
   const double size = summarise_bed(c).largest, length = rig.pitches * rig.pitch;
-  if (!(length >= 4.0 * (1.0 + c.run.skin) * size)) {
-    found.push_back({"rig.pitch", fmt::format("gives a periodic box of {:g} m, shorter than four spheres", length),
-                     "raise pitches"});
+  if (const double least = 4.0 * (1.0 + c.run.skin) * size; !(length >= least)) {
+    found.push_back(
+        {"rig.pitch",
+         fmt::format("gives a periodic box of {:g} m, shorter than {:g} m: four of the largest sphere, each "
+                     "with run.skin, {:g} of it",
+                     length, least, c.run.skin),
+         "raise pitches"});
   }
   if (!found.empty()) return found;
   check_fill(c, fill_of_slice(c), found);

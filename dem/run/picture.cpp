@@ -135,15 +135,18 @@ std::string bodies_text(const Scene& frame) {
 std::string povray_scene(const std::string& path, const PictureOptions& options) {
   const Scene frame = read_frame(path);
   Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  double size = 1e-12;  // a lone sphere has no extent of centres
   for (std::size_t i = 0; i < frame.point.size(); ++i) {
     if (frame.material[i] < 0) continue;  // bodies may reach far above the powder
     const Vec3 p = frame.point[i];
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    size = std::max(size, 4.0 * frame.radius[i]);
   }
+  size = std::max(size, length(high - low));
   const Vec3 centre = 0.5 * (low + high);
   const Vec3 direction{options.from[0], options.from[1], options.from[2]};
-  const Vec3 at = centre + (3.1 * std::max(length(high - low), 1e-12) / std::max(length(direction), 1e-12)) * direction;
+  const Vec3 at = centre + (3.1 * size / std::max(length(direction), 1e-12)) * direction;
   // The picture's right is turned round: POV-Ray's axes are left-handed.
   return fmt::format(
              "#version 3.7;\nglobal_settings {{ assumed_gamma 1.0 }}\nbackground {{ rgb 1 }}\n"
@@ -151,7 +154,7 @@ std::string povray_scene(const std::string& path, const PictureOptions& options)
              "#declare Wall = finish {{ ambient 0.3 diffuse 0.6 specular 0.1 }}\n"
              "camera {{ perspective sky <0,0,1> right -x*image_width/image_height angle 24 location {} look_at {} }}\n"
              "light_source {{ {} rgb 0.8 parallel point_at {} }}\nlight_source {{ {} rgb 0.35 shadowless }}\n",
-             text(at), text(centre), text(at + Vec3{0.0, 0.0, 2.0 * length(high - low)}), text(centre), text(at)) +
+             text(at), text(centre), text(at + Vec3{0.0, 0.0, 2.0 * size}), text(centre), text(at)) +
          spheres_text(frame, options) + bodies_text(frame);
 }
 
@@ -172,7 +175,7 @@ void draw_frame(const std::string& frame, const std::string& png, const PictureO
     throw data::InputError(
         data::ExitStatus::missing_program,
         {frame, "povray failed: " + result.err.substr(result.err.size() > 600 ? result.err.size() - 600 : 0),
-         "demcal needs POV-Ray 3.7: apt-get install povray"});
+         "its message says why; demcal draws with POV-Ray 3.7"});
   const std::string picture = data::read_file(drawn.string());
   fs::remove(drawn);
   data::write_atomically(png, picture);

@@ -213,4 +213,40 @@ TEST_CASE("a rig without parameters can be simulated, and what cannot be calibra
   const auto planned = folder.demcal({"plan", "study", "--prior"});
   CHECK(planned.status == 78);
   CHECK_THAT(planned.err, Contains("names no parameter that is free"));
+
+  // Without a control, either, there is one point, which is all of the design.
+  text.erase(text.find("[controls.rpm]"), text.find("[outputs.torque]") - text.find("[controls.rpm]"));
+  text.insert(text.find("[rig]") + 6, "rpm = \"100 rpm\"\n");
+  folder.write("study/study.toml", text);
+  const auto fixed = folder.demcal({"check", "study"});
+  INFO(fixed.err);
+  CHECK(fixed.status == 0);
+  CHECK_THAT(fixed.out, Contains("1 run missing"));
+  const auto designed = folder.demcal({"design", "study", "--runs", "5"});
+  CHECK(designed.status == 0);
+  CHECK_THAT(designed.out, Contains("1 point to simulate"));
+  const auto named = folder.demcal({"simulate", "study", "--at", "rpm=200"});
+  CHECK(named.status == 64);
+  CHECK_THAT(named.err, Contains("--set rig.rpm"));
+}
+
+TEST_CASE("a range of speed that reaches a standstill is asked how long its runs near it take") {
+  const Folder folder;
+  folder.study("quick");
+  const auto from = [&](const std::string& low) {
+    return folder.demcal({"check", "study", "--set", "controls.rpm.low=" + low});
+  };
+  const auto rest = from("0"), both = from("-100");
+  CHECK(rest.status == 2);
+  CHECK_THAT(rest.err, Contains("runs would be too short") && !Contains("turns either way"));
+  CHECK(both.status == 2);
+  CHECK_THAT(both.err, Contains("turns either way"));
+}
+
+TEST_CASE("what follows --at and its values is not taken for one of them") {
+  const Folder folder;
+  folder.study("quick");
+  const auto before = folder.demcal({"export", "--at", "rpm=200,friction=0.5", "study", "case", "--to", "liggghts"});
+  INFO(before.err);
+  CHECK(before.status != 64);
 }

@@ -1,6 +1,7 @@
 // The pair integrated by CVODE (dem/contact/collision.hpp) against closed forms, and the simulation against the pair.
 // Closed forms: duration pi / (w0 sqrt(1 - zeta^2)) of the linear spring-dashpot; Hertz as in impact.cpp; clamped
 // restitutions and sticking speeds f(e) F / sqrt(m* k) of the project's verification sheet, derived there.
+#include "data/random.hpp"
 #include "tests/dem/shot.hpp"
 
 namespace {
@@ -133,6 +134,32 @@ TEST_CASE(
   const dem::FoundDamping none = dem::damping_for({0.5, 0.02}, scene::bed_for(c, e), e);
   CHECK(!none.damping_ratio);
   CHECK(none.collision.end == dem::CollisionEnd::sticks);
+}
+
+TEST_CASE("a JKR pair of any radii has the damping for its restitution, or none since adhesion takes more") {
+  // Which radii met a root function of exactly zero hung on their last digits.
+  data::RandomStream random(3, data::Purpose::test);
+  const auto between = [&](double low, double high) { return low * std::pow(high / low, random.uniform()); };
+  int found_count = 0;
+  for (int k = 0; k < 40; ++k) {
+    dem::Case c;
+    c.contact.normal = dem::NormalLaw::jkr;
+    c.contact.young_modulus = between(1e6, 1e8);
+    c.contact.work_of_adhesion = between(1e-3, 0.2);
+    dem::Encounter e;
+    e.sphere = scene::ball(c.material.density, between(0.3e-3, 0.6e-3));
+    e.partner = scene::ball(c.material.density, between(0.3e-3, 0.6e-3));
+    const double speed = between(0.05, 0.5);
+    CAPTURE(k, c.contact.young_modulus, c.contact.work_of_adhesion, e.sphere.radius, e.partner->radius, speed);
+    dem::FoundDamping found;
+    REQUIRE_NOTHROW(found = dem::damping_for({0.7, speed}, scene::bed_for(c, e), e));
+    if (found.damping_ratio)
+      CHECK(found.collision.restitution == Approx(0.7).epsilon(1e-6));
+    else
+      CHECK(found.collision.restitution < 0.7);
+    found_count += found.damping_ratio.has_value();
+  }
+  CHECK(found_count > 20);
 }
 
 TEST_CASE("the simulated collision goes to CVODE's as the time step is refined, under every law, head on and oblique",

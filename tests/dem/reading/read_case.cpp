@@ -1,5 +1,6 @@
 // The study's keys of rig, materials, contact laws, pairs, sizes, mixtures and runs: each reaches the case, changes the
 // settings, and is refused by name where it cannot be.
+#include <fmt/core.h>
 #include <catch2/catch.hpp>
 
 #include "data/error.hpp"
@@ -240,6 +241,10 @@ TEST_CASE("a key that the chosen laws do not read, and a pair of no such materia
              Catch::Contains("between"));
   CHECK_THAT(reading(one_material("[[contact.pair]]\nbetween = [\"mix\", \"wall\"]\nfriction = \"2 mm\"\n")).said,
              Catch::Contains("friction"));
+  // Meshes never touch each other: what is said of them would be read and never used.
+  for (const char* between : {"\"mixer\", \"trough\"", "\"wall\", \"wall\""})
+    CHECK_THAT(reading(one_material(fmt::format("[[contact.pair]]\nbetween = [{}]\nfriction = 0.1\n", between))).said,
+               Catch::Contains("contact.pair") && Catch::Contains("meshes never touch each other"));
 }
 
 TEST_CASE("a rig is judged at the values that the runs give it, and not at a default that no run has") {
