@@ -53,6 +53,21 @@ void check_laws(const Case& c, Found& found) {
   }
 }
 
+/// Simulated grains are softer than the real ones, whose attraction is scaled down to theirs; never the other way.
+void check_softening(const Case& c, Found& found) {
+  const auto check = [&](const char* key, double used, const std::optional<double>& real, const char* unit) {
+    if (real && *real < used)
+      found.push_back({fmt::format("contact.true_{}", key),
+                       fmt::format("is {:g} {}, below contact.{}, {:g} {}: attraction would be scaled up", *real, unit,
+                                   key, used, unit),
+                       fmt::format("give the real grains' own, or lower contact.{}", key)});
+  };
+  if (c.contact.normal == NormalLaw::linear)
+    check("stiffness", c.contact.stiffness, c.contact.true_stiffness, "N/m");
+  else
+    check("young_modulus", c.contact.young_modulus, c.contact.true_young_modulus, "Pa");
+}
+
 void check_sizes(const Material& m, const std::string& place, Found& found) {
   if (!m.sizes.empty() && m.log_normal)
     found.push_back({place, "has both a list of sizes and a distribution", "keep one of them"});
@@ -191,6 +206,7 @@ Examined examine(const Case& c) {
   Found found;
   check_ranges(c, found);
   check_laws(c, found);
+  check_softening(c, found);
   if (!found.empty()) return {found, {}};
   check_bed(c, found);
   if (!found.empty()) return {found, {}};

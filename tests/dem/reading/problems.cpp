@@ -15,6 +15,21 @@ TEST_CASE("what cannot be simulated is named before it is tried") {
   CHECK_THROWS_AS(dem::run(c, 1), data::InputError);
 }
 
+TEST_CASE("real grains softer than the simulated ones are refused, where their law reads them") {
+  for (const auto normal : {dem::NormalLaw::linear, dem::NormalLaw::hertz}) {
+    dem::Case c;
+    c.contact.normal = normal;
+    const bool linear = normal == dem::NormalLaw::linear;
+    std::optional<double>& real = linear ? c.contact.true_stiffness : c.contact.true_young_modulus;
+    const double used = linear ? c.contact.stiffness : c.contact.young_modulus;
+    real = used;
+    CHECK(dem::problems(c).empty());
+    real = 0.01 * used;
+    REQUIRE(dem::problems(c).size() == 1);
+    CHECK(dem::problems(c)[0].place == (linear ? "contact.true_stiffness" : "contact.true_young_modulus"));
+  }
+}
+
 TEST_CASE("sample, window and length of a run that do not fit into each other are refused, each by name") {
   const auto said = [](double sample, double window, double longest) {
     dem::Case c;

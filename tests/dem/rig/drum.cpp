@@ -197,7 +197,8 @@ TEST_CASE("a drum too full, at rest, too short to repeat or too fast to flow is 
   CHECK_THAT(data::describe(dem::problems(rests)), Contains("a drum at rest has no torque"));
   dem::Case slip = small_drum(dem::EndPlates::none);
   slip.rig.drum->length = 5e-3;
-  CHECK_THAT(data::describe(dem::problems(slip)), Contains("rig.drum_length") && Contains("four of the largest sphere"));
+  CHECK_THAT(data::describe(dem::problems(slip)),
+             Contains("rig.drum_length") && Contains("four of the largest sphere"));
   dem::Case fast = c;
   fast.rig.angular_velocity = 40.0;
   REQUIRE(!dem::forecast(dem::prepare(fast), 1).warnings.empty());
