@@ -164,8 +164,12 @@ RunsAround runs_around(const Ground& ground, const VectorXd& u, const SupportThr
     rejected.any += bad || hole || uncertain;
   }
 
-  // The draw: what holds at half of its rows or more.
-  const auto at_half = [rows](Index count) { return 2 * count >= rows; };
+  // The draw: what holds at half of its rows or more. Where only all tests together reject so many, each that rejects
+  // any row is named.
+  Index most = std::max(rejected.empty, rejected.uncertain);
+  for (std::size_t k = 0; k < ground.lines.size(); ++k) most = std::max({most, rejected.outside[k], rejected.gap[k]});
+  const bool together = 2 * rejected.any >= rows && 2 * most < rows;
+  const auto at_half = [&](Index count) { return together ? count > 0 : 2 * count >= rows; };
   for (std::size_t k = 0; k < ground.lines.size(); ++k) {
     met.outside.push_back(at_half(rejected.outside[k]));
     if (!at_half(rejected.gap[k])) met.gap[k] = -1;

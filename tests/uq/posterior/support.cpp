@@ -212,6 +212,26 @@ TEST_CASE("readings at pairs of controls that no run has are not supported, amid
   CHECK(measured_at(grid, [](double) { return 0.3; }).supported);
 }
 
+TEST_CASE("where readings lie beyond the runs for different reasons, each reason is named", "[uq]") {
+  Eigen::MatrixXd runs = surrogate::scrambled_sobol(80, 3, 5, 0);
+  runs.col(1) = 0.17 + 0.83 * runs.col(1).array();
+  runs.col(2) *= 0.67;
+  Scene scene = scene_of(runs);
+  scene.study.controls.push_back({.name = "fill", .target = "fill", .low = 0.0, .high = 1.0});
+  RowGroup& group = scene.model.groups[0];
+  group.emulator.inputs[1] = {InputKind::control, 1};
+  for (Eigen::Index row = 0; row < group.base.rows(); ++row) {
+    group.unknown(row, 1) = -1;
+    group.base(row, 1) = row < 2 ? 0.1 : 0.6;  // two of six below the runs' fill, others above their speed
+  }
+  const SupportReport found = support_of(scene, 0.5, 0.5);
+  CHECK_FALSE(found.supported);
+  CHECK_THAT(found.sentence, Contains("where no run speaks: 100 %"));
+  CHECK(found.inputs[0].outside == 0.0);
+  CHECK(found.inputs[1].outside == Approx(1.0));
+  CHECK(found.inputs[2].outside == Approx(1.0));
+}
+
 TEST_CASE("each further reading is asked for its own runs", "[uq]") {
   Eigen::MatrixXd runs = surrogate::scrambled_sobol(80, 3, 5, 0);
   runs.col(2) *= 0.5;  // no run is faster
