@@ -2,7 +2,12 @@
 // A small team of threads that stays alive between parallel passes; the caller is its first member.
 //
 // A step is a few passes of tens of microseconds each. Waking a thread costs about as much, so members wait for the
-// next pass at the ready for a while before they sleep; a machine that is busy otherwise has them back soon.
+// next pass at the ready for a while before they sleep. A pass waits for nobody who has not come to it: where the
+// machine is busy otherwise, a member that has no core leaves its items to the others.
+//
+// The gate. A pass begins by opening it and ends by closing it; its number tells passes apart. A member counts itself
+// in, and looks at the gate once more: if it is that of the same open pass, the caller sees it inside and waits for it;
+// else it has come too late and touches nothing.
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -36,53 +41,61 @@ class Team {
     work_ = std::ref(work);
     items_ = items;
     next_ = 0;
-    busy_ = static_cast<std::uint64_t>(size_) - 1;
-    begin_pass();
+    open_gate();
     take_items();
-    wait_until(busy_, [](std::uint64_t busy) { return busy == 0; });
+    gate_.fetch_add(1);  // closed; who sleeps is not woken for that
+    wait_until(inside_, [](std::uint64_t inside) { return inside == 0; });
   }
 
  private:
   static constexpr int looks = 2000;  ///< looks at a number before sleeping until it changes: some tens of microseconds
 
-  /// What a member does: takes part in every pass until the team is dismissed.
+  static bool is_open(std::uint64_t gate) { return gate % 2 == 1; }
+
+  /// What a member does: takes part in the passes that it comes to until the team is dismissed.
   void serve() {
-    for (std::uint64_t pass = 1;; ++pass) {
-      wait_until(passes_, [pass](std::uint64_t begun) { return begun >= pass; });
-      if (done_) return;
-      take_items();
-      if (busy_.fetch_sub(1) == 1) busy_.notify_one();
+    std::uint64_t last = 0;
+    while (!done_) {
+      last = wait_until(gate_, [last](std::uint64_t gate) { return is_open(gate) && gate != last; });
+      inside_.fetch_add(1);
+      if (gate_ == last && !done_) take_items();
+      if (inside_.fetch_sub(1) == 1) inside_.notify_one();
     }
   }
   void dismiss() {
     done_ = true;
-    begin_pass();
+    open_gate();
   }
-  void begin_pass() {
-    passes_.fetch_add(1);
-    passes_.notify_all();
+  /// Opens the gate, for a pass or for good.
+  void open_gate() {
+    gate_.fetch_add(1);
+    gate_.notify_all();
   }
   void take_items() {
     for (std::size_t i = next_.fetch_add(1); i < items_; i = next_.fetch_add(1)) work_(i);
   }
-  template <class Done>
-  static void wait_until(const std::atomic<std::uint64_t>& number, Done&& done) {
+  /// The number, once it is as wanted. Loads are in one order with all changes: the gate is closed before `inside_` is
+  /// looked at.
+  template <class Wanted>
+  static std::uint64_t wait_until(const std::atomic<std::uint64_t>& number, Wanted&& wanted) {
     for (int look = 0; look < looks; ++look) {
-      if (done(number.load(std::memory_order_acquire))) return;
+      if (const std::uint64_t now = number; wanted(now)) return now;
 #ifdef __x86_64__
       __builtin_ia32_pause();
 #endif
     }
-    for (std::uint64_t now = number; !done(now); now = number) number.wait(now);
+    std::uint64_t now = number;
+    for (; !wanted(now); now = number) number.wait(now);
+    return now;
   }
 
   int size_;
-  bool done_ = false;
+  std::atomic<bool> done_ = false;
   std::function<void(std::size_t)> work_;
   std::size_t items_ = 0;
   alignas(64) std::atomic<std::size_t> next_ = 0;      ///< the next item
-  alignas(64) std::atomic<std::uint64_t> passes_ = 0;  ///< passes begun
-  alignas(64) std::atomic<std::uint64_t> busy_ = 0;    ///< members that have not finished this pass, beside the caller
+  alignas(64) std::atomic<std::uint64_t> gate_ = 0;    ///< odd while a pass is open
+  alignas(64) std::atomic<std::uint64_t> inside_ = 0;  ///< members that look at the pass, beside the caller
   std::vector<std::jthread> members_;
 };
 

@@ -29,3 +29,18 @@ TEST_CASE("what a team has written in one pass it reads in the next") {
   }
   for (const long n : now) REQUIRE(n == 1L << 20);
 }
+
+TEST_CASE("a team of more members than any machine has cores ends its passes, full, empty and in a hurry") {
+  for (int round = 0; round < 20; ++round) {
+    dem::Team team(64);
+    std::vector<long> sums(64, 0);  // each item belongs to one member at a time: no atomics
+    for (int pass = 0; pass < 100; ++pass) {
+      const auto items = static_cast<std::size_t>(pass % 7 == 0 ? 0 : 1 + pass % 64);
+      team.for_each(items, [&](std::size_t item) { sums[item] += pass; });
+    }
+    long sum = 0, expected = 0;
+    for (const long each : sums) sum += each;
+    for (int pass = 0; pass < 100; ++pass) expected += pass % 7 == 0 ? 0L : long{pass} * (1 + pass % 64);
+    REQUIRE(sum == expected);
+  }
+}
